@@ -3,9 +3,12 @@
 
 namespace catena::cuda {
 
-std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const& group, DeviceSpace const& space, Communicator const& communicator) {
-    return dca::with_articulated_leaf(group,
-                                      [&](auto leaf) { return make_solver<typename decltype(leaf)::type>(group, space, communicator); });
+std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const& group,
+                                                     DeviceSpace const& space,
+                                                     Communicator const& communicator) {
+    return dca::with_articulated_leaf(group, [&](auto leaf) {
+        return make_solver<typename decltype(leaf)::type>(group, space, communicator);
+    });
 }
 
 }  // namespace catena::cuda

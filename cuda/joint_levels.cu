@@ -2,7 +2,8 @@
 
 namespace catena::cuda {
 
-std::unique_ptr<dca::LevelPart> make_joint_levels(ChainGroup const& group, dca::LevelWork const& work) {
+std::unique_ptr<dca::LevelPart> make_joint_levels(ChainGroup const& group,
+                                                  dca::LevelWork const& work) {
     return dca::with_joint_leaf(group, MakeLevels{group, work});
 }
 

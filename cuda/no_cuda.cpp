@@ -1,7 +1,7 @@
 #include "cuda/device/clusters.hpp"
+#include "cuda/device/gpu.hpp"
 #include "cuda/dynamics.hpp"
 #include "cuda/space/memory.hpp"
-#include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "neighbours/device_path.hpp"
 
@@ -22,15 +22,20 @@ bool knows_clusters() { throw ComputationError(why_not()); }
 int multiprocessors() { throw ComputationError(why_not()); }
 int blocks_at_once() { throw ComputationError(why_not()); }
 std::int64_t stacks(std::int64_t) { throw ComputationError(why_not()); }
-std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }
+std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) {
+    throw ComputationError(why_not());
+}
 
-std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&) {
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&,
+                                                     Executor const&, Communicator const&) {
     throw ComputationError(why_not());
 }
-std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&) {
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&,
+                                                      Executor const&, Communicator const&) {
     throw ComputationError(why_not());
 }
-std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&) {
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&,
+                                                   Communicator const&) {
     throw ComputationError(why_not());
 }
 
@@ -39,6 +44,8 @@ std::string why_pairs_cannot_be_shared() { return why_not(); }
 bool gpus_are_alike(Communicator const&) { throw ComputationError(why_not()); }
 bool gpus_may_write_to_each_other(Communicator const&) { throw ComputationError(why_not()); }
 int chosen_device() { throw ComputationError(why_not()); }
-std::unique_ptr<DevicePath> make_device_path(OpenMM::Context&, DevicePathPlan) { throw ComputationError(why_not()); }
+std::unique_ptr<DevicePath> make_device_path(OpenMM::Context&, DevicePathPlan) {
+    throw ComputationError(why_not());
+}
 
 }  // namespace catena::cuda

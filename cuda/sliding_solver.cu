@@ -3,10 +3,16 @@
 namespace catena::cuda {
 
 template <int K, bool sliding>
-std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, DeviceSpace const& space, Communicator const& communicator) {
-    return make_solver<dca::BodyLeaf<K, dca::MeetingFrames<K, sliding>>>(group, space, communicator);
+std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, DeviceSpace const& space,
+                                               Communicator const& communicator) {
+    return make_solver<dca::BodyLeaf<K, dca::JointFrameHandles<K, sliding>>>(group, space,
+                                                                             communicator);
 }
-template std::unique_ptr<ChainSolver> make_joint_solver<5, true>(ChainGroup const&, DeviceSpace const&, Communicator const&);
-template std::unique_ptr<ChainSolver> make_joint_solver<6, true>(ChainGroup const&, DeviceSpace const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<5, true>(ChainGroup const&,
+                                                                 DeviceSpace const&,
+                                                                 Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<6, true>(ChainGroup const&,
+                                                                 DeviceSpace const&,
+                                                                 Communicator const&);
 
 }  // namespace catena::cuda

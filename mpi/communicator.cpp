@@ -10,8 +10,10 @@ namespace catena {
 void Communicator::exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const {
     for (int k = 1; k < size(); ++k) {
         int const after = (rank() + k) % size(), before = (rank() + size() - k) % size();
-        auto const sent = std::find_if(out.begin(), out.end(), [&](Outgoing const& m) { return m.to == after; });
-        auto const received = std::find_if(in.begin(), in.end(), [&](Incoming const& m) { return m.from == before; });
+        auto const sent =
+            std::find_if(out.begin(), out.end(), [&](Outgoing const& m) { return m.to == after; });
+        auto const received =
+            std::find_if(in.begin(), in.end(), [&](Incoming const& m) { return m.from == before; });
         bool const sends = sent != out.end(), receives = received != in.end();
         exchange(sends ? sent->bytes : std::span<std::byte const>{}, sends ? after : -1,
                  receives ? received->bytes : std::span<std::byte>{}, receives ? before : -1);
@@ -20,7 +22,8 @@ void Communicator::exchange_all(std::span<Outgoing const> out, std::span<Incomin
 
 std::string variable_of_first_rank(Communicator const& communicator, char const* name) {
     char text[64] = {};
-    if (char const* const own = std::getenv(name); communicator.rank() == 0 && own) std::strncpy(text, own, sizeof(text) - 1);
+    if (char const* const own = std::getenv(name); communicator.rank() == 0 && own)
+        std::strncpy(text, own, sizeof(text) - 1);
     communicator.broadcast(std::as_writable_bytes(std::span(text)));
     return text;
 }

@@ -10,7 +10,8 @@
 
 namespace catena {
 
-CoreSet cores_bound_to() {  // std::thread::hardware_concurrency() knows them with some versions of glibc alone
+CoreSet cores_bound_to() {  // std::thread::hardware_concurrency() knows them with some versions of
+                            // glibc alone
     CoreSet set{};
     set.known = sched_getaffinity(0, sizeof(set.cores), &set.cores) == 0;
     if (!set.known) CPU_ZERO(&set.cores);
@@ -19,16 +20,19 @@ CoreSet cores_bound_to() {  // std::thread::hardware_concurrency() knows them wi
 
 int cores_of_rank(Communicator const& communicator) {
     CoreSet const bound = cores_bound_to();
-    int const cores = bound.known ? CPU_COUNT(&bound.cores) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+    int const cores =
+        bound.known ? CPU_COUNT(&bound.cores) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
     return std::max(1, cores / communicator.ranks_on_cores());
 }
 
 void require_possible_threads(int threads, std::string const& where) {
     constexpr long always = 64, a_processor = 16;
-    long const processors = std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)), most = std::max(always, a_processor * processors);
+    long const processors = std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)),
+               most = std::max(always, a_processor * processors);
     if (threads <= most) return;
-    throw InputError(std::to_string(threads) + " threads on " + std::to_string(processors) + " processors", where,
-                     "take as many as there are processors, or 0");
+    throw InputError(
+        std::to_string(threads) + " threads on " + std::to_string(processors) + " processors",
+        where, "take as many as there are processors, or 0");
 }
 
 }  // namespace catena

@@ -16,7 +16,8 @@ class SharedError : public ComputationError {
     using ComputationError::ComputationError;
 };
 
-/// Runs `action` on rank 0. What it throws is thrown on every rank: InputError as such, anything else as SharedError. Collective.
+/// Runs `action` on rank 0. What it throws is thrown on every rank: InputError as such, anything
+/// else as SharedError. Collective.
 template <class Action>
 void on_first_rank(Communicator const& communicator, Action const& action) {
     std::int64_t message[2] = {0, 0};  // status, length of the text
@@ -41,8 +42,9 @@ void on_first_rank(Communicator const& communicator, Action const& action) {
     throw SharedError(text);
 }
 
-/// Runs `action` on every rank. What it throws on one of them is thrown on all as SharedError, of several the last one's words.
-/// Precondition: where it throws on one, no other waits for that one within it. Collective.
+/// Runs `action` on every rank. What it throws on one of them is thrown on all as SharedError, of
+/// several the last one's words. Precondition: where it throws on one, no other waits for that one
+/// within it. Collective.
 template <class Action>
 void on_every_rank(Communicator const& communicator, Action const& action) {
     std::string text;

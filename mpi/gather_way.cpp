@@ -24,11 +24,14 @@ GatherChoice gather_choice(std::string const& text) {
         auto const parsed = std::from_chars(text.data() + prefix.size(), end, ranks);
         if (parsed.ec == std::errc() && parsed.ptr == end && ranks > 0) return {Stages::two, ranks};
     }
-    throw InputError("`" + text + "` is no way to gather", "CATENA_GATHER",
-                     "auto, one-stage, two-stage, or two-stage:G, where G ranks of a host count as a host");
+    throw InputError(
+        "`" + text + "` is no way to gather", "CATENA_GATHER",
+        "auto, one-stage, two-stage, or two-stage:G, where G ranks of a host count as a host");
 }
 
-bool GatherWay::two_stages_pay(std::int64_t ranks, std::int64_t hosts) { return ranks >= fewest_ranks && hosts > 1 && ranks > hosts; }
+bool GatherWay::two_stages_pay(std::int64_t ranks, std::int64_t hosts) {
+    return ranks >= fewest_ranks && hosts > 1 && ranks > hosts;
+}
 
 GatherWay GatherWay::of(GatherChoice const& choice, std::int64_t ranks, std::int64_t hosts) {
     using Stages = GatherChoice::Stages;
@@ -38,12 +41,16 @@ GatherWay GatherWay::of(GatherChoice const& choice, std::int64_t ranks, std::int
 }
 
 std::string GatherWay::text() const {
-    auto const counted = [](std::int64_t n, char const* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
-    std::string text = stages == 1 ? "in one stage" : "in two stages, within each host and between hosts";
+    auto const counted = [](std::int64_t n, char const* what) {
+        return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+    };
+    std::string text =
+        stages == 1 ? "in one stage" : "in two stages, within each host and between hosts";
     text += ": " + counted(ranks, "rank") + " on " + counted(hosts, "host");
     if (no_memory) return text + ", one without memory to share";
     return text + (asked_for ? ", by CATENA_GATHER"
-                             : "; in two from " + std::to_string(fewest_ranks) + " ranks on several hosts with several ranks on");
+                             : "; in two from " + std::to_string(fewest_ranks) +
+                                   " ranks on several hosts with several ranks on");
 }
 
 Traffic GatherWay::within_and_between_hosts(std::int64_t bytes) const {

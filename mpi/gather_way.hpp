@@ -12,7 +12,8 @@ namespace catena {
 struct GatherChoice {
     enum class Stages { automatic, one, two };
     Stages stages = Stages::automatic;
-    int ranks_a_host = 0;  // so many ranks of a host count as a host: two stages on one machine; 0: hosts are as they are
+    int ranks_a_host = 0;  // so many ranks of a host count as a host: two stages on one machine; 0:
+                           // hosts are as they are
 };
 /// "auto", "one-stage", "two-stage", "two-stage:G". Throws InputError.
 GatherChoice gather_choice(std::string const& text);
@@ -21,13 +22,15 @@ GatherChoice gather_choice(std::string const& text);
 struct GatherWay {
     int stages = 1;
     std::int64_t ranks = 1, hosts = 1;
-    bool leads = false;      // first rank of its host, which speaks to other hosts for all of it; of two stages
+    bool leads =
+        false;  // first rank of its host, which speaks to other hosts for all of it; of two stages
     std::int64_t piece = 0;  // of two stages: bytes at a time
     bool asked_for = false;  // by CATENA_GATHER
     bool no_memory = false;  // two stages were wanted, and some host has no memory to share
 
-    /// The rule: every round of a gather at once waits for a message between hosts, of one in two stages only those between the hosts'
-    /// first ranks do. Below some tens of ranks the rounds are few either way.
+    /// The rule: every round of a gather at once waits for a message between hosts, of one in two
+    /// stages only those between the hosts' first ranks do. Below some tens of ranks the rounds are
+    /// few either way.
     static bool two_stages_pay(std::int64_t ranks, std::int64_t hosts);
     /// What is chosen for so many ranks, seen by a host's first.
     static GatherWay of(GatherChoice const&, std::int64_t ranks, std::int64_t hosts);

@@ -8,7 +8,8 @@ namespace {
 
 MpiHandle shares_memory(MPI_Comm world) {
     MPI_Comm host = MPI_COMM_NULL;
-    check_mpi(MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
+    check_mpi(MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host),
+              "MPI_Comm_split_type");
     return MpiHandle(host);
 }
 
@@ -21,7 +22,8 @@ MpiHandle split(MPI_Comm communicator, int colour) {
 }  // namespace
 
 Hosts::Hosts(MPI_Comm world, int colour)
-    : ranks(split(shares_memory(world), colour)), leaders(split(world, ranks.rank() == 0 ? 0 : MPI_UNDEFINED)) {
+    : ranks(split(shares_memory(world), colour)),
+      leaders(split(world, ranks.rank() == 0 ? 0 : MPI_UNDEFINED)) {
     int numbers[2] = {0, 1};  // this host's, of hosts
     if (leads()) {
         numbers[0] = leaders.rank();
@@ -32,7 +34,8 @@ Hosts::Hosts(MPI_Comm world, int colour)
     int size = 1;
     check_mpi(MPI_Comm_size(world, &size), "MPI_Comm_size");
     of_rank.resize(static_cast<std::size_t>(size));
-    check_mpi(MPI_Allgather(numbers, 1, MPI_INT, of_rank.data(), 1, MPI_INT, world), "MPI_Allgather");
+    check_mpi(MPI_Allgather(numbers, 1, MPI_INT, of_rank.data(), 1, MPI_INT, world),
+              "MPI_Allgather");
 }
 
 HostGather::Interval HostGather::Interval::within(Interval const& other) const {
@@ -44,8 +47,10 @@ HostGather::HostGather(Hosts const& hosts, std::int64_t piece) : hosts_(hosts), 
     auto const ranks = hosts.of_rank.size(), count = static_cast<std::size_t>(hosts.count);
     order_.resize(ranks);
     std::iota(order_.begin(), order_.end(), 0);
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](int a, int b) { return hosts.of_rank[static_cast<std::size_t>(a)] < hosts.of_rank[static_cast<std::size_t>(b)]; });
+    std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) {
+        return hosts.of_rank[static_cast<std::size_t>(a)] <
+               hosts.of_rank[static_cast<std::size_t>(b)];
+    });
     for (int const rank : order_) {
         if (runs_.empty() || runs_.back().end != rank) runs_.push_back({rank, rank});
         ++runs_.back().end;
@@ -56,12 +61,14 @@ HostGather::HostGather(Hosts const& hosts, std::int64_t piece) : hosts_(hosts), 
     places_.resize(count);
 }
 
-std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts, std::int64_t piece) {
+std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts,
+                                             std::int64_t piece) {
     std::unique_ptr<HostGather> made(new HostGather(hosts, piece));
     check_mpi(MPI_Comm_rank(world, &made->rank_), "MPI_Comm_rank");
     MPI_Aint const bytes = hosts.leads() ? static_cast<MPI_Aint>(2 * piece) : 0;
     int const failed =
-        MPI_Win_allocate_shared(bytes, 1, MPI_INFO_NULL, hosts.ranks, static_cast<void*>(&made->memory_), &made->window_) == MPI_SUCCESS
+        MPI_Win_allocate_shared(bytes, 1, MPI_INFO_NULL, hosts.ranks,
+                                static_cast<void*>(&made->memory_), &made->window_) == MPI_SUCCESS
             ? 0
             : 1;
     if (failed != 0) made->window_ = MPI_WIN_NULL;
@@ -75,7 +82,9 @@ std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts,
     check_mpi(MPI_Win_lock_all(MPI_MODE_NOCHECK, made->window_), "MPI_Win_lock_all");
     MPI_Aint size = 0;
     int unit = 1;
-    check_mpi(MPI_Win_shared_query(made->window_, 0, &size, &unit, static_cast<void*>(&made->memory_)), "MPI_Win_shared_query");
+    check_mpi(
+        MPI_Win_shared_query(made->window_, 0, &size, &unit, static_cast<void*>(&made->memory_)),
+        "MPI_Win_shared_query");
     return made;
 }
 
@@ -102,24 +111,31 @@ void HostGather::lay_out(std::vector<std::int64_t> const& bytes_of_rank) {
     }
 }
 
-void HostGather::gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) {
+void HostGather::gather(std::span<std::byte const> own, std::span<std::byte> all,
+                        std::vector<std::int64_t> const& bytes_of_rank) {
     lay_out(bytes_of_rank);
     std::int64_t const total = first_.back();
     for (std::int64_t begin = 0; begin < total; begin += piece_) {
         Interval const piece{begin, std::min(begin + piece_, total)};
-        // Who is past the two waits of a piece knows that all have read the piece before the last one: two halves need no third wait.
+        // Who is past the two waits of a piece knows that all have read the piece before the last
+        // one: two halves need no third wait.
         std::byte* const window = memory_ + (second_half_ ? piece_ : 0);
         second_half_ = !second_half_;
         Interval const mine = own_.within(piece);
-        if (mine.length() > 0) std::copy_n(own.data() + (mine.begin - own_.begin), mine.length(), window + (mine.begin - begin));
+        if (mine.length() > 0)
+            std::copy_n(own.data() + (mine.begin - own_.begin), mine.length(),
+                        window + (mine.begin - begin));
         wait();
         if (hosts_.leads() && hosts_.count > 1) between_hosts(window, piece);
         wait();
         std::int64_t at = 0;
         for (Run const& run : runs_) {
             std::int64_t const first = first_[static_cast<std::size_t>(run.first)];
-            Interval const here{at, at + first_[static_cast<std::size_t>(run.end)] - first}, part = here.within(piece);
-            if (part.length() > 0) std::copy_n(window + (part.begin - begin), part.length(), all.data() + first + (part.begin - at));
+            Interval const here{at, at + first_[static_cast<std::size_t>(run.end)] - first},
+                part = here.within(piece);
+            if (part.length() > 0)
+                std::copy_n(window + (part.begin - begin), part.length(),
+                            all.data() + first + (part.begin - at));
             at = here.end;
         }
     }
@@ -131,7 +147,8 @@ void HostGather::between_hosts(std::byte* window, Interval const& piece) {
         counts_[h] = static_cast<int>(part.length());
         places_[h] = part.length() > 0 ? static_cast<int>(part.begin - piece.begin) : 0;
     }
-    check_mpi(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_BYTE, window, counts_.data(), places_.data(), MPI_BYTE, hosts_.leaders),
+    check_mpi(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_BYTE, window, counts_.data(), places_.data(),
+                             MPI_BYTE, hosts_.leaders),
               "MPI_Allgatherv between hosts");
 }
 

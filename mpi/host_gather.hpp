@@ -1,4 +1,5 @@
-// All-gather in two stages: ranks of a host through memory that they share, hosts by messages between their first ranks.
+// All-gather in two stages: ranks of a host through memory that they share, hosts by messages
+// between their first ranks.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +12,11 @@
 
 namespace catena {
 
-/// The ranks' hosts, in whatever order ranks lie on them; hosts are numbered by their first ranks, the leaders.
+/// The ranks' hosts, in whatever order ranks lie on them; hosts are numbered by their first ranks,
+/// the leaders.
 struct Hosts {
-    /// Collective. Ranks that do not share memory are on different hosts; those that do, but of different `colour`, count as such too.
+    /// Collective. Ranks that do not share memory are on different hosts; those that do, but of
+    /// different `colour`, count as such too.
     Hosts(MPI_Comm world, int colour);
     bool leads() const { return leaders != MPI_COMM_NULL; }
 
@@ -25,14 +28,16 @@ struct Hosts {
 
 class HostGather {
   public:
-    /// Takes so many bytes at a time, twice this of memory a host. Null on all ranks where some host has none to share. Collective.
+    /// Takes so many bytes at a time, twice this of memory a host. Null on all ranks where some
+    /// host has none to share. Collective.
     static std::unique_ptr<HostGather> make(MPI_Comm world, Hosts const&, std::int64_t piece);
     HostGather(HostGather const&) = delete;
     HostGather& operator=(HostGather const&) = delete;
     ~HostGather();
 
     /// Communicator::all_gather.
-    void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank);
+    void gather(std::span<std::byte const> own, std::span<std::byte> all,
+                std::vector<std::int64_t> const& bytes_of_rank);
 
   private:
     /// Neighbours in the window that are neighbours in the world.

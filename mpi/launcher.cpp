@@ -23,7 +23,8 @@ struct Variables {
     char const* size;
 };
 
-// PMIx names no size; under Slurm the job step's is right, and SLURM_NTASKS is not: a batch script has it as well.
+// PMIx names no size; under Slurm the job step's is right, and SLURM_NTASKS is not: a batch script
+// has it as well.
 constexpr Variables known[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                {"PMI_RANK", "PMI_SIZE"},
                                {"MV2_COMM_WORLD_RANK", "MV2_COMM_WORLD_SIZE"},
@@ -37,7 +38,8 @@ Launch launch_environment() {
         if (!rank) continue;
         std::optional<int> const size = number(v.size);
         Launch launch{true, *rank, size && *size > *rank ? *size : *rank + 1, ""};
-        launch.evidence = size ? std::string(v.size) + "=" + std::to_string(*size) : std::string(v.rank) + "=" + std::to_string(*rank);
+        launch.evidence = size ? std::string(v.size) + "=" + std::to_string(*size)
+                               : std::string(v.rank) + "=" + std::to_string(*rank);
         return launch;
     }
     return {};

@@ -1,4 +1,5 @@
-// What started this process, told by the environment alone: known before MPI is initialised, and in builds without it.
+// What started this process, told by the environment alone: known before MPI is initialised, and in
+// builds without it.
 #pragma once
 
 #include <string>

@@ -20,7 +20,8 @@
 namespace catena {
 namespace {
 
-/// MPI itself, from MPI_Init_thread to MPI_Finalize; owns nothing where the caller had initialised it.
+/// MPI itself, from MPI_Init_thread to MPI_Finalize; owns nothing where the caller had initialised
+/// it.
 class MpiLibrary {
   public:
     MpiLibrary(int* argc, char*** argv) {
@@ -30,11 +31,13 @@ class MpiLibrary {
         // Of Open MPI's two ways to files, for ROMIO (io/all_writers.cpp).
         ::setenv("OMPI_MCA_io", "^ompio", 0);
         int provided = MPI_THREAD_SINGLE;
-        // Less is enough: tests alone speak from another thread than the main one, which waits meanwhile.
+        // Less is enough: tests alone speak from another thread than the main one, which waits
+        // meanwhile.
         check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
         owned_ = true;
         if (provided < MPI_THREAD_FUNNELED)
-            throw ComputationError("MPI allows no threads beside it (" + message_passing_library() + "): use one with MPI_THREAD_FUNNELED");
+            throw ComputationError("MPI allows no threads beside it (" + message_passing_library() +
+                                   "): use one with MPI_THREAD_FUNNELED");
     }
     MpiLibrary(MpiLibrary&& other) noexcept : owned_(std::exchange(other.owned_, false)) {}
     MpiLibrary& operator=(MpiLibrary&&) = delete;
@@ -48,7 +51,8 @@ class MpiLibrary {
 };
 
 MpiHandle duplicate_of_world() {
-    check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN),
+              "MPI_Comm_set_errhandler");
     MPI_Comm handle = MPI_COMM_NULL;
     check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, &handle), "MPI_Comm_dup");
     return MpiHandle(handle);
@@ -61,8 +65,11 @@ OnHost place_on_host(MPI_Comm world) {
     Hosts const hosts(world, 0);
     CoreSet const own = cores_bound_to();
     std::vector<CoreSet> all(static_cast<std::size_t>(hosts.ranks.size()));
-    check_mpi(MPI_Allgather(&own, sizeof(own), MPI_BYTE, all.data(), sizeof(own), MPI_BYTE, hosts.ranks), "MPI_Allgather");
-    return {hosts.ranks.rank(), hosts.ranks.size(), static_cast<int>(std::count(all.begin(), all.end(), own))};
+    check_mpi(
+        MPI_Allgather(&own, sizeof(own), MPI_BYTE, all.data(), sizeof(own), MPI_BYTE, hosts.ranks),
+        "MPI_Allgather");
+    return {hosts.ranks.rank(), hosts.ranks.size(),
+            static_cast<int>(std::count(all.begin(), all.end(), own))};
 }
 
 // A double as an integer of the same order, NaN above all.
@@ -71,7 +78,9 @@ std::int64_t ordered(double value) {
     auto const bits = std::bit_cast<std::int64_t>(value);
     return bits >= 0 ? bits : bits ^ std::numeric_limits<std::int64_t>::max();
 }
-double from_ordered(std::int64_t key) { return std::bit_cast<double>(key >= 0 ? key : key ^ std::numeric_limits<std::int64_t>::max()); }
+double from_ordered(std::int64_t key) {
+    return std::bit_cast<double>(key >= 0 ? key : key ^ std::numeric_limits<std::int64_t>::max());
+}
 
 class MpiCommunicator final : public Communicator {
   public:
@@ -95,7 +104,8 @@ class MpiCommunicator final : public Communicator {
     void tally(Traffic const& messages) const override {
         rounds_ += messages.gathers + messages.exchanges;
         traffic_ += messages;
-        if (messages.gathers > 0) traffic_ += way_.within_and_between_hosts(messages.gathered_bytes);
+        if (messages.gathers > 0)
+            traffic_ += way_.within_and_between_hosts(messages.gathered_bytes);
     }
     GatherWay const& gather_way() const override { return way_; }
 
@@ -107,18 +117,21 @@ class MpiCommunicator final : public Communicator {
         if (two_stages_) return two_stages_->gather(own, all, bytes_of_rank);
         if (!blocks.short_enough) return all_gather_in_pieces(own, all, blocks);
         void const* const send = in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
-        check_mpi(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(),
-                                 MPI_BYTE, world_),
+        check_mpi(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(),
+                                 blocks.count.data(), blocks.first.data(), MPI_BYTE, world_),
                   "MPI_Allgatherv");
     }
 
-    void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) const override {
-        Blocks const blocks = rank_ == 0 ? blocks_of(own, all, bytes_of_rank) : blocks_of(own, {}, bytes_of_rank);
+    void gather(std::span<std::byte const> own, std::span<std::byte> all,
+                std::vector<std::int64_t> const& bytes_of_rank) const override {
+        Blocks const blocks =
+            rank_ == 0 ? blocks_of(own, all, bytes_of_rank) : blocks_of(own, {}, bytes_of_rank);
         ++rounds_;
         if (!blocks.short_enough) return gather_in_pieces(own, all, blocks);
-        void const* const send = rank_ == 0 && in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
-        check_mpi(MPI_Gatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE,
-                              0, world_),
+        void const* const send =
+            rank_ == 0 && in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
+        check_mpi(MPI_Gatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(),
+                              blocks.count.data(), blocks.first.data(), MPI_BYTE, 0, world_),
                   "MPI_Gatherv");
     }
 
@@ -127,7 +140,8 @@ class MpiCommunicator final : public Communicator {
         broadcast_in_pieces(data, 0);
     }
 
-    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive, int from) const override {
+    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive,
+                  int from) const override {
         ++rounds_;
         if (to < 0) send = {};
         if (from < 0) receive = {};
@@ -137,8 +151,10 @@ class MpiCommunicator final : public Communicator {
             std::span const out = send.first(std::min(send.size(), largest_message_));
             std::span const in = receive.first(std::min(receive.size(), largest_message_));
             MPI_Status status;
-            check_mpi(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE, out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
-                                   static_cast<int>(in.size()), MPI_BYTE, in.empty() ? MPI_PROC_NULL : from, 0, world_, &status),
+            check_mpi(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE,
+                                   out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
+                                   static_cast<int>(in.size()), MPI_BYTE,
+                                   in.empty() ? MPI_PROC_NULL : from, 0, world_, &status),
                       "MPI_Sendrecv");
             if (!in.empty()) require_length(status, in.size());
             send = send.subspan(out.size());
@@ -153,22 +169,27 @@ class MpiCommunicator final : public Communicator {
         for (Incoming const& m : in)
             for_each_piece(m.bytes, [&](std::span<std::byte> piece) {
                 expected.push_back(piece.size());
-                check_mpi(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.from, 0, world_, &requests.emplace_back()),
+                check_mpi(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.from,
+                                    0, world_, &requests.emplace_back()),
                           "MPI_Irecv");
             });
         for (Outgoing const& m : out)
             for_each_piece(m.bytes, [&](std::span<std::byte const> piece) {
-                check_mpi(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.to, 0, world_, &requests.emplace_back()),
+                check_mpi(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.to, 0,
+                                    world_, &requests.emplace_back()),
                           "MPI_Isend");
             });
         std::vector<MPI_Status> statuses(requests.size());
-        check_mpi(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data()), "MPI_Waitall");
+        check_mpi(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data()),
+                  "MPI_Waitall");
         for (std::size_t i = 0; i < expected.size(); ++i) require_length(statuses[i], expected[i]);
     }
 
     MPI_Comm handle() const { return world_; }
 
-    double max(double value) const override { return from_ordered(all_reduced(ordered(value), MPI_MAX)); }
+    double max(double value) const override {
+        return from_ordered(all_reduced(ordered(value), MPI_MAX));
+    }
     std::int64_t sum(std::int64_t value) const override { return all_reduced(value, MPI_SUM); }
 
     void barrier() const override {
@@ -183,9 +204,12 @@ class MpiCommunicator final : public Communicator {
 
   private:
     void choose_way(MpiOptions const& options) {
-        GatherChoice const choice = options.gather ? *options.gather : gather_choice(variable_of_first_rank(*this, "CATENA_GATHER"));
+        GatherChoice const choice =
+            options.gather ? *options.gather
+                           : gather_choice(variable_of_first_rank(*this, "CATENA_GATHER"));
         int colour = choice.ranks_a_host > 0 ? on_host_.rank / choice.ranks_a_host : 0;
-        if (!options.host_of_rank.empty()) colour = options.host_of_rank[static_cast<std::size_t>(rank_)];
+        if (!options.host_of_rank.empty())
+            colour = options.host_of_rank[static_cast<std::size_t>(rank_)];
         hosts_ = std::make_unique<Hosts>(world_, colour);
         way_ = GatherWay::of(choice, size_, hosts_->count);
         if (way_.stages == 1) return;
@@ -207,17 +231,23 @@ class MpiCommunicator final : public Communicator {
         bool short_enough = false;
 
         std::span<std::byte> of(std::span<std::byte> all, int rank) const {
-            auto const begin = std::accumulate(bytes.begin(), bytes.begin() + rank, std::int64_t{0});
-            return all.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank)]));
+            auto const begin =
+                std::accumulate(bytes.begin(), bytes.begin() + rank, std::int64_t{0});
+            return all.subspan(static_cast<std::size_t>(begin),
+                               static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank)]));
         }
     };
 
     /// `all` may be empty where nothing is received.
-    Blocks blocks_of(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const {
-        auto const total = static_cast<std::size_t>(std::accumulate(bytes.begin(), bytes.end(), std::int64_t{0}));
+    Blocks blocks_of(std::span<std::byte const> own, std::span<std::byte> all,
+                     std::vector<std::int64_t> const& bytes) const {
+        auto const total =
+            static_cast<std::size_t>(std::accumulate(bytes.begin(), bytes.end(), std::int64_t{0}));
         if (bytes.size() != static_cast<std::size_t>(size_) ||
-            own.size() != static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank_)]) || (!all.empty() && all.size() != total))
-            throw std::logic_error("gather: the blocks do not have the lengths that bytes_of_rank gives them");
+            own.size() != static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank_)]) ||
+            (!all.empty() && all.size() != total))
+            throw std::logic_error(
+                "gather: the blocks do not have the lengths that bytes_of_rank gives them");
         Blocks blocks{bytes, {}, {}, total <= largest_message_};
         if (!blocks.short_enough) return blocks;
         int first = 0;
@@ -228,7 +258,8 @@ class MpiCommunicator final : public Communicator {
         return blocks;
     }
 
-    bool in_place(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
+    bool in_place(std::span<std::byte const> own, std::span<std::byte> all,
+                  Blocks const& blocks) const {
         return !own.empty() && own.data() == blocks.of(all, rank_).data();
     }
 
@@ -241,21 +272,28 @@ class MpiCommunicator final : public Communicator {
     void broadcast_in_pieces(std::span<std::byte> data, int root) const {
         while (!data.empty()) {
             std::span const piece = data.first(std::min(data.size(), largest_message_));
-            check_mpi(MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, world_), "MPI_Bcast");
+            check_mpi(
+                MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, world_),
+                "MPI_Bcast");
             data = data.subspan(piece.size());
         }
     }
 
-    void all_gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
-        if (!in_place(own, all, blocks)) std::copy(own.begin(), own.end(), blocks.of(all, rank_).begin());
+    void all_gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all,
+                              Blocks const& blocks) const {
+        if (!in_place(own, all, blocks))
+            std::copy(own.begin(), own.end(), blocks.of(all, rank_).begin());
         for (int r = 0; r < size_; ++r) broadcast_in_pieces(blocks.of(all, r), r);
     }
 
-    void gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
+    void gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all,
+                          Blocks const& blocks) const {
         if (rank_ != 0) {
             for (; !own.empty(); own = own.subspan(std::min(own.size(), largest_message_)))
-                check_mpi(MPI_Send(own.data(), static_cast<int>(std::min(own.size(), largest_message_)), MPI_BYTE, 0, 0, world_),
-                          "MPI_Send");
+                check_mpi(
+                    MPI_Send(own.data(), static_cast<int>(std::min(own.size(), largest_message_)),
+                             MPI_BYTE, 0, 0, world_),
+                    "MPI_Send");
             return;
         }
         if (!in_place(own, all, blocks)) std::copy(own.begin(), own.end(), all.begin());
@@ -263,7 +301,9 @@ class MpiCommunicator final : public Communicator {
             for (std::span<std::byte> rest = blocks.of(all, r); !rest.empty();) {
                 std::span const piece = rest.first(std::min(rest.size(), largest_message_));
                 MPI_Status status;
-                check_mpi(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, r, 0, world_, &status), "MPI_Recv");
+                check_mpi(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, r, 0,
+                                   world_, &status),
+                          "MPI_Recv");
                 require_length(status, piece.size());
                 rest = rest.subspan(piece.size());
             }
@@ -274,13 +314,15 @@ class MpiCommunicator final : public Communicator {
         int count = 0;
         check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
         if (static_cast<std::size_t>(count) != expected)
-            throw std::logic_error("message of " + std::to_string(count) + " bytes where " + std::to_string(expected) + " were expected");
+            throw std::logic_error("message of " + std::to_string(count) + " bytes where " +
+                                   std::to_string(expected) + " were expected");
     }
 
     std::int64_t all_reduced(std::int64_t value, MPI_Op operation) const {
         ++rounds_;
         std::int64_t result = 0;
-        check_mpi(MPI_Allreduce(&value, &result, 1, MPI_INT64_T, operation, world_), "MPI_Allreduce");
+        check_mpi(MPI_Allreduce(&value, &result, 1, MPI_INT64_T, operation, world_),
+                  "MPI_Allreduce");
         return result;
     }
 
@@ -307,7 +349,8 @@ std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, MpiOptio
     auto communicator = std::make_unique<MpiCommunicator>(argc, argv, options);
     Launch const launch = launch_environment();
     if (launch.size > 1 && communicator->size() == 1)
-        throw InputError("every process sees itself alone", "started with " + launch.evidence + ", but MPI counts 1 rank",
+        throw InputError("every process sees itself alone",
+                         "started with " + launch.evidence + ", but MPI counts 1 rank",
                          "use the mpirun that belongs to " + message_passing_library());
     return communicator;
 }

@@ -17,13 +17,15 @@ inline void check_mpi(int code, char const* call) {
     char text[MPI_MAX_ERROR_STRING] = "unknown error";
     int length = 0;
     MPI_Error_string(code, text, &length);
-    throw ComputationError(std::string("MPI failed: ") + text + " (" + call + "): see whether every rank and its host are still up");
+    throw ComputationError(std::string("MPI failed: ") + text + " (" + call +
+                           "): see whether every rank and its host are still up");
 }
 
 /// MPI's communicator of these ranks; MPI_COMM_NULL where they speak in another way.
 MPI_Comm handle_of(Communicator const&);
 
-/// Whether an error is on its way out that other ranks may not know of: to wait for them then would be for ever.
+/// Whether an error is on its way out that other ranks may not know of: to wait for them then would
+/// be for ever.
 class Unwinding {
   public:
     explicit operator bool() const { return std::uncaught_exceptions() > at_start_; }
@@ -36,7 +38,9 @@ class Unwinding {
 class MpiHandle {
   public:
     explicit MpiHandle(MPI_Comm handle) : handle_(handle) {
-        if (handle_ != MPI_COMM_NULL) check_mpi(MPI_Comm_set_errhandler(handle_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+        if (handle_ != MPI_COMM_NULL)
+            check_mpi(MPI_Comm_set_errhandler(handle_, MPI_ERRORS_RETURN),
+                      "MPI_Comm_set_errhandler");
     }
     MpiHandle(MpiHandle&& other) noexcept : handle_(std::exchange(other.handle_, MPI_COMM_NULL)) {}
     MpiHandle& operator=(MpiHandle&&) = delete;

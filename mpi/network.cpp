@@ -18,10 +18,13 @@ constexpr std::int64_t message_bytes[] = {8, 64, 512, 4096, 32768, 262144, 20971
 constexpr std::int64_t units = 64;
 constexpr int kinds[] = {1, 2, 3, 4, 5, 6};
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
 
-/// The slowest rank's seconds in the fastest of `repeat` calls after one that warms up: what others do on the cores is not the network's.
-/// Collective.
+/// The slowest rank's seconds in the fastest of `repeat` calls after one that warms up: what others
+/// do on the cores is not the network's. Collective.
 template <class Action>
 double timed(Communicator const& communicator, int repeat, Action&& action) {
     double fastest = std::numeric_limits<double>::infinity();
@@ -48,10 +51,14 @@ std::vector<std::string> hosts_of_ranks(Communicator const& communicator) {
     return names;
 }
 
-std::int64_t different(std::vector<std::string> const& names) { return std::ssize(std::set<std::string>(names.begin(), names.end())); }
+std::int64_t different(std::vector<std::string> const& names) {
+    return std::ssize(std::set<std::string>(names.begin(), names.end()));
+}
 
-/// There and back between rank 0 and `partner`, many times in one measurement: a clock's grain is as long as a short message.
-double there_and_back(Communicator const& communicator, int partner, std::int64_t bytes, int repeat) {
+/// There and back between rank 0 and `partner`, many times in one measurement: a clock's grain is
+/// as long as a short message.
+double there_and_back(Communicator const& communicator, int partner, std::int64_t bytes,
+                      int repeat) {
     int const trips = static_cast<int>(std::clamp<std::int64_t>(2097152 / bytes, 4, 100));
     std::vector<std::byte> data(static_cast<std::size_t>(bytes));
     int const rank = communicator.rank(), other = rank == 0 ? partner : 0;
@@ -68,9 +75,11 @@ double there_and_back(Communicator const& communicator, int partner, std::int64_
 /// The latency is the shortest message's, the rest the longest one's.
 Link link_of(std::vector<TimedMessage> const& messages, std::string const& what) {
     std::vector<TimedMessage> mine;
-    std::copy_if(messages.begin(), messages.end(), std::back_inserter(mine), [&](TimedMessage const& m) { return m.what == what; });
+    std::copy_if(messages.begin(), messages.end(), std::back_inserter(mine),
+                 [&](TimedMessage const& m) { return m.what == what; });
     TimedMessage const &shortest = mine.front(), &longest = mine.back();
-    double const a_byte = (longest.seconds - shortest.seconds) / static_cast<double>(longest.bytes - shortest.bytes);
+    double const a_byte =
+        (longest.seconds - shortest.seconds) / static_cast<double>(longest.bytes - shortest.bytes);
     return {shortest.seconds, std::max(a_byte, 0.0)};
 }
 
@@ -80,8 +89,10 @@ class Gather {
     Gather(Communicator const& communicator, std::int64_t count, std::int64_t bytes_of_one)
         : communicator_(communicator), all_(static_cast<std::size_t>(count * bytes_of_one)) {
         std::int64_t const ranks = communicator.size();
-        for (std::int64_t r = 0; r < ranks; ++r) bytes_.push_back((count * (r + 1) / ranks - count * r / ranks) * bytes_of_one);
-        own_.resize(static_cast<std::size_t>(bytes_[static_cast<std::size_t>(communicator.rank())]));
+        for (std::int64_t r = 0; r < ranks; ++r)
+            bytes_.push_back((count * (r + 1) / ranks - count * r / ranks) * bytes_of_one);
+        own_.resize(
+            static_cast<std::size_t>(bytes_[static_cast<std::size_t>(communicator.rank())]));
     }
     void operator()() { communicator_.all_gather(own_, all_, bytes_); }
 
@@ -99,7 +110,8 @@ void time_gathers(NetworkTimes& times, Communicator const& communicator, int rep
     };
     for (int const k : kinds) {
         add("biases, " + std::to_string(k) + (k == 1 ? " direction" : " directions"), 2 * k);
-        add("matrices, " + std::to_string(k) + (k == 1 ? " direction" : " directions"), 2 * k * k + k);
+        add("matrices, " + std::to_string(k) + (k == 1 ? " direction" : " directions"),
+            2 * k * k + k);
     }
     add("kinematics", 13);
     std::vector<double> ratios;
@@ -109,7 +121,9 @@ void time_gathers(NetworkTimes& times, Communicator const& communicator, int rep
     times.network.gather_overhead = ratios[ratios.size() / 2];
 }
 
-double rounds_among(std::int64_t count) { return static_cast<double>(std::bit_width(static_cast<std::uint64_t>(count - 1))); }
+double rounds_among(std::int64_t count) {
+    return static_cast<double>(std::bit_width(static_cast<std::uint64_t>(count - 1)));
+}
 
 }  // namespace
 
@@ -117,11 +131,17 @@ double Network::gather_seconds(std::int64_t bytes, GatherWay const& way) const {
     if (way.ranks == 1) return 0;
     Link const& within = near.value();
     Link const& between = way.hosts > 1 && far ? *far : within;
-    auto const but_own = [&](std::int64_t count) { return static_cast<double>(bytes) * (1.0 - 1.0 / static_cast<double>(count)); };
-    if (way.stages == 1) return gather_overhead * (but_own(way.ranks) * between.seconds_a_byte + rounds_among(way.ranks) * between.latency);
+    auto const but_own = [&](std::int64_t count) {
+        return static_cast<double>(bytes) * (1.0 - 1.0 / static_cast<double>(count));
+    };
+    if (way.stages == 1)
+        return gather_overhead * (but_own(way.ranks) * between.seconds_a_byte +
+                                  rounds_among(way.ranks) * between.latency);
     std::int64_t const on_host = (way.ranks + way.hosts - 1) / way.hosts;
-    double const inside = 2 * rounds_among(on_host) * within.latency + static_cast<double>(bytes) * within.seconds_a_byte;
-    return gather_overhead * (inside + rounds_among(way.hosts) * between.latency + but_own(way.hosts) * between.seconds_a_byte);
+    double const inside = 2 * rounds_among(on_host) * within.latency +
+                          static_cast<double>(bytes) * within.seconds_a_byte;
+    return gather_overhead * (inside + rounds_among(way.hosts) * between.latency +
+                              but_own(way.hosts) * between.seconds_a_byte);
 }
 
 NetworkTimes time_network(Communicator const& communicator, int repeat) {
@@ -131,11 +151,16 @@ NetworkTimes time_network(Communicator const& communicator, int repeat) {
     times.hosts = different(host);
     times.way = communicator.gather_way();
     for (bool const far : {false, true}) {
-        auto const partner = std::find_if(host.begin() + 1, host.end(), [&](std::string const& name) { return (name != host[0]) == far; });
+        auto const partner =
+            std::find_if(host.begin() + 1, host.end(),
+                         [&](std::string const& name) { return (name != host[0]) == far; });
         if (partner == host.end()) continue;
         std::string const what = far ? "far" : "near";
         for (std::int64_t const bytes : message_bytes)
-            times.messages.push_back({what, bytes, there_and_back(communicator, static_cast<int>(partner - host.begin()), bytes, repeat)});
+            times.messages.push_back(
+                {what, bytes,
+                 there_and_back(communicator, static_cast<int>(partner - host.begin()), bytes,
+                                repeat)});
         (far ? times.network.far : times.network.near) = link_of(times.messages, what);
     }
     if (times.ranks == 1) return times;
@@ -146,14 +171,20 @@ NetworkTimes time_network(Communicator const& communicator, int repeat) {
 
 double time_messages(Communicator const& communicator, Traffic const& a_step, int repeat) {
     Gather gather(communicator, a_step.gathers > 0 ? a_step.gathered_bytes / a_step.gathers : 0, 1);
-    std::vector<std::byte> send(static_cast<std::size_t>(a_step.exchanges > 0 ? a_step.sent_bytes / a_step.exchanges : 0)), receive = send;
-    int const before = communicator.rank() - 1, after = communicator.rank() + 1 < communicator.size() ? communicator.rank() + 1 : -1;
+    std::vector<std::byte> send(
+        static_cast<std::size_t>(a_step.exchanges > 0 ? a_step.sent_bytes / a_step.exchanges : 0)),
+        receive = send;
+    int const before = communicator.rank() - 1,
+              after = communicator.rank() + 1 < communicator.size() ? communicator.rank() + 1 : -1;
     return timed(communicator, repeat, [&] {
         for (std::int64_t i = 0; i < a_step.gathers; ++i) gather();
-        for (std::int64_t i = 0; i < a_step.exchanges; ++i) communicator.exchange(send, after, receive, before);
+        for (std::int64_t i = 0; i < a_step.exchanges; ++i)
+            communicator.exchange(send, after, receive, before);
     });
 }
 
-std::int64_t count_hosts(Communicator const& communicator) { return different(hosts_of_ranks(communicator)); }
+std::int64_t count_hosts(Communicator const& communicator) {
+    return different(hosts_of_ranks(communicator));
+}
 
 }  // namespace catena

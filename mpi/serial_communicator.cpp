@@ -17,15 +17,19 @@ class SerialCommunicator final : public Communicator {
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override {
-        if (bytes_of_rank.size() != 1 || own.size() != static_cast<std::size_t>(bytes_of_rank[0]) || all.size() != own.size())
-            throw std::logic_error("gather: the blocks do not have the lengths that bytes_of_rank gives them");
+        if (bytes_of_rank.size() != 1 || own.size() != static_cast<std::size_t>(bytes_of_rank[0]) ||
+            all.size() != own.size())
+            throw std::logic_error(
+                "gather: the blocks do not have the lengths that bytes_of_rank gives them");
         if (own.data() != all.data()) std::copy(own.begin(), own.end(), all.begin());
     }
-    void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const override {
+    void gather(std::span<std::byte const> own, std::span<std::byte> all,
+                std::vector<std::int64_t> const& bytes) const override {
         all_gather(own, all, bytes);
     }
     void broadcast(std::span<std::byte>) const override {}
-    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive, int from) const override {
+    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive,
+                  int from) const override {
         if (to == 0 && from == 0) std::copy(send.begin(), send.end(), receive.begin());
     }
     double max(double value) const override { return value; }
@@ -37,6 +41,8 @@ class SerialCommunicator final : public Communicator {
 
 }  // namespace
 
-std::unique_ptr<Communicator> serial_communicator() { return std::make_unique<SerialCommunicator>(); }
+std::unique_ptr<Communicator> serial_communicator() {
+    return std::make_unique<SerialCommunicator>();
+}
 
 }  // namespace catena

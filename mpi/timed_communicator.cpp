@@ -35,12 +35,14 @@ void TimedCommunicator::broadcast(std::span<std::byte> data) const {
     under_.broadcast(data);
 }
 
-void TimedCommunicator::exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive, int from) const {
+void TimedCommunicator::exchange(std::span<std::byte const> send, int to,
+                                 std::span<std::byte> receive, int from) const {
     Stopwatch const watch(seconds_);
     under_.exchange(send, to, receive, from);
 }
 
-void TimedCommunicator::exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const {
+void TimedCommunicator::exchange_all(std::span<Outgoing const> out,
+                                     std::span<Incoming const> in) const {
     Stopwatch const watch(seconds_);
     under_.exchange_all(out, in);
 }

@@ -1,12 +1,13 @@
-// A communicator that tells how long its ranks' messages took, so that what remains is a rank's own work.
+// A communicator that tells how long its ranks' messages took, so that what remains is a rank's own
+// work.
 #pragma once
 
 #include "mpi/communicator.hpp"
 
 namespace catena {
 
-/// All calls go to another communicator, which must outlive it; their seconds, waiting for other ranks included, are added up. No
-/// message goes past it from GPU to GPU.
+/// All calls go to another communicator, which must outlive it; their seconds, waiting for other
+/// ranks included, are added up. No message goes past it from GPU to GPU.
 class TimedCommunicator final : public Communicator {
   public:
     explicit TimedCommunicator(Communicator const& under) : under_(under) {}
@@ -20,9 +21,11 @@ class TimedCommunicator final : public Communicator {
     int ranks_on_cores() const override { return under_.ranks_on_cores(); }
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override;
-    void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) const override;
+    void gather(std::span<std::byte const> own, std::span<std::byte> all,
+                std::vector<std::int64_t> const& bytes_of_rank) const override;
     void broadcast(std::span<std::byte> data) const override;
-    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive, int from) const override;
+    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive,
+                  int from) const override;
     void exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const override;
     double max(double value) const override;
     std::int64_t sum(std::int64_t value) const override;

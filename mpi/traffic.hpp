@@ -7,10 +7,12 @@ namespace catena {
 
 /// Messages between bodies of neighbouring ranks and units of the tree, as one rank counts them.
 struct Traffic {
-    std::int64_t gathers = 0, gathered_bytes = 0;       // all_gather; the bytes of all ranks
-    std::int64_t exchanges = 0, sent_bytes = 0;         // exchange; what this rank sent
-    std::int64_t host_waits = 0;                        // of gathers in two stages: when the ranks of the host wait for each other
-    std::int64_t leader_gathers = 0, leader_bytes = 0;  // of gathers in two stages, on a host's first rank: between hosts; of all hosts
+    std::int64_t gathers = 0, gathered_bytes = 0;  // all_gather; the bytes of all ranks
+    std::int64_t exchanges = 0, sent_bytes = 0;    // exchange; what this rank sent
+    std::int64_t host_waits =
+        0;  // of gathers in two stages: when the ranks of the host wait for each other
+    std::int64_t leader_gathers = 0, leader_bytes = 0;  // of gathers in two stages, on a host's
+                                                        // first rank: between hosts; of all hosts
 
     Traffic& operator+=(Traffic const& other);
     Traffic operator-(Traffic const& other) const;
@@ -41,8 +43,9 @@ inline Traffic& Traffic::operator+=(Traffic const& other) {
 }
 
 inline Traffic Traffic::operator-(Traffic const& other) const {
-    return {gathers - other.gathers,          gathered_bytes - other.gathered_bytes, exchanges - other.exchanges,
-            sent_bytes - other.sent_bytes,    host_waits - other.host_waits,         leader_gathers - other.leader_gathers,
+    return {gathers - other.gathers,          gathered_bytes - other.gathered_bytes,
+            exchanges - other.exchanges,      sent_bytes - other.sent_bytes,
+            host_waits - other.host_waits,    leader_gathers - other.leader_gathers,
             leader_bytes - other.leader_bytes};
 }
 

@@ -6,7 +6,8 @@
 
 namespace catena {
 
-/// The user's input is wrong. The message is one line: "<what is wrong> (<where>): <what to do>". Exit status 2.
+/// The user's input is wrong. The message is one line: "<what is wrong> (<where>): <what to do>".
+/// Exit status 2.
 class InputError : public std::runtime_error {
   public:
     InputError(std::string const& what, std::string const& where, std::string const& remedy)
@@ -20,12 +21,16 @@ class ComputationError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A package that this build was made without. Exit status 2: another build or another scene is the remedy.
-inline InputError built_without(std::string const& package, std::string const& use, std::string const& remedy) {
+/// A package that this build was made without. Exit status 2: another build or another scene is the
+/// remedy.
+inline InputError built_without(std::string const& package, std::string const& use,
+                                std::string const& remedy) {
     return InputError("built without " + package, use, remedy);
 }
 
 /// A part of the contract that a later version brings. Exit status 2.
-inline InputError not_in_this_version(std::string const& what) { return InputError("not in this version: " + what); }
+inline InputError not_in_this_version(std::string const& what) {
+    return InputError("not in this version: " + what);
+}
 
 }  // namespace catena

@@ -1,19 +1,23 @@
-// The command line: catena check | plan | solve | run | report | bench. What each does is in command/.
+// The command line: catena check | plan | solve | run | report | bench. What each does is in
+// command/.
 #include "bench/benchmarks.hpp"
 #include "command/commands.hpp"
-#include "plan/plan_network.hpp"
 #include "command/report_scenes.hpp"
 #include "command/session.hpp"
+#include "plan/plan_network.hpp"
 
 namespace {
 
 using namespace catena;
 using namespace catena::command;
 
-int execute(Session const& session, Answer const& answer) { return session.conclude({answer.text, nullptr, true}); }
+int execute(Session const& session, Answer const& answer) {
+    return session.conclude({answer.text, nullptr, true});
+}
 
 int execute(Session const& session, CheckRequest const& request) {
-    return session.conclude(check_scene(session.load(request.scene), session.communicator(), !request.json.empty()));
+    return session.conclude(
+        check_scene(session.load(request.scene), session.communicator(), !request.json.empty()));
 }
 
 int execute(Session const& session, PlanRequest const& request) {
@@ -26,27 +30,34 @@ int execute(Session const& session, PlanRequest const& request) {
 }
 
 int execute(Session const& session, SolveRequest const& request) {
-    return session.conclude(solve_scene(session.load(request.scene), session.communicator(), request));
+    return session.conclude(
+        solve_scene(session.load(request.scene), session.communicator(), request));
 }
 
 int execute(Session const& session, RunRequest const& request) {
-    return session.conclude(run_scene(session.load(request.scene), session.communicator(), request));
+    return session.conclude(
+        run_scene(session.load(request.scene), session.communicator(), request));
 }
 
 int execute(Session const& session, ReportRequest const& request) {
-    if (!request.suite.empty()) return session.conclude(report_stability(session.communicator(), request));
+    if (!request.suite.empty())
+        return session.conclude(report_stability(session.communicator(), request));
     std::vector<Scene> scenes;
     for (std::string const& file : request.scenes) scenes.push_back(session.load(file));
-    return session.conclude(
-        report_scenes(scenes.empty() ? generated_report(request) : sorted_for_report(std::move(scenes)), session.communicator(), request));
+    return session.conclude(report_scenes(
+        scenes.empty() ? generated_report(request) : sorted_for_report(std::move(scenes)),
+        session.communicator(), request));
 }
 
-int execute(Session const& session, BenchRequest const& request) { return session.conclude(run_bench(session.communicator(), request)); }
+int execute(Session const& session, BenchRequest const& request) {
+    return session.conclude(run_bench(session.communicator(), request));
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
     return guarded(argc, argv, [](Communicator const& ranks, Request const& asked) {
-        return std::visit([&](auto const& request) { return execute(Session(ranks, request), request); }, asked);
+        return std::visit(
+            [&](auto const& request) { return execute(Session(ranks, request), request); }, asked);
     });
 }

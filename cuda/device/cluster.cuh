@@ -1,4 +1,5 @@
-// What threads of a warp, blocks of a cluster (compute capability 9.0) and blocks of a launch give each other.
+// What threads of a warp, blocks of a cluster (compute capability 9.0) and blocks of a launch give
+// each other.
 #pragma once
 
 #include <cstdint>
@@ -162,7 +163,7 @@ struct LettersIn {
 };
 using Letters = LettersIn<LetterBox>;
 /// Of a launch that turns: to the block above and from there.
-struct TurnLetters {
+struct TopLaunchLetters {
     Letters up, down;
     unsigned* launches = nullptr;  // so far, of every block
 

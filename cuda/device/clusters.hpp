@@ -1,4 +1,5 @@
-// Which blocks the present GPU runs at once: clusters (compute capability 9.0) and whole launches, and what became of them.
+// Which blocks the present GPU runs at once: clusters (compute capability 9.0) and whole launches,
+// and what became of them.
 #pragma once
 
 #include <atomic>
@@ -7,13 +8,13 @@
 
 namespace catena::cuda {
 
-/// Whether the present GPU and the kernels that it runs know them: these may be of a build for older GPUs. Precondition: there is a GPU,
-/// and they run.
+/// Whether the present GPU and the kernels that it runs know them: these may be of a build for
+/// older GPUs. Precondition: there is a GPU, and they run.
 bool knows_clusters();
 /// Of a block's shared memory, at most.
 std::size_t most_shared_bytes();
-/// Multiprocessors, and blocks that one launch surely has at once where they find room on one each; 0: a launch cannot ask for
-/// that, or other programs have blocks there at the same time (MPS).
+/// Multiprocessors, and blocks that one launch surely has at once where they find room on one each;
+/// 0: a launch cannot ask for that, or other programs have blocks there at the same time (MPS).
 int multiprocessors();
 int blocks_at_once();
 
@@ -27,7 +28,8 @@ inline std::atomic<std::int64_t> turns_shared = 0, scans_shared = 0;
 inline std::atomic<std::int64_t> shared_scans_by_bodies = 0;
 /// Sweeps' launches so far in which warps joined groups of runs (cuda/sweeps/run_groups.hpp).
 inline std::atomic<std::int64_t> launches_by_groups = 0;
-/// And those of one cluster that took the tree above such groups up and down (cuda/sweeps/group_lanes.cuh).
+/// And those of one cluster that took the tree above such groups up and down
+/// (cuda/sweeps/group_lanes.cuh).
 inline std::atomic<std::int64_t> groups_turned = 0;
 
 }  // namespace catena::cuda

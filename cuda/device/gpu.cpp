@@ -1,8 +1,8 @@
 #include <cuda_runtime_api.h>
 
+#include "cuda/device/gpu.hpp"
 #include "cuda/device/kernel_image.hpp"
 #include "cuda/device/owners.hpp"
-#include "cuda/device/gpu.hpp"
 #include "error.hpp"
 
 namespace catena::cuda {
@@ -19,13 +19,15 @@ cudaDeviceProp properties() {
 std::string look_for_a_gpu() {
     int devices = 0;
     cudaError_t const status = cudaGetDeviceCount(&devices);
-    if (status != cudaSuccess) return std::string("no GPU can be used: ") + cudaGetErrorString(status);
+    if (status != cudaSuccess)
+        return std::string("no GPU can be used: ") + cudaGetErrorString(status);
     return devices == 0 ? "there is no GPU" : "";
 }
 
 /// Of kernels for another architecture, CUDA says one of these.
 bool lacks_kernels(cudaError_t status) {
-    return status == cudaErrorNoKernelImageForDevice || status == cudaErrorInvalidKernelImage || status == cudaErrorUnsupportedPtxVersion;
+    return status == cudaErrorNoKernelImageForDevice || status == cudaErrorInvalidKernelImage ||
+           status == cudaErrorUnsupportedPtxVersion;
 }
 
 }  // namespace
@@ -36,7 +38,8 @@ std::string const& why_not() {
 }
 
 std::string version() {
-    return std::to_string(CUDART_VERSION / 1000) + "." + std::to_string(CUDART_VERSION % 1000 / 10) + ", " +
+    return std::to_string(CUDART_VERSION / 1000) + "." +
+           std::to_string(CUDART_VERSION % 1000 / 10) + ", " +
            (why_not().empty() ? device_name() : why_not());
 }
 
@@ -56,7 +59,8 @@ std::string choose_device(Communicator const& communicator) {
     std::string const reason = "no use of " + device_name() + ": " + cudaGetErrorString(status);
     if (!lacks_kernels(status)) return reason;
     cudaDeviceProp const gpu = properties();
-    return reason + "; configure with -DCATENA_CUDA_ARCHITECTURES=" + std::to_string(10 * gpu.major + gpu.minor);
+    return reason + "; configure with -DCATENA_CUDA_ARCHITECTURES=" +
+           std::to_string(10 * gpu.major + gpu.minor);
 }
 
 std::int64_t free_memory(Communicator const& communicator) {
@@ -69,8 +73,10 @@ std::int64_t free_memory(Communicator const& communicator) {
 std::int64_t stacks(std::int64_t bytes_of_thread) {
     int device = 0, multiprocessors = 0, threads = 0;
     check(cudaGetDevice(&device), "say which it is");
-    check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device), "say how large it is");
-    check(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device), "say how large it is");
+    check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
+          "say how large it is");
+    check(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device),
+          "say how large it is");
     return bytes_of_thread * multiprocessors * threads;
 }
 

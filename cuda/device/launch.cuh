@@ -18,7 +18,8 @@ struct Grid {
     bool all_at_once = false;  // blocks wait for each other
 };
 
-/// Whether the GPU, its driver and the kernels that it runs know early launches (compute capability 9.0), and CUDA's graphs keep them.
+/// Whether the GPU, its driver and the kernels that it runs know early launches (compute
+/// capability 9.0), and CUDA's graphs keep them.
 inline bool early_launches_are_known() {
     constexpr int since = 12030;
     static bool const known = [] {
@@ -59,10 +60,11 @@ class EarlyLaunch {
     EarlyLaunch& operator=(EarlyLaunch const&) = delete;
     cudaLaunchConfig_t const& config() const { return config_; }
 
-    /// Precondition: every thread of the kernel calls wait_for_launch() (cuda/device/cluster.cuh) before it reads what other launches write,
-    /// or writes what they read, and before it ends.
+    /// Precondition: every thread of the kernel calls wait_for_launch() (cuda/device/cluster.cuh)
+    /// before it reads what other launches write, or writes what they read, and before it ends.
     template <class... Parameters>
-    void operator()(void (*kernel)(Parameters...), std::type_identity_t<Parameters> const&... arguments) const {
+    void operator()(void (*kernel)(Parameters...),
+                    std::type_identity_t<Parameters> const&... arguments) const {
         check(cudaLaunchKernelEx(&config_, kernel, arguments...), "start a kernel");
     }
 
@@ -73,7 +75,8 @@ class EarlyLaunch {
 
 /// As EarlyLaunch says.
 template <class... Parameters>
-void launch(Grid const& grid, cudaStream_t stream, void (*kernel)(Parameters...), std::type_identity_t<Parameters> const&... arguments) {
+void launch(Grid const& grid, cudaStream_t stream, void (*kernel)(Parameters...),
+            std::type_identity_t<Parameters> const&... arguments) {
     EarlyLaunch(grid, stream)(kernel, arguments...);
 }
 
@@ -81,7 +84,8 @@ template <class... Parameters>
 void allow_shared(void (*kernel)(Parameters...), std::size_t bytes) {
     constexpr std::size_t without_asking = 48 << 10;
     if (bytes > without_asking)
-        check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+        check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel),
+                                   cudaFuncAttributeMaxDynamicSharedMemorySize,
                                    static_cast<int>(bytes)),
               "have enough shared memory");
 }

@@ -1,5 +1,5 @@
-// Owners of what lives on a device. Memory moves with its owner, a stream stays where it is; a failed call throws ComputationError with
-// CUDA's own words.
+// Owners of what lives on a device. Memory moves with its owner, a stream stays where it is; a
+// failed call throws ComputationError with CUDA's own words.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -15,7 +15,9 @@
 namespace catena::cuda {
 
 inline void check(cudaError_t status, char const* doing) {
-    if (status != cudaSuccess) throw ComputationError(std::string("the GPU failed to ") + doing + ": " + cudaGetErrorString(status));
+    if (status != cudaSuccess)
+        throw ComputationError(std::string("the GPU failed to ") + doing + ": " +
+                               cudaGetErrorString(status));
 }
 
 class Stream {
@@ -38,7 +40,9 @@ class Event {
   public:
     enum class For { clock, order };
     explicit Event(For use) {
-        check(cudaEventCreateWithFlags(&event_, use == For::clock ? cudaEventDefault : cudaEventDisableTiming), "make an event");
+        check(cudaEventCreateWithFlags(
+                  &event_, use == For::clock ? cudaEventDefault : cudaEventDisableTiming),
+              "make an event");
     }
     ~Event() {
         if (event_) cudaEventDestroy(event_);
@@ -47,7 +51,9 @@ class Event {
     Event& operator=(Event const&) = delete;
     void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "mark a moment"); }
     /// The stream goes on when the moment recorded last has come.
-    void hold(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "order its work"); }
+    void hold(cudaStream_t stream) const {
+        check(cudaStreamWaitEvent(stream, event_, 0), "order its work");
+    }
     void wait() const { check(cudaEventSynchronize(event_), "finish its work"); }
     /// Precondition: both are over, and for the clock.
     double seconds_since(Event const& other) const {
@@ -76,7 +82,9 @@ class Graph {
     ~Graph() { cudaGraphExecDestroy(graph_); }
     Graph(Graph const&) = delete;
     Graph& operator=(Graph const&) = delete;
-    void launch(cudaStream_t stream) const { check(cudaGraphLaunch(graph_, stream), "launch a graph"); }
+    void launch(cudaStream_t stream) const {
+        check(cudaGraphLaunch(graph_, stream), "launch a graph");
+    }
 
   private:
     cudaGraphExec_t graph_ = nullptr;
@@ -89,7 +97,9 @@ class PinnedBuffer {
     explicit PinnedBuffer(std::size_t count) {
         if (count == 0) return;
         void* memory = nullptr;
-        check(cudaHostAlloc(&memory, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable), "find memory of the host");
+        check(
+            cudaHostAlloc(&memory, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable),
+            "find memory of the host");
         data_ = static_cast<T*>(memory);
     }
     ~PinnedBuffer() { cudaFreeHost(data_); }
@@ -101,15 +111,16 @@ class PinnedBuffer {
     T* data_ = nullptr;
 };
 
-/// Holds memory of the host in its place, so that copies to and from the device run by themselves. Small memory, which shares its pages,
-/// is left alone.
+/// Holds memory of the host in its place, so that copies to and from the device run by themselves.
+/// Small memory, which shares its pages, is left alone.
 class PinnedPages {
   public:
     PinnedPages() = default;
     explicit PinnedPages(std::span<double> memory) {
         constexpr std::size_t worth_it = 1 << 20;
         if (memory.size_bytes() < worth_it) return;
-        if (cudaHostRegister(memory.data(), memory.size_bytes(), cudaHostRegisterDefault) == cudaSuccess)
+        if (cudaHostRegister(memory.data(), memory.size_bytes(), cudaHostRegisterDefault) ==
+            cudaSuccess)
             memory_ = memory.data();
         else
             cudaGetLastError();  // copies take longer, that is all
@@ -127,7 +138,8 @@ class PinnedPages {
     double* memory_ = nullptr;
 };
 
-/// Memory of a device, ready for any stream when the constructor returns: zeros or the host's values.
+/// Memory of a device, ready for any stream when the constructor returns: zeros or the host's
+/// values.
 template <class T>
 class Buffer {
   public:
@@ -142,12 +154,14 @@ class Buffer {
     }
     explicit Buffer(std::span<T const> host) : Buffer(host.size()) {
         if (count_ == 0) return;
-        check(cudaMemcpy(data_, host.data(), count_ * sizeof(T), cudaMemcpyHostToDevice), "copy to its memory");
+        check(cudaMemcpy(data_, host.data(), count_ * sizeof(T), cudaMemcpyHostToDevice),
+              "copy to its memory");
         check(cudaStreamSynchronize(nullptr), "copy to its memory");
     }
     explicit Buffer(std::vector<T> const& host) : Buffer(std::span<T const>(host)) {}
     ~Buffer() { cudaFree(data_); }
-    Buffer(Buffer&& other) noexcept : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
+    Buffer(Buffer&& other) noexcept
+        : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
     Buffer& operator=(Buffer&& other) noexcept {
         std::swap(data_, other.data_);
         std::swap(count_, other.count_);
@@ -162,11 +176,15 @@ class Buffer {
 };
 
 /// Columns of `length` numbers between two pitched arrays.
-inline void copy_columns(double* to, std::int64_t to_pitch, double const* from, std::int64_t from_pitch, std::int64_t length, int columns,
+inline void copy_columns(double* to, std::int64_t to_pitch, double const* from,
+                         std::int64_t from_pitch, std::int64_t length, int columns,
                          cudaMemcpyKind kind, cudaStream_t stream) {
     if (!to || !from || length == 0 || columns == 0) return;
-    auto const bytes = [](std::int64_t numbers) { return static_cast<std::size_t>(numbers) * sizeof(double); };
-    check(cudaMemcpy2DAsync(to, bytes(to_pitch), from, bytes(from_pitch), bytes(length), static_cast<std::size_t>(columns), kind, stream),
+    auto const bytes = [](std::int64_t numbers) {
+        return static_cast<std::size_t>(numbers) * sizeof(double);
+    };
+    check(cudaMemcpy2DAsync(to, bytes(to_pitch), from, bytes(from_pitch), bytes(length),
+                            static_cast<std::size_t>(columns), kind, stream),
           "move a field");
 }
 

@@ -4,19 +4,19 @@
 
 namespace catena::cuda {
 
-std::unique_ptr<PeerInboxes> PeerInboxes::make(Communicator const& communicator, int inboxes) {
+std::unique_ptr<GhostInboxes> GhostInboxes::make(Communicator const& communicator, int inboxes) {
     if (!gpus_may_write_to_each_other(communicator)) return nullptr;
-    return std::unique_ptr<PeerInboxes>(new PeerInboxes(communicator, inboxes));
+    return std::unique_ptr<GhostInboxes>(new GhostInboxes(communicator, inboxes));
 }
 
 /// Its own memory may be mapped elsewhere still: it goes with its CUDA context.
-PeerInboxes::~PeerInboxes() {
+GhostInboxes::~GhostInboxes() {
     unmap(base_, communicator_.rank());
     static auto* const kept = new std::vector<Buffer<double>>;
     kept->push_back(std::move(own_));
 }
 
-bool PeerInboxes::fit(std::span<Halo::Message const> messages) {
+bool GhostInboxes::fit(std::span<Halo::Message const> messages) {
     auto const ranks = static_cast<std::size_t>(communicator_.size());
     std::vector<std::int64_t> first_of(ranks, 0), all(ranks * ranks);
     std::int64_t received = 0;
@@ -26,18 +26,21 @@ bool PeerInboxes::fit(std::span<Halo::Message const> messages) {
     }
     auto const most = static_cast<std::int64_t>(communicator_.max(static_cast<double>(received)));
     if ((most > capacity_ || base_.empty()) && !map_anew(most)) return false;
-    communicator_.all_gather(std::as_bytes(std::span(first_of)), std::as_writable_bytes(std::span(all)),
-                             std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(ranks * sizeof(std::int64_t))));
+    communicator_.all_gather(
+        std::as_bytes(std::span(first_of)), std::as_writable_bytes(std::span(all)),
+        std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(ranks * sizeof(std::int64_t))));
     first_.resize(ranks);
-    for (std::size_t r = 0; r < ranks; ++r) first_[r] = all[r * ranks + static_cast<std::size_t>(communicator_.rank())];
+    for (std::size_t r = 0; r < ranks; ++r)
+        first_[r] = all[r * ranks + static_cast<std::size_t>(communicator_.rank())];
     return true;
 }
 
-bool PeerInboxes::map_anew(std::int64_t received) {
+bool GhostInboxes::map_anew(std::int64_t received) {
     unmap(base_, communicator_.rank());
     base_.clear();
     communicator_.barrier();                     // nobody has it mapped
-    std::int64_t constexpr own_block = 1 << 16;  // less shares a block of the driver's with others', which cannot be mapped by itself
+    std::int64_t constexpr own_block = 1 << 16;  // less shares a block of the driver's with
+                                                 // others', which cannot be mapped by itself
     capacity_ = std::max<std::int64_t>(received + received / 8, own_block);
     own_ = Buffer<double>();
     own_ = Buffer<double>(static_cast<std::size_t>(inboxes_ * 3 * capacity_));
@@ -45,6 +48,8 @@ bool PeerInboxes::map_anew(std::int64_t received) {
     return !base_.empty();
 }
 
-void* PeerInboxes::box(int rank) const { return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * turn_ * capacity_; }
+void* GhostInboxes::box(int rank) const {
+    return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * turn_ * capacity_;
+}
 
 }  // namespace catena::cuda

@@ -1,5 +1,5 @@
-// Where positions of ghosts, and forces on them, arrive on each rank's GPU, written there by the GPUs of the others: they do not pass
-// through the host then.
+// Where positions of ghosts, and forces on them, arrive on each rank's GPU, written there by the
+// GPUs of the others: they do not pass through the host then.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,33 @@
 
 namespace catena::cuda {
 
-/// Every rank has as many inboxes, one or two, which are filled in turns: what arrived in one of two is read while the next positions come.
-/// Between two fillings of one of them every rank must have heard of every other that it has read it.
-class PeerInboxes {
+/// Every rank has as many inboxes, one or two, which are filled in turns: what arrived in one of
+/// two is read while the next positions come. Between two fillings of one of them every rank must
+/// have heard of every other that it has read it.
+class GhostInboxes {
   public:
     /// Null on all ranks where GPUs do not reach each other. Collective.
-    static std::unique_ptr<PeerInboxes> make(Communicator const&, int inboxes);
-    ~PeerInboxes();
-    PeerInboxes(PeerInboxes const&) = delete;
-    PeerInboxes& operator=(PeerInboxes const&) = delete;
+    static std::unique_ptr<GhostInboxes> make(Communicator const&, int inboxes);
+    ~GhostInboxes();
+    GhostInboxes(GhostInboxes const&) = delete;
+    GhostInboxes& operator=(GhostInboxes const&) = delete;
 
-    /// Room for the positions of these messages. False on all ranks where GPUs do not reach each other after all. Precondition: nobody
-    /// writes or reads. Collective.
+    /// Room for the positions of these messages. False on all ranks where GPUs do not reach each
+    /// other after all. Precondition: nobody writes or reads. Collective.
     bool fit(std::span<Halo::Message const> messages);
     /// From now on the other one is filled and read. On every rank.
     void turn() { turn_ = (turn_ + 1) % inboxes_; }
-    /// Sends `shown`, three numbers a position, one message after the other or one for all, once the stream comes here.
+    /// Sends `shown`, three numbers a position, one message after the other or one for all, once
+    /// the stream comes here.
     template <class Number>
-    void send(std::span<Halo::Message const> messages, Number const* shown, bool one_for_all, cudaStream_t stream) const {
+    void send(std::span<Halo::Message const> messages, Number const* shown, bool one_for_all,
+              cudaStream_t stream) const {
         for (Halo::Message const& m : messages) {
             auto const bytes = 3 * static_cast<std::size_t>(m.sent) * sizeof(Number);
-            if (bytes > 0) check(cudaMemcpyAsync(box_of<Number>(m.rank), shown, bytes, cudaMemcpyDefault, stream), "show its beads");
+            if (bytes > 0)
+                check(cudaMemcpyAsync(box_of<Number>(m.rank), shown, bytes, cudaMemcpyDefault,
+                                      stream),
+                      "show its beads");
             if (!one_for_all) shown += 3 * m.sent;
         }
     }
@@ -49,7 +55,8 @@ class PeerInboxes {
     }
 
   private:
-    PeerInboxes(Communicator const& communicator, int inboxes) : communicator_(communicator), inboxes_(inboxes) {}
+    GhostInboxes(Communicator const& communicator, int inboxes)
+        : communicator_(communicator), inboxes_(inboxes) {}
     bool map_anew(std::int64_t received);
     /// The inbox of a rank that is filled now.
     void* box(int rank) const;

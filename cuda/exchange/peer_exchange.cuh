@@ -11,8 +11,9 @@
 
 namespace catena::cuda {
 
-/// Who takes part in an exchange: each of `peer` gets this rank's `sent` numbers, and of its own `received[p]` are taken, which are numbers
-/// first[p], first[p] + 1, ... of all. Both of a pair call at the same time, if only to receive nothing.
+/// Who takes part in an exchange: each of `peer` gets this rank's `sent` numbers, and of its own
+/// `received[p]` are taken, which are numbers first[p], first[p] + 1, ... of all. Both of a pair
+/// call at the same time, if only to receive nothing.
 struct PeerCall {
     PeerBoxes boxes;
     int peers = 0, sent = 0;
@@ -28,16 +29,19 @@ struct PeerCall {
     }
 };
 
-/// Kernels in which ranks meet go one after the other on a GPU, whatever their streams, in the order in which the host asks for them, which
-/// is the same on all ranks: one that fills a GPU while it waits leaves no room for another that some other GPU waits for. (Contexts take
-/// turns on a GPU.)
+/// Kernels in which ranks meet go one after the other on a GPU, whatever their streams, in the
+/// order in which the host asks for them, which is the same on all ranks: one that fills a GPU
+/// while it waits leaves no room for another that some other GPU waits for. (Contexts take turns on
+/// a GPU.)
 class Meetings {
   public:
-    /// The next one is on this stream, of that context (PeerMemory). Where a stream is captured, the last one before was on it as well.
+    /// The next one is on this stream, of that context (PeerMemory). Where a stream is captured,
+    /// the last one before was on it as well.
     static void next(std::shared_ptr<Stream> const& stream, unsigned long long context) {
         static std::weak_ptr<Stream> last;
         static unsigned long long context_of_last = 0;
-        if (auto const before = last.lock(); before && before != stream && context_of_last == context) {
+        if (auto const before = last.lock();
+            before && before != stream && context_of_last == context) {
             Event so_far(Event::For::order);
             so_far.record(before->get());
             so_far.hold(stream->get());
@@ -57,7 +61,9 @@ class Peers {
     }
     explicit operator bool() const { return memory_ != nullptr; }
     /// Kernels in which they are used must come right after it. Precondition: there are ways.
-    void meet_next(std::shared_ptr<Stream> const& stream) const { Meetings::next(stream, memory_->context()); }
+    void meet_next(std::shared_ptr<Stream> const& stream) const {
+        Meetings::next(stream, memory_->context());
+    }
     /// A body's numbers to one rank and from one; a negative rank means nobody.
     template <int numbers>
     PeerCall to_and_from(int to, int source) const {
@@ -68,12 +74,14 @@ class Peers {
         if (source >= 0 && source != to) call.add(source, 0, numbers);
         return call;
     }
-    /// `width` numbers of every shared unit, to all, and up to `beside` of bodies. All ranks ask for the same ones in the same order.
+    /// `width` numbers of every shared unit, to all, and up to `beside` of bodies. All ranks ask
+    /// for the same ones in the same order.
     PeerCall among_all(dca::Schedule const& schedule, int width, int beside) const {
         PeerCall call;
         if (!memory_ || schedule.shared.empty()) return call;
         std::vector<int> numbers(static_cast<std::size_t>(memory_->ranks()), 0);
-        for (dca::SharedUnit const& unit : schedule.shared) numbers[static_cast<std::size_t>(unit.owner)] += width;
+        for (dca::FrontierUnit const& unit : schedule.shared)
+            numbers[static_cast<std::size_t>(unit.owner)] += width;
         std::int64_t first = 0;
         for (int rank = 0; rank < memory_->ranks(); ++rank) {
             int const own = numbers[static_cast<std::size_t>(rank)];
@@ -103,8 +111,8 @@ struct BodyNumbers {
     __device__ double show(std::int64_t i) const { return from[i * gpu_order::lanes]; }
     __device__ void take(std::int64_t i, double value) const { to[i * gpu_order::lanes] = value; }
 };
-/// Bodies for neighbours that go along with what all get. Those that this rank wants are all of one rank, `source`, the same for each; a
-/// rank that has neighbours sends as many as they do.
+/// Bodies for neighbours that go along with what all get. Those that this rank wants are all of one
+/// rank, `source`, the same for each; a rank that has neighbours sends as many as they do.
 struct BodiesBeside {
     static constexpr int most = 2;
     int count = 0, numbers = 0, source = -1;
@@ -116,7 +124,9 @@ struct BodiesBeside {
         body[count++] = it;
         if (numbers_of_it > 0) source = from;
     }
-    __device__ double show(int i) const { return i < end[0] ? body[0].show(i) : body[1].show(i - end[0]); }
+    __device__ double show(int i) const {
+        return i < end[0] ? body[0].show(i) : body[1].show(i - end[0]);
+    }
     __device__ void take(int i, double value) const {
         BodyNumbers const& of = i < end[0] ? body[0] : body[1];
         of.take(i < end[0] ? i : i - end[0], value);
@@ -127,18 +137,21 @@ struct Nothing {
     __device__ void operator()(std::int64_t) const {}
 };
 
-/// By all threads of a block, as many as there are peers or more, which have met before it. numbers.show(i): number i to be sent;
-/// numbers.take(i, value): number i of all. The last letter of a box comes in any case: who has it knows that its sender has read what came
-/// the last time.
+/// By all threads of a block, as many as there are peers or more, which have met before it.
+/// numbers.show(i): number i to be sent; numbers.take(i, value): number i of all. The last letter
+/// of a box comes in any case: who has it knows that its sender has read what came the last time.
 template <class Numbers>
-__device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers, BodiesBeside const& beside) {
+__device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers,
+                                  BodiesBeside const& beside) {
     PeerBoxes const& boxes = call.boxes;
     int const t = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
     auto const letters = [&](int at, int from, int p) {
-        unsigned long long const launches = 0xffffffff;  // as many numbers as letters tell apart, 0 not among them
+        unsigned long long const launches =
+            0xffffffff;  // as many numbers as letters tell apart, 0 not among them
         unsigned long long const times = *boxes.exchanged(call.peer[p]) + 1;
-        return LettersIn<PeerLetterBox>{reinterpret_cast<PeerLetterBox*>(boxes.box(at, from, times)), 1,
-                                        static_cast<unsigned>(times % launches) + 1};
+        return LettersIn<PeerLetterBox>{
+            reinterpret_cast<PeerLetterBox*>(boxes.box(at, from, times)), 1,
+            static_cast<unsigned>(times % launches) + 1};
     };
     constexpr int at_once = 8;  // memory is far
     int const sent = call.sent + beside.numbers, last = boxes.width - 1;

@@ -9,13 +9,15 @@
 #include <utility>
 
 #include "cuda/device/gpu.hpp"
-#include "neighbours/device_path.hpp"
 #include "mpi/gpu_exchange.hpp"
+#include "neighbours/device_path.hpp"
 
 namespace catena::cuda {
 namespace {
 
-bool agreed(Communicator const& communicator, bool here) { return communicator.sum(here ? 0 : 1) == 0; }
+bool agreed(Communicator const& communicator, bool here) {
+    return communicator.sum(here ? 0 : 1) == 0;
+}
 
 bool equal(cudaUUID_t const& a, cudaUUID_t const& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
@@ -26,9 +28,12 @@ bool reaches(int device, std::vector<cudaUUID_t> const& others) {
     for (int other = 0; other < count; ++other) {
         cudaDeviceProp gpu{};
         check(cudaGetDeviceProperties(&gpu, other), "say what it is");
-        bool const asked = std::any_of(others.begin(), others.end(), [&](cudaUUID_t const& uuid) { return equal(uuid, gpu.uuid); });
+        bool const asked = std::any_of(others.begin(), others.end(), [&](cudaUUID_t const& uuid) {
+            return equal(uuid, gpu.uuid);
+        });
         int can = 1;
-        if (asked && other != device) check(cudaDeviceCanAccessPeer(&can, device, other), "say whom it reaches");
+        if (asked && other != device)
+            check(cudaDeviceCanAccessPeer(&can, device, other), "say whom it reaches");
         if (can == 0) return false;
     }
     return true;
@@ -41,7 +46,8 @@ std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     check(cudaGetDevice(&device), "say which it is");
     check(cudaGetDeviceProperties(&gpu, device), "say what it is");
     std::vector<cudaUUID_t> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)), std::as_writable_bytes(std::span(all)),
+    communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)),
+                            std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(cudaUUID_t)));
     return all;
 }
@@ -49,22 +55,27 @@ std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
 int most_alike(std::vector<cudaUUID_t> const& all) {
     std::ptrdiff_t most = 0;
     for (cudaUUID_t const& gpu : all)
-        most = std::max(most, std::count_if(all.begin(), all.end(), [&](cudaUUID_t const& other) { return equal(gpu, other); }));
+        most = std::max(most, std::count_if(all.begin(), all.end(), [&](cudaUUID_t const& other) {
+                            return equal(gpu, other);
+                        }));
     return static_cast<int>(most);
 }
 
 /// One host, each rank on a GPU of its own, and none that cannot reach another.
 bool apart_on_one_host(Communicator const& communicator) {
-    if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers) return false;
+    if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers)
+        return false;
     std::vector<cudaUUID_t> const all = gpus_of_ranks(communicator);
     int device = 0;
     check(cudaGetDevice(&device), "say which it is");
     return most_alike(all) == 1 && reaches(device, all);
 }
 
-constexpr std::int64_t capacity = 1 << 21;  // numbers: 16 MiB; the widest segments of all ranks' units take most of it
+constexpr std::int64_t capacity =
+    1 << 21;  // numbers: 16 MiB; the widest segments of all ranks' units take most of it
 
-/// Of the CUDA context that is current: no two have the same, also where one is gone; 0: the driver does not tell.
+/// Of the CUDA context that is current: no two have the same, also where one is gone; 0: the driver
+/// does not tell.
 unsigned long long context_number() {
     using Ask = int (*)(void* context, unsigned long long* number);
     static auto const ask = [] {
@@ -75,7 +86,8 @@ unsigned long long context_number() {
     return ask && ask(nullptr, &number) == 0 ? number : 0;
 }
 
-/// Mapped memory that nobody uses now. What a context has mapped is of use there alone, and goes with it: OpenMM's do.
+/// Mapped memory that nobody uses now. What a context has mapped is of use there alone, and goes
+/// with it: OpenMM's do.
 struct Spare {
     unsigned long long context;
     std::vector<double*> base;
@@ -89,8 +101,9 @@ std::vector<Spare>& spares() {
 std::vector<double*> take_spare(Communicator const& communicator) {
     unsigned long long const here = context_number();
     auto const ranks = static_cast<std::size_t>(communicator.size());
-    auto const found = std::find_if(spares().begin(), spares().end(),
-                                    [&](Spare const& spare) { return here != 0 && spare.context == here && spare.base.size() == ranks; });
+    auto const found = std::find_if(spares().begin(), spares().end(), [&](Spare const& spare) {
+        return here != 0 && spare.context == here && spare.base.size() == ranks;
+    });
     if (!agreed(communicator, found != spares().end())) return {};
     std::vector<double*> base = std::move(found->base);
     spares().erase(found);
@@ -102,7 +115,8 @@ std::vector<double*> mapped(Communicator const& communicator) {
     void* own = nullptr;
     check(cudaMalloc(&own, capacity * sizeof(double)), "find memory");
     std::vector<double*> base;
-    for (void* const there : map_each_others(communicator, own)) base.push_back(static_cast<double*>(there));
+    for (void* const there : map_each_others(communicator, own))
+        base.push_back(static_cast<double*>(there));
     if (base.empty()) cudaFree(own);
     return base;
 }
@@ -111,11 +125,14 @@ std::vector<double*> mapped(Communicator const& communicator) {
 
 bool gpus_may_write_to_each_other(Communicator const& communicator) {
     return communicator.size() > 1 && communicator.may_be_passed_by() &&
-           gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE")) != GpuExchange::host &&
+           gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE")) !=
+               GpuExchange::host &&
            agreed(communicator, apart_on_one_host(communicator));
 }
 
-int most_ranks_of_a_gpu(Communicator const& communicator) { return most_alike(gpus_of_ranks(communicator)); }
+int most_ranks_of_a_gpu(Communicator const& communicator) {
+    return most_alike(gpus_of_ranks(communicator));
+}
 
 bool gpus_are_alike(Communicator const& communicator) {
     int device = 0;
@@ -123,10 +140,12 @@ bool gpus_are_alike(Communicator const& communicator) {
     check(cudaGetDevice(&device), "say which it is");
     check(cudaGetDeviceProperties(&gpu, device), "say what it is");
     std::vector<char> all(static_cast<std::size_t>(communicator.size()) * sizeof(gpu.name));
-    communicator.all_gather(std::as_bytes(std::span(gpu.name)), std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), sizeof(gpu.name)));
+    communicator.all_gather(
+        std::as_bytes(std::span(gpu.name)), std::as_writable_bytes(std::span(all)),
+        std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), sizeof(gpu.name)));
     bool alike = true;
-    for (std::size_t r = 0; r < all.size(); r += sizeof(gpu.name)) alike = alike && std::strcmp(gpu.name, all.data() + r) == 0;
+    for (std::size_t r = 0; r < all.size(); r += sizeof(gpu.name))
+        alike = alike && std::strcmp(gpu.name, all.data() + r) == 0;
     return agreed(communicator, alike);
 }
 
@@ -134,14 +153,16 @@ std::vector<void*> map_each_others(Communicator const& communicator, void* own) 
     cudaIpcMemHandle_t handle{};
     bool const shown = cudaIpcGetMemHandle(&handle, own) == cudaSuccess;
     std::vector<cudaIpcMemHandle_t> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&handle, 1)), std::as_writable_bytes(std::span(all)),
+    communicator.all_gather(std::as_bytes(std::span(&handle, 1)),
+                            std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(handle)));
     std::vector<void*> base;
     bool opened = agreed(communicator, shown);
     for (std::size_t r = 0; opened && r < all.size(); ++r) {
         void* there = own;
         if (static_cast<int>(r) != communicator.rank())
-            opened = cudaIpcOpenMemHandle(&there, all[r], cudaIpcMemLazyEnablePeerAccess) == cudaSuccess;
+            opened =
+                cudaIpcOpenMemHandle(&there, all[r], cudaIpcMemLazyEnablePeerAccess) == cudaSuccess;
         if (opened) base.push_back(there);
     }
     cudaGetLastError();  // what a failure leaves behind would fail the next call
@@ -172,7 +193,10 @@ std::shared_ptr<PeerMemory> PeerMemory::connect(Communicator const& communicator
 }
 
 PeerMemory::PeerMemory(int rank, std::vector<double*> base)
-    : rank_(rank), ranks_(static_cast<int>(base.size())), context_(context_number()), base_(std::move(base)) {}
+    : rank_(rank),
+      ranks_(static_cast<int>(base.size())),
+      context_(context_number()),
+      base_(std::move(base)) {}
 PeerMemory::~PeerMemory() { spares().push_back({context_, base_}); }
 
 PeerBoxes PeerMemory::boxes(int width) {
@@ -181,7 +205,9 @@ PeerBoxes PeerMemory::boxes(int width) {
     boxes.ranks = ranks_;
     boxes.width = width;
     std::int64_t const numbers = PeerBoxes::numbers(ranks_, width);
-    if (used_ + numbers > capacity) throw ComputationError("what GPUs exchange takes more than " + std::to_string(8 * capacity) + " bytes");
+    if (used_ + numbers > capacity)
+        throw ComputationError("what GPUs exchange takes more than " +
+                               std::to_string(8 * capacity) + " bytes");
     for (std::size_t r = 0; r < base_.size(); ++r) boxes.base[r] = base_[r] + used_;
     used_ += (numbers + 15) / 16 * 16;
     return boxes;

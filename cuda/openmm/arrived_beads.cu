@@ -1,9 +1,9 @@
 #include <cuda/atomic>
 
-#include "cuda/openmm/gpu_path.hpp"
-#include "cuda/space/kernels.cuh"
-#include "cuda/openmm/pair_share.hpp"
 #include "cuda/exchange/peer_exchange.cuh"
+#include "cuda/openmm/gpu_path.hpp"
+#include "cuda/openmm/pair_share.hpp"
+#include "cuda/space/kernels.cuh"
 
 namespace catena::cuda {
 namespace {
@@ -18,7 +18,8 @@ template <class Action>
 void each(std::int64_t count, Action const& action, cudaStream_t stream) {
     if (count == 0) return;
     int constexpr threads = 256;
-    in_turn<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream>>>(count, action);
+    in_turn<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream>>>(count,
+                                                                                            action);
     check(cudaGetLastError(), "start a kernel");
 }
 
@@ -36,9 +37,15 @@ __global__ void meet(PeerBoxes boxes) {
 
 }  // namespace
 
-void put(std::int64_t count, ArrivedBeads const& arrived, cudaStream_t stream) { each(count, arrived, stream); }
-void send(std::int64_t count, SentPositions const& sent, cudaStream_t stream) { each(3 * count, sent, stream); }
-void take(std::int64_t count, ArrivedPositions const& arrived, cudaStream_t stream) { each(3 * count, arrived, stream); }
+void put(std::int64_t count, ArrivedBeads const& arrived, cudaStream_t stream) {
+    each(count, arrived, stream);
+}
+void send(std::int64_t count, SentPositions const& sent, cudaStream_t stream) {
+    each(3 * count, sent, stream);
+}
+void take(std::int64_t count, ArrivedPositions const& arrived, cudaStream_t stream) {
+    each(3 * count, arrived, stream);
+}
 template <class Number>
 void send(SentForces<Number> const& sent, cudaStream_t stream) {
     each(3 * sent.count(), sent, stream);

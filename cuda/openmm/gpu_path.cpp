@@ -19,7 +19,8 @@ namespace {
 /// Of the only rank.
 class LonePath final : public GpuPath {
   public:
-    LonePath(OpenMM::Context& context, DevicePathPlan plan) : GpuPath(context, std::move(plan), evaluations_of_an_order) {
+    LonePath(OpenMM::Context& context, DevicePathPlan plan)
+        : GpuPath(context, std::move(plan), evaluations_of_an_order) {
         compute_with(on_device(context));
         may_ask_ = plan_.keeps_list && why_pairs_cannot_be_shared().empty();
         if (may_ask_) openmm_->share(-1, 0, 1);
@@ -43,12 +44,14 @@ class LonePath final : public GpuPath {
         std::int64_t const bead = take_trouble();
         if (bead >= 0)
             throw ComputationError("the position of bead " + std::to_string(bead + 1) +
-                                   ", or OpenMM's force on it, is not finite: take a smaller step, or a start without overlaps");
+                                   ", or OpenMM's force on it, is not finite: take a smaller step, "
+                                   "or a start without overlaps");
     }
 
   private:
-    /// Of thousands of particles OpenMM keeps a list of pairs, and sorts blocks of them at every evaluation before it looks whether one has
-    /// moved far. Here that is found while they are moved, and the host asks while the chains go on.
+    /// Of thousands of particles OpenMM keeps a list of pairs, and sorts blocks of them at every
+    /// evaluation before it looks whether one has moved far. Here that is found while they are
+    /// moved, and the host asks while the chains go on.
     void choose_list_and_compute(std::span<DeviceBeads* const> beads) {
         if (asks_) {
             placed_.record(stream_);
@@ -63,7 +66,9 @@ class LonePath final : public GpuPath {
             note_list(anew);
         }
         compute(beads);
-        if (asks_) openmm_->keep_list();  // until it is made anew; for energies that are asked for now, too
+        if (asks_)
+            openmm_
+                ->keep_list();  // until it is made anew; for energies that are asked for now, too
         if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
         if (asks_) of_an_order_ = evaluations_of_a_listed_order;
     }
@@ -77,7 +82,8 @@ class LonePath final : public GpuPath {
         order(x, {}, mean(x));
     }
 
-    bool may_ask_ = false, has_computed_ = false, has_list_ = false, asks_ = false, computes_later_ = false;
+    bool may_ask_ = false, has_computed_ = false, has_list_ = false, asks_ = false,
+         computes_later_ = false;
     Event placed_{Event::For::clock};
 };
 
@@ -86,7 +92,8 @@ class LonePath final : public GpuPath {
 GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
     : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations) {
     // What lives in OpenMM's context is made there.
-    if (!home_->make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
+    if (!home_->make_current())
+        throw ComputationError("OpenMM's CUDA context cannot be made current");
     flags_ = std::make_unique<PinnedBuffer<Flags>>(1);
     *flags_->data() = Flags{};
     events_ = std::make_unique<Events>();
@@ -116,7 +123,9 @@ std::int64_t GpuPath::take_trouble() {
 }
 
 std::vector<Vec3> GpuPath::positions() {
-    if (beads_.empty()) throw ComputationError("positions on the GPU were asked for before there was an evaluation");
+    if (beads_.empty())
+        throw ComputationError(
+            "positions on the GPU were asked for before there was an evaluation");
     std::vector<Vec3> x;
     x.reserve(plan_.particle.size());
     for (DeviceBeads* group : beads_) {
@@ -126,7 +135,8 @@ std::vector<Vec3> GpuPath::positions() {
     return x;
 }
 
-void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others, Vec3 const& middle) {
+void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
+                    Vec3 const& middle) {
     particles_.origin = plan_.shifted ? middle : Vec3::zero();
     std::size_t particles = x.size();
     for (Others const& more : others) particles += more.particle.size();
@@ -134,21 +144,25 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others, 
     auto const set = [&](std::span<int const> particle, std::span<Vec3 const> position) {
         for (std::size_t i = 0; i < particle.size(); ++i)
             for (int c = 0; c < 3; ++c)
-                of_particle[3 * static_cast<std::size_t>(particle[i]) + static_cast<std::size_t>(c)] = (position[i] - particles_.origin)[c];
+                of_particle[3 * static_cast<std::size_t>(particle[i]) +
+                            static_cast<std::size_t>(c)] = (position[i] - particles_.origin)[c];
     };
     set(plan_.particle, x);
     for (Others const& more : others) set(more.particle, more.position);
     std::vector<int> const& particle_at = openmm_->order(of_particle);
     place_.resize(particles);
-    for (std::size_t i = 0; i < particles; ++i) place_[static_cast<std::size_t>(particle_at[i])] = static_cast<std::int32_t>(i);
+    for (std::size_t i = 0; i < particles; ++i)
+        place_[static_cast<std::size_t>(particle_at[i])] = static_cast<std::int32_t>(i);
     std::vector<DeviceBead> beads(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_of(plan_.particle[i], x[i]);
     upload(*own_, beads.data(), beads.size());
     check(cudaStreamSynchronize(stream_), "take OpenMM's order");
-    for (DeviceBeads* group : beads_) check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
+    for (DeviceBeads* group : beads_)
+        check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
     OpenMmArrays const arrays = openmm_->arrays();
     ++particles_.order;
-    particles_.double_position = arrays.double_precision ? static_cast<double*>(arrays.position) : nullptr;
+    particles_.double_position =
+        arrays.double_precision ? static_cast<double*>(arrays.position) : nullptr;
     particles_.position = arrays.double_precision ? nullptr : static_cast<float*>(arrays.position);
     particles_.correction = static_cast<float*>(arrays.correction);
     particles_.force = static_cast<std::int64_t*>(arrays.force);
@@ -164,10 +178,12 @@ void GpuPath::note_list(bool anew) {
     if (!anew) return;
     ++lists_of_this_order_;
     bool const twice = particles_.double_position != nullptr;
-    void const* const now = twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
+    void const* const now =
+        twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
     auto const numbers = static_cast<std::size_t>(4 * particles_.places);
     double* const listed = listed_.of(twice ? numbers : numbers / 2).data();
-    check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)), cudaMemcpyDeviceToDevice, stream_),
+    check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)),
+                          cudaMemcpyDeviceToDevice, stream_),
           "take lists");
     auto const lasts = static_cast<float>(openmm_->list_lasts());
     if (twice)
@@ -196,7 +212,8 @@ void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));
-    of_this_order_ = lists_of_this_order_ < lists_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
+    of_this_order_ =
+        lists_of_this_order_ < lists_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
 }
 
 void GpuPath::finish(std::span<DeviceBeads* const> beads) {
@@ -211,7 +228,9 @@ void GpuPath::finish(std::span<DeviceBeads* const> beads) {
 DevicePath::Clock GpuPath::clock() {
     events_->openmm_end.wait();
     events_->chains_end.wait();
-    return {{at(events_->openmm_begin), at(events_->openmm_end)}, {at(events_->chains_begin), at(events_->chains_end)}, exchange_};
+    return {{at(events_->openmm_begin), at(events_->openmm_end)},
+            {at(events_->chains_begin), at(events_->chains_end)},
+            exchange_};
 }
 
 std::unique_ptr<DevicePath> make_device_path(OpenMM::Context& context, DevicePathPlan plan) {

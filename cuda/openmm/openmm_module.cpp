@@ -4,20 +4,21 @@
 #include <filesystem>
 #include <string>
 
-#include "cuda/openmm/gpu_path.hpp"
 #include "cuda/device/gpu.hpp"
+#include "cuda/openmm/gpu_path.hpp"
 
 namespace catena::cuda {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside the program or library that holds this function and where both are installed together, where the build is to be installed, and
-/// where it leaves the module.
+/// Beside the program or library that holds this function and where both are installed together,
+/// where the build is to be installed, and where it leaves the module.
 std::vector<fs::path> module_folders() {
     std::vector<fs::path> folders;
     Dl_info here{};
-    if (dladdr(reinterpret_cast<void const*>(&why_no_device_path), &here) != 0 && here.dli_fname != nullptr) {
+    if (dladdr(reinterpret_cast<void const*>(&why_no_device_path), &here) != 0 &&
+        here.dli_fname != nullptr) {
         std::error_code ignored;
         fs::path const folder = fs::weakly_canonical(here.dli_fname, ignored).parent_path();
         folders = {folder, folder.parent_path() / CATENA_LIBRARY_FOLDER};
@@ -40,11 +41,13 @@ Module load() {
         void* const library = dlopen((folder / module_file).c_str(), RTLD_NOW | RTLD_LOCAL);
         void* const entry = library ? dlsym(library, module_entry) : nullptr;
         if (entry)
-            return {reinterpret_cast<ModuleEntry>(entry), "", reinterpret_cast<ModuleSharesPairs>(dlsym(library, module_shares_pairs))};
+            return {reinterpret_cast<ModuleEntry>(entry), "",
+                    reinterpret_cast<ModuleSharesPairs>(dlsym(library, module_shares_pairs))};
         char const* const reason = dlerror();
         return {nullptr, reason ? reason : std::string(module_file) + " has no entry"};
     }
-    return {nullptr, std::string(module_file) + " is not there: this build found no headers of OpenMM's CUDA platform"};
+    return {nullptr, std::string(module_file) +
+                         " is not there: this build found no headers of OpenMM's CUDA platform"};
 }
 
 Module const& module() {
@@ -57,7 +60,9 @@ Module const& module() {
 std::string const& why_no_device_path() { return module().why_not; }
 
 std::string why_pairs_cannot_be_shared() {
-    return module().shares_pairs && module().shares_pairs() ? "" : "this OpenMM's kernel for pairs is not one that can be told which";
+    return module().shares_pairs && module().shares_pairs()
+               ? ""
+               : "this OpenMM's kernel for pairs is not one that can be told which";
 }
 
 int chosen_device() {
@@ -66,6 +71,8 @@ int chosen_device() {
     return device;
 }
 
-std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context& context) { return std::unique_ptr<OpenMmOnDevice>(module().entry(context)); }
+std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context& context) {
+    return std::unique_ptr<OpenMmOnDevice>(module().entry(context));
+}
 
 }  // namespace catena::cuda

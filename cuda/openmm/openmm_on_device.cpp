@@ -21,10 +21,13 @@ class CudaKernelSources {
 namespace catena::cuda {
 namespace {
 
-/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list, those that a context computes, which OpenMM
-/// defines by the contexts of one process; and the reach by which a block of particles may be wrapped about its middle, which does not
-/// allow for what they have moved since their blocks were looked at, as they are whenever OpenMM makes or keeps a list by itself.
-constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE", *wrapped = "MAX_CUTOFF";
+/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list,
+/// those that a context computes, which OpenMM defines by the contexts of one process; and the
+/// reach by which a block of particles may be wrapped about its middle, which does not allow for
+/// what they have moved since their blocks were looked at, as they are whenever OpenMM makes or
+/// keeps a list by itself.
+constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE",
+                     *wrapped = "MAX_CUTOFF";
 
 bool shares_pairs() {
     if (&OpenMM::CudaKernelSources::nonbonded == nullptr) return false;
@@ -34,34 +37,46 @@ bool shares_pairs() {
 }
 
 std::string with(std::string text, std::string const& word, std::string const& value) {
-    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += value.size()) text.replace(at, word.size(), value);
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += value.size())
+        text.replace(at, word.size(), value);
     return text;
 }
 
 OpenMM::CudaContext& gpu_of(OpenMM::ContextImpl& context) {
-    return *static_cast<OpenMM::CudaPlatform::PlatformData*>(context.getPlatformData())->contexts.at(0);
+    return *static_cast<OpenMM::CudaPlatform::PlatformData*>(context.getPlatformData())
+                ->contexts.at(0);
 }
 
-void* address(OpenMM::CudaArray& array) { return array.isInitialized() ? reinterpret_cast<void*>(array.getDevicePointer()) : nullptr; }
+void* address(OpenMM::CudaArray& array) {
+    return array.isInitialized() ? reinterpret_cast<void*>(array.getDevicePointer()) : nullptr;
+}
 
 class OnDevice final : public OpenMmOnDevice {
   public:
-    explicit OnDevice(OpenMM::Context& context) : context_(context), impl_(impl_of(context)), gpu_(gpu_of(impl_)) {
+    explicit OnDevice(OpenMM::Context& context)
+        : context_(context), impl_(impl_of(context)), gpu_(gpu_of(impl_)) {
         cuCtxGetCurrent(&before_);
     }
     ~OnDevice() override {
         CUcontext now = nullptr;
-        if (cuCtxGetCurrent(&now) == CUDA_SUCCESS && now == gpu_.getContext()) cuCtxSetCurrent(before_);
+        if (cuCtxGetCurrent(&now) == CUDA_SUCCESS && now == gpu_.getContext())
+            cuCtxSetCurrent(before_);
     }
-    bool make_current() noexcept override { return cuCtxSetCurrent(gpu_.getContext()) == CUDA_SUCCESS; }
+    bool make_current() noexcept override {
+        return cuCtxSetCurrent(gpu_.getContext()) == CUDA_SUCCESS;
+    }
     OpenMmArrays arrays() override {
-        return {address(gpu_.getPosq()),      gpu_.getUseMixedPrecision() ? address(gpu_.getPosqCorrection()) : nullptr,
-                gpu_.getUseDoublePrecision(), address(gpu_.getLongForceBuffer()),
-                gpu_.getPaddedNumAtoms(),     gpu_.getCurrentStream()};
+        return {address(gpu_.getPosq()),
+                gpu_.getUseMixedPrecision() ? address(gpu_.getPosqCorrection()) : nullptr,
+                gpu_.getUseDoublePrecision(),
+                address(gpu_.getLongForceBuffer()),
+                gpu_.getPaddedNumAtoms(),
+                gpu_.getCurrentStream()};
     }
     std::vector<int> const& order(std::vector<double> const& positions) override {
         std::vector<OpenMM::Vec3> particles(positions.size() / 3);
-        for (std::size_t i = 0; i < particles.size(); ++i) particles[i] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+        for (std::size_t i = 0; i < particles.size(); ++i)
+            particles[i] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
         gpu_.forceReorder();
         context_.setPositions(particles);  // and reorders
         return gpu_.getAtomIndex();
@@ -70,9 +85,13 @@ class OnDevice final : public OpenMmOnDevice {
     void share(int groups, int part, int parts) override {
         groups_ = groups;
         auto const tiles = static_cast<std::int64_t>(pairs().getExclusionTiles().getSize());
-        std::string const begin = std::to_string(tiles * part / parts), end = std::to_string(tiles * (part + 1) / parts);
-        std::string const padded = gpu_.doubleToString(pairs().padCutoff(pairs().getMaxCutoffDistance()));
-        pairs().setKernelSource(with(with(with(OpenMM::CudaKernelSources::nonbonded, first_tile, begin), last_tile, end), wrapped, padded));
+        std::string const begin = std::to_string(tiles * part / parts),
+                          end = std::to_string(tiles * (part + 1) / parts);
+        std::string const padded =
+            gpu_.doubleToString(pairs().padCutoff(pairs().getMaxCutoffDistance()));
+        pairs().setKernelSource(with(
+            with(with(OpenMM::CudaKernelSources::nonbonded, first_tile, begin), last_tile, end),
+            wrapped, padded));
     }
     void make_list(double begin, double end) override { pairs().setAtomBlockRange(begin, end); }
     /// Without blocks OpenMM finds nothing to prepare, and goes on to compute what is in the list.
@@ -103,7 +122,10 @@ class OnDevice final : public OpenMmOnDevice {
 }  // namespace
 }  // namespace catena::cuda
 
-extern "C" __attribute__((visibility("default"))) catena::cuda::OpenMmOnDevice* catena_openmm_on_device(OpenMM::Context& context) {
+extern "C" __attribute__((visibility("default"))) catena::cuda::OpenMmOnDevice*
+catena_openmm_on_device(OpenMM::Context& context) {
     return new catena::cuda::OnDevice(context);
 }
-extern "C" __attribute__((visibility("default"))) bool catena_openmm_shares_pairs() { return catena::cuda::shares_pairs(); }
+extern "C" __attribute__((visibility("default"))) bool catena_openmm_shares_pairs() {
+    return catena::cuda::shares_pairs();
+}

@@ -10,8 +10,11 @@ static_assert(most_peers - 1 <= most_messages);
 
 namespace {
 
-/// After how many evaluations cuts follow what the ranks' lists hold, beside those at which particles come into a new order.
-bool is_early(std::int64_t evaluations) { return evaluations <= 8 && (evaluations & (evaluations - 1)) == 0; }
+/// After how many evaluations cuts follow what the ranks' lists hold, beside those at which
+/// particles come into a new order.
+bool is_early(std::int64_t evaluations) {
+    return evaluations <= 8 && (evaluations & (evaluations - 1)) == 0;
+}
 
 ForcesOnBeads forces_on(Room<Buffer<std::int32_t>> const& place, DeviceParticles const& particles) {
     return {particles.force, particles.places, (*place).data()};
@@ -22,15 +25,19 @@ ForcesOnBeads forces_on(Room<Buffer<std::int32_t>> const& place, DeviceParticles
 bool PairShare::fit(bool direct) {
     Communicator const& communicator = halo_.communicator();
     messages_.clear();
-    for (Halo::Message const& m : halo_.lists().messages) messages_.push_back({m.rank, m.received, m.sent});
-    if (direct && !inboxes_) inboxes_ = PeerInboxes::make(communicator, 1);
+    for (Halo::Message const& m : halo_.lists().messages)
+        messages_.push_back({m.rank, m.received, m.sent});
+    if (direct && !inboxes_) inboxes_ = GhostInboxes::make(communicator, 1);
     if (inboxes_ && !memory_) memory_ = PeerMemory::connect(communicator);
     if (memory_ && boxes_.ranks == 0) boxes_ = memory_->boxes(0);
     if (!memory_ || (inboxes_ && !inboxes_->fit(messages_))) inboxes_.reset();
     if (inboxes_) {
         // Zeros are not sent: most beads of other ranks are far from the pairs of this one.
         auto const bytes = static_cast<std::size_t>(received()) * 3 * sizeof(std::int64_t);
-        if (bytes > 0) check(cudaMemsetAsync(inboxes_->box_of<std::int64_t>(communicator.rank()), 0, bytes, nullptr), "clear memory");
+        if (bytes > 0)
+            check(cudaMemsetAsync(inboxes_->box_of<std::int64_t>(communicator.rank()), 0, bytes,
+                                  nullptr),
+                  "clear memory");
         check(cudaStreamSynchronize(nullptr), "clear memory");
         communicator.barrier();  // nobody sends before
         return true;
@@ -53,31 +60,38 @@ bool PairShare::choose(OpenMmOnDevice& openmm, bool new_order) {
     } else if (new_order || is_early(before)) {
         double const own = openmm.tiles();
         std::vector<double> all(static_cast<std::size_t>(ranks));
-        communicator.all_gather(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)),
+        communicator.all_gather(std::as_bytes(std::span(&own, 1)),
+                                std::as_writable_bytes(std::span(all)),
                                 std::vector<std::int64_t>(all.size(), sizeof(own)));
         cuts_ = evened_cuts(cuts_, all);
         has_list_ = *std::max_element(all.begin(), all.end()) > 0;
     }
-    openmm.make_list(cuts_[static_cast<std::size_t>(rank)], cuts_[static_cast<std::size_t>(rank) + 1]);
+    openmm.make_list(cuts_[static_cast<std::size_t>(rank)],
+                     cuts_[static_cast<std::size_t>(rank) + 1]);
     return true;
 }
 
 void PairShare::place(std::span<std::int32_t const> own, std::span<std::int32_t const> others) {
     auto const upload = [](Room<Buffer<std::int32_t>>& to, std::span<std::int32_t const> from) {
-        check(cudaMemcpy(to.of(from.size()).data(), from.data(), from.size_bytes(), cudaMemcpyHostToDevice), "take OpenMM's order");
+        check(cudaMemcpy(to.of(from.size()).data(), from.data(), from.size_bytes(),
+                         cudaMemcpyHostToDevice),
+              "take OpenMM's order");
     };
     upload(place_of_own_, own);
     upload(place_of_others_, others);
     check(cudaStreamSynchronize(nullptr), "take OpenMM's order");
 }
 
-void PairShare::send_positions(float const* position, PeerInboxes const& inboxes, cudaStream_t stream) const {
+void PairShare::send_positions(float const* position, GhostInboxes const& inboxes,
+                               cudaStream_t stream) const {
     SentPositions sent{position, (*place_of_own_).data()};
-    for (Halo::Message const& m : messages_) sent.to[sent.messages++] = inboxes.box_of<float>(m.rank);
+    for (Halo::Message const& m : messages_)
+        sent.to[sent.messages++] = inboxes.box_of<float>(m.rank);
     send(own(), sent, stream);
 }
 
-void PairShare::take_positions(float* position, PeerInboxes const& inboxes, cudaStream_t stream) const {
+void PairShare::take_positions(float* position, GhostInboxes const& inboxes,
+                               cudaStream_t stream) const {
     take(sent(), {position, (*place_of_others_).data(), inboxes.arrived<float>()}, stream);
 }
 
@@ -113,27 +127,40 @@ void PairShare::exchange_by_host(DeviceParticles const& particles, cudaStream_t 
 }
 
 template <class Number>
-void PairShare::add_arrived(Number* arrived, DeviceParticles const& particles, cudaStream_t stream) const {
-    add<Number>(own(), {forces_on(place_of_own_, particles), arrived, own(), static_cast<int>(messages_.size())}, stream);
+void PairShare::add_arrived(Number* arrived, DeviceParticles const& particles,
+                            cudaStream_t stream) const {
+    add<Number>(
+        own(),
+        {forces_on(place_of_own_, particles), arrived, own(), static_cast<int>(messages_.size())},
+        stream);
 }
 
 void PairShare::carry_by_host(cudaStream_t stream) {
-    auto const bytes = [](std::int64_t beads) { return static_cast<std::size_t>(beads) * 3 * sizeof(std::int64_t); };
-    if (sent() > 0) check(cudaMemcpyAsync(out_->data(), sent_.data(), bytes(sent()), cudaMemcpyDeviceToHost, stream), "send forces");
+    auto const bytes = [](std::int64_t beads) {
+        return static_cast<std::size_t>(beads) * 3 * sizeof(std::int64_t);
+    };
+    if (sent() > 0)
+        check(cudaMemcpyAsync(out_->data(), sent_.data(), bytes(sent()), cudaMemcpyDeviceToHost,
+                              stream),
+              "send forces");
     check(cudaStreamSynchronize(stream), "send forces");
     std::vector<Outgoing> out;
     std::vector<Incoming> in;
     std::int64_t first_sent = 0, first_received = 0;
     for (Halo::Message const& m : messages_) {
-        out.push_back({m.rank, std::as_bytes(std::span(out_->data() + 3 * first_sent, static_cast<std::size_t>(3 * m.sent)))});
+        out.push_back({m.rank, std::as_bytes(std::span(out_->data() + 3 * first_sent,
+                                                       static_cast<std::size_t>(3 * m.sent)))});
         in.push_back(
-            {m.rank, std::as_writable_bytes(std::span(in_->data() + 3 * first_received, static_cast<std::size_t>(3 * m.received)))});
+            {m.rank, std::as_writable_bytes(std::span(in_->data() + 3 * first_received,
+                                                      static_cast<std::size_t>(3 * m.received)))});
         first_sent += m.sent;
         first_received += m.received;
     }
     halo_.communicator().exchange_all(out, in);
     if (received() > 0)
-        check(cudaMemcpyAsync(arrived_.data(), in_->data(), bytes(received()), cudaMemcpyHostToDevice, stream), "take forces");
+        check(cudaMemcpyAsync(arrived_.data(), in_->data(), bytes(received()),
+                              cudaMemcpyHostToDevice, stream),
+              "take forces");
 }
 
 }  // namespace catena::cuda

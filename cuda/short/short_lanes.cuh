@@ -1,10 +1,11 @@
-// A short chain whose handles carry one direction: a lane joins its part's bodies, then lanes join what they hold.
+// A short chain whose handles carry one direction: a lane joins its part's bodies, then lanes join
+// what they hold.
 #pragma once
 
 #include <type_traits>
 
-#include "cuda/sweeps/joined_lanes.cuh"
 #include "cuda/short/short_thread.cuh"
+#include "cuda/sweeps/joined_lanes.cuh"
 
 namespace catena::cuda::kernels {
 
@@ -18,11 +19,15 @@ class ShortLanes {
 
   public:
     static constexpr int most_threads = 2 * most_joining_warps * lanes_of_warp;
-    /// Warps for each that joins, itself included: few enough that all threads have as many registers as they may.
-    static constexpr int warps_for_each(int joining) { return joining <= 2 ? dca::part_length : dca::part_length / 2; }
+    /// Warps for each that joins, itself included: few enough that all threads have as many
+    /// registers as they may.
+    static constexpr int warps_for_each(int joining) {
+        return joining <= 2 ? dca::part_length : dca::part_length / 2;
+    }
     /// Numbers of a block of so many warps that join, and of a launch of so many.
     static constexpr std::size_t numbers(int joining, int warps) {
-        return static_cast<std::size_t>(Lanes::of_block(warps)) + static_cast<std::size_t>(joining) * of_warp;
+        return static_cast<std::size_t>(Lanes::of_block(warps)) +
+               static_cast<std::size_t>(joining) * of_warp;
     }
     __device__ ShortLanes(OneChain const& chain, Sweep const& sweep, double* memory)
         : sweep_(sweep),
@@ -46,9 +51,9 @@ class ShortLanes {
                 if (i >= count_) memory.put(i, Segment::zero());
         }
         each_body([&](int round, int i, std::int64_t k) {
-            typename Sweep::Body const body = sweep_.bodies.body_at(k, QuickInverseLength{});
+            typename Sweep::Body const body = sweep_.bodies.body_at(k, BranchlessInverseLength{});
             if constexpr (bodies_stay) own[round] = body;
-            memory.put(i, sweep_.bodies.segment(body, Factors{}));
+            memory.put(i, sweep_.bodies.segment(body, Factorizer{}));
         });
         __syncthreads();
         wait_for_cluster();
@@ -57,9 +62,9 @@ class ShortLanes {
         each_body([&](int round, int i, std::int64_t k) {
             Ends const ends = memory.template get<Ends>(i);
             if constexpr (bodies_stay)
-                sweep_.accelerate(k, own[round], ends.first, ends.next, Factors{});
+                sweep_.accelerate(k, own[round], ends.first, ends.next, Factorizer{});
             else
-                sweep_.accelerate(k, sweep_.bodies.body_at(k, QuickInverseLength{}), ends.first, ends.next, Factors{});
+                sweep_.accelerate(k, sweep_.bodies.body_at(k, BranchlessInverseLength{}), ends.first, ends.next, Factorizer{});
         });
     }
 
@@ -68,7 +73,7 @@ class ShortLanes {
     static constexpr bool bodies_stay = !Sweep::one_by_one;
     static constexpr int most_bodies = dca::part_length / warps_for_each(most_joining_warps);
     using Passed = typename Sweep::Passed;
-    using Factors = QuickFactors<true>;
+    using Factorizer = BranchlessFactorizer<true>;
     using Passage = typename Sweep::Passage;
     /// Of a lane's bodies, in turn in the same place.
     class InMemory {
@@ -122,7 +127,7 @@ class ShortLanes {
         Kept kept(own_ + Lanes::of_warp + is_.lane);
         auto const restricted = [&](int i) { return restricted_[i]; };
         bool sure = true;
-        Segment segment = sweep_.join_bodies_at_once(count_, restricted, kept, SureFactors{sure});
+        Segment segment = sweep_.join_bodies_at_once(count_, restricted, kept, UncheckedFactorizer{sure});
         if (!sure) segment = sweep_.join_bodies(is_.first, count_, restricted, kept);
         lanes_.turn(segment, restricted_[0], [&](Ends const& ends) {
             sweep_.forces(count_, kept, ends.first, ends.next,

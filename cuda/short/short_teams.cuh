@@ -1,11 +1,12 @@
-// A short chain whose handles carry several directions: four or eight lanes join two segments in shared memory (merge_teams.cuh). Every
-// block is given the segments of all warps, and one of its warps joins those as well, so that nobody waits twice.
+// A short chain whose handles carry several directions: four or eight lanes join two segments in
+// shared memory (merge_teams.cuh). Every block is given the segments of all warps, and one of its
+// warps joins those as well, so that nobody waits twice.
 #pragma once
 
 #include <type_traits>
 
-#include "cuda/sweeps/merge_teams.cuh"
 #include "cuda/short/short_thread.cuh"
+#include "cuda/sweeps/merge_teams.cuh"
 
 namespace catena::cuda::kernels {
 
@@ -20,7 +21,8 @@ class ShortTeams {
     static constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
     static constexpr int teams_of_warp = lanes_of_warp / Team::lanes;
     /// Places of what a lane joins: its i-th body's, and after all bodies' what it holds.
-    static constexpr int of_parts = dca::part_length * lanes_of_warp, places = of_parts + lanes_of_warp;
+    static constexpr int of_parts = dca::part_length * lanes_of_warp,
+                         places = of_parts + lanes_of_warp;
     static constexpr int idle = 0;  // one that nobody writes while warps join
     struct Ends {
         State first, next;
@@ -28,11 +30,15 @@ class ShortTeams {
 
   public:
     /// Warps for each that joins, itself included: every other thread has a body, or two.
-    static constexpr int warps_for_each(int joining) { return 1 + (joining <= 2 ? dca::part_length : dca::part_length / 2); }
-    static constexpr int most_threads = most_joining_warps * (1 + dca::part_length / 2) * lanes_of_warp;
+    static constexpr int warps_for_each(int joining) {
+        return 1 + (joining <= 2 ? dca::part_length : dca::part_length / 2);
+    }
+    static constexpr int most_threads =
+        most_joining_warps * (1 + dca::part_length / 2) * lanes_of_warp;
     /// Numbers of a block of so many warps that join, and of a launch of so many.
     static constexpr std::size_t numbers(int joining, int warps) {
-        return 2 + Records::size(warps) + of_top_words + static_cast<std::size_t>(joining) * of_group;
+        return 2 + Records::size(warps) + of_top_words +
+               static_cast<std::size_t>(joining) * of_group;
     }
     __device__ ShortTeams(OneChain const& chain, Sweep const& sweep, double* memory)
         : chain_(chain),
@@ -42,20 +48,24 @@ class ShortTeams {
           inbox_(reinterpret_cast<std::uint64_t*>(memory)),
           top_{memory + 2},
           at_top_(reinterpret_cast<int*>(top_.origin + Records::size(chain.warps))),
-          records_{top_.origin + Records::size(chain.warps) + of_top_words + static_cast<std::size_t>(is_.group) * of_group},
+          records_{top_.origin + Records::size(chain.warps) + of_top_words +
+                   static_cast<std::size_t>(is_.group) * of_group},
           gains_{records_.origin + Records::size(places)},
           ends_{gains_.origin + Gains::size(of_parts)},
-          restricted_(reinterpret_cast<int*>(ends_.origin + PackedRecords<Ends>::size(lanes_of_warp))) {}
+          restricted_(
+              reinterpret_cast<int*>(ends_.origin + PackedRecords<Ends>::size(lanes_of_warp))) {}
 
     /// While the launch before may still go on: nothing is read here that a launch writes.
     __device__ void open() {
-        if (threadIdx.x == 0 && !is_alone(chain_)) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        if (threadIdx.x == 0 && !is_alone(chain_))
+            inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
         arrive_at_cluster();
         if (is_.beside >= 0)
             for (int i = is_.beside; has_body(i); i += is_.warps_beside)
                 restricted_[place_of(is_.lane, i)] = sweep_.s.restricted[is_.first + i];
-        for (int warp = static_cast<int>(threadIdx.x); warp < chain_.warps; warp += static_cast<int>(blockDim.x))
+        for (int warp = static_cast<int>(threadIdx.x); warp < chain_.warps;
+             warp += static_cast<int>(blockDim.x))
             at_top_[warp] = sweep_.s.restricted[warp * bodies_of_warp];
     }
     __device__ void turn() const {
@@ -64,8 +74,8 @@ class ShortTeams {
         typename Sweep::Body body;
         Turning turning;
         auto const read = [&](int i) {
-            body = sweep_.bodies.body_at(is_.first + i, QuickInverseLength{});
-            turning = sweep_.bodies.turning(body, Factors{});
+            body = sweep_.bodies.body_at(is_.first + i, BranchlessInverseLength{});
+            turning = sweep_.bodies.turning(body, Factorizer{});
         };
         if (!joins) {
             CATENA_NO_UNROLL
@@ -101,28 +111,33 @@ class ShortTeams {
 
   private:
     using Passed = typename Sweep::Passed;
-    using Factors = QuickFactors<false>;
+    using Factorizer = BranchlessFactorizer<false>;
     using Directions = Vector<double, Sweep::K>;
     using Square = Matrix<double, Sweep::K, Sweep::K>;
     using Biases = dca::SegmentBias<double, Sweep::K>;
     using Turning = typename BodiesOf<Sweep>::Turning;
     using Gains = PackedRecords<Square>;
     /// Whole numbers, two a double.
-    static constexpr std::size_t of_top_words = most_warps_of_chain / 2, of_bodies_words = of_parts / 2;
-    static constexpr std::size_t of_group =
-        Records::size(places) + Gains::size(of_parts) + PackedRecords<Ends>::size(lanes_of_warp) + of_bodies_words;
+    static constexpr std::size_t of_top_words = most_warps_of_chain / 2,
+                                 of_bodies_words = of_parts / 2;
+    static constexpr std::size_t of_group = Records::size(places) + Gains::size(of_parts) +
+                                            PackedRecords<Ends>::size(lanes_of_warp) +
+                                            of_bodies_words;
     static constexpr int steps_of_parts = dca::parts_of_run - 1,
-                         steps_of_warp = steps_of_parts + levels_above(lanes_of_warp / dca::parts_of_run);
+                         steps_of_warp =
+                             steps_of_parts + levels_above(lanes_of_warp / dca::parts_of_run);
     __device__ static int place_of(int lane, int i) { return i * lanes_of_warp + lane; }
     __device__ static int place_of_part(int lane) { return of_parts + lane; }
     __device__ bool has_body(int i) const { return is_.is_here(i, is_.first + i); }
 
-    /// What a lane's bodies keep: a segment, of those that have been joined what they pass on, and the forces in the end.
+    /// What a lane's bodies keep: a segment, of those that have been joined what they pass on, and
+    /// the forces in the end.
     struct Kept {
         Records records;
         Gains gains;
         int lane;
-        static constexpr int at_bias = Team::at_inboard;  // a joint's own inboard matrix is not wanted on the way down
+        static constexpr int at_bias =
+            Team::at_inboard;  // a joint's own inboard matrix is not wanted on the way down
         static_assert(numbers_of<Biases> <= numbers_of<Square>);
 
         template <class T>
@@ -138,15 +153,22 @@ class ShortTeams {
                     return {{}, own.matrix.z12, own.bias};
                 }
                 return {Team::template record<Symmetric<double, Sweep::K>>(record),
-                        Team::template record<Square>(record + Team::at_outboard), Team::template record<Biases>(record + at_bias)};
+                        Team::template record<Square>(record + Team::at_outboard),
+                        Team::template record<Biases>(record + at_bias)};
             } else {
                 return Team::template record<T>(record);
             }
         }
-        __device__ void put_gain(int i, Square const& gain) const { gains.store(place_of(lane, i), gain); }
+        __device__ void put_gain(int i, Square const& gain) const {
+            gains.store(place_of(lane, i), gain);
+        }
         __device__ Square gain(int i) const { return gains.load(place_of(lane, i)); }
-        __device__ void put_offset(int i, Directions const& offset) const { write(of(i) + at_bias, offset); }
-        __device__ Directions offset(int i) const { return Team::template record<Directions>(of(i) + at_bias); }
+        __device__ void put_offset(int i, Directions const& offset) const {
+            write(of(i) + at_bias, offset);
+        }
+        __device__ Directions offset(int i) const {
+            return Team::template record<Directions>(of(i) + at_bias);
+        }
 
       private:
         __device__ double* of(int i) const { return records.record(place_of(lane, i)); }
@@ -241,7 +263,7 @@ class ShortTeams {
     /// And down: from the first joint to the warp, by its teams to runs and their parts, by every lane to its bodies.
     __device__ void go_down() const {
         Team const team;
-        Ends ends{sweep_.first_force({0, at_top_[0]}, top_.load(0), Factors{}), State::zero()};
+        Ends ends{sweep_.first_force({0, at_top_[0]}, top_.load(0), Factorizer{}), State::zero()};
         CATENA_NO_UNROLL
         for (int level = levels_of_top() - 1; level >= 0; --level) go_down(team, ends, top_, 0, is_.warp, 1 << level, chain_.warps);
         int const lanes = (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;  // that have bodies

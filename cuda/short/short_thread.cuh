@@ -6,11 +6,12 @@
 
 namespace catena::cuda::kernels {
 
-/// A lane of a warp that joins what `lanes_of_warp` parts of runs hold, or of one beside it: what needs no neighbour is done for all bodies
-/// at once.
+/// A lane of a warp that joins what `lanes_of_warp` parts of runs hold, or of one beside it: what
+/// needs no neighbour is done for all bodies at once.
 struct ShortThread {
-    int bodies, lane, joining, warps_beside, group, beside, warp;  // `joining` warps of a block join; this one, the block's `group`-th
-    std::int64_t first;                                            // body of what the lane joins
+    int bodies, lane, joining, warps_beside, group, beside,
+        warp;            // `joining` warps of a block join; this one, the block's `group`-th
+    std::int64_t first;  // body of what the lane joins
 
     /// `apart`: none of the warps that join has bodies, `beside` is -1.
     __device__ explicit ShortThread(OneChain const& chain, bool apart = false)
@@ -29,7 +30,9 @@ struct ShortThread {
         return left < 0 ? 0 : left < dca::part_length ? left : dca::part_length;
     }
     __device__ int first_of(int l) const { return (warp * lanes_of_warp + l) * dca::part_length; }
-    __device__ bool is_here(int i, std::int64_t k) const { return i < dca::part_length && k < bodies; }
+    __device__ bool is_here(int i, std::int64_t k) const {
+        return i < dca::part_length && k < bodies;
+    }
 };
 
 }  // namespace catena::cuda::kernels

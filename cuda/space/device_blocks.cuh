@@ -1,4 +1,5 @@
-// Whole chains that a block of threads carries through a step in registers, in one launch: the Team of dca/team_tree.hpp on a GPU.
+// Whole chains that a block of threads carries through a step in registers, in one launch: the Team
+// of dca/team_tree.hpp on a GPU.
 #pragma once
 
 #include <algorithm>
@@ -26,9 +27,11 @@ class DeviceTeam {
   public:
     static constexpr std::size_t shared_bytes(int of_threads) {
         auto const slots = static_cast<std::size_t>(of_threads / dca::parts_of_run);
-        return sizeof(Largest) * slots + sizeof(double) * (K * slots + ends * static_cast<std::size_t>(of_threads));
+        return sizeof(Largest) * slots +
+               sizeof(double) * (K * slots + ends * static_cast<std::size_t>(of_threads));
     }
-    __device__ explicit DeviceTeam(DeviceTeams const& teams) : teams_(teams), levels_(teams.levels[blockIdx.x]) {}
+    __device__ explicit DeviceTeam(DeviceTeams const& teams)
+        : teams_(teams), levels_(teams.levels[blockIdx.x]) {}
     __device__ dca::PartPlace place() const { return teams_.place[thread()]; }
     __device__ int part() const { return static_cast<int>(threadIdx.x) % dca::parts_of_run; }
     __device__ int slot() const { return static_cast<int>(threadIdx.x) / dca::parts_of_run; }
@@ -37,11 +40,13 @@ class DeviceTeam {
 
     template <class T>
     __device__ T from_inboard(T const& value) const {
-        return exchanged(value, [](double v) { return __shfl_up_sync(0xffffffffu, v, 1, dca::parts_of_run); });
+        return exchanged(
+            value, [](double v) { return __shfl_up_sync(0xffffffffu, v, 1, dca::parts_of_run); });
     }
     template <class T>
     __device__ T from_outboard(T const& value) const {
-        return exchanged(value, [](double v) { return __shfl_down_sync(0xffffffffu, v, 1, dca::parts_of_run); });
+        return exchanged(
+            value, [](double v) { return __shfl_down_sync(0xffffffffu, v, 1, dca::parts_of_run); });
     }
     template <class Segment>
     __device__ void put(int slot, Segment const& segment) const {
@@ -51,13 +56,19 @@ class DeviceTeam {
     __device__ Segment get(int slot) const {
         return load<Segment>(shared_numbers, slots(), slot);
     }
-    __device__ void put_force(int slot, Vector<double, K> const& force) const { store(forces(), slots(), slot, force); }
+    __device__ void put_force(int slot, Vector<double, K> const& force) const {
+        store(forces(), slots(), slot, force);
+    }
     template <int>
     __device__ Vector<double, K> force(int slot) const {
         return load<Vector<double, K>>(forces(), slots(), slot);
     }
-    __device__ Vec3 from_before(Vec3 const& value) const { return passed(last_places(), value, threadIdx.x == 0 ? 0 : -1); }
-    __device__ Vec3 from_after(Vec3 const& value) const { return passed(first_places(), value, threadIdx.x + 1 == blockDim.x ? 0 : 1); }
+    __device__ Vec3 from_before(Vec3 const& value) const {
+        return passed(last_places(), value, threadIdx.x == 0 ? 0 : -1);
+    }
+    __device__ Vec3 from_after(Vec3 const& value) const {
+        return passed(first_places(), value, threadIdx.x + 1 == blockDim.x ? 0 : 1);
+    }
 
   private:
     template <class T>

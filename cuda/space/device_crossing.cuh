@@ -47,8 +47,8 @@ class DeviceCrossing {
     }
     /// The device's places for what the host wants.
     AccelerationsView wanted(AccelerationsView const& host) const {
-        return {place(host.alpha, alpha_), place(host.acceleration, acceleration_), place(host.joint_force, joint_force_),
-                place(host.tip_force, tip_force_)};
+        return {place(host.alpha, alpha_), place(host.acceleration, acceleration_),
+                place(host.joint_force, joint_force_), place(host.tip_force, tip_force_)};
     }
     /// What was computed there, into the host's views; done when it returns.
     void fetch(AccelerationsView const& host) const {
@@ -60,12 +60,15 @@ class DeviceCrossing {
     }
 
     void download(Buffer<double> const& from, std::vector<double>& to) const {
-        check(cudaMemcpyAsync(to.data(), from.data(), to.size() * sizeof(double), cudaMemcpyDeviceToHost, space_.stream()),
+        check(cudaMemcpyAsync(to.data(), from.data(), to.size() * sizeof(double),
+                              cudaMemcpyDeviceToHost, space_.stream()),
               "give back items");
         space_.wait();
     }
     void upload(std::vector<double> const& from, Buffer<double> const& to) const {
-        check(cudaMemcpyAsync(to.data(), from.data(), from.size() * sizeof(double), cudaMemcpyHostToDevice, space_.stream()), "take items");
+        check(cudaMemcpyAsync(to.data(), from.data(), from.size() * sizeof(double),
+                              cudaMemcpyHostToDevice, space_.stream()),
+              "take items");
     }
 
   private:

@@ -1,5 +1,5 @@
-// Fields on a GPU: BasicField and DirectionsField of the host, in the order of gpu_order. The host's order is made and undone on
-// the device.
+// Fields on a GPU: BasicField and DirectionsField of the host, in the order of gpu_order. The
+// host's order is made and undone on the device.
 #pragma once
 
 #include "cuda/device/owners.hpp"
@@ -10,15 +10,20 @@ namespace catena::cuda {
 namespace kernels {
 
 /// Bodies begin to end - 1; `host` and `device`: where body 0 of the first column stands.
-static __global__ void to_gpu_order(double const* host, std::int64_t host_pitch, double* device, std::int64_t pitch, std::int64_t begin,
-                                    std::int64_t end) {
+static __global__ void to_gpu_order(double const* host, std::int64_t host_pitch, double* device,
+                                    std::int64_t pitch, std::int64_t begin, std::int64_t end) {
     std::int64_t const k = begin + static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-    if (k < end) device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes] = host[blockIdx.y * host_pitch + k];
+    if (k < end)
+        device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes] =
+            host[blockIdx.y * host_pitch + k];
 }
-static __global__ void to_host_order(double const* device, std::int64_t pitch, double* host, std::int64_t host_pitch, std::int64_t begin,
+static __global__ void to_host_order(double const* device, std::int64_t pitch, double* host,
+                                     std::int64_t host_pitch, std::int64_t begin,
                                      std::int64_t end) {
     std::int64_t const k = begin + static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-    if (k < end) host[blockIdx.y * host_pitch + k] = device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes];
+    if (k < end)
+        host[blockIdx.y * host_pitch + k] =
+            device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes];
 }
 
 }  // namespace kernels
@@ -28,7 +33,8 @@ class Scratch {
   public:
     Scratch(std::int64_t numbers, cudaStream_t stream) : stream_(stream) {
         void* memory = nullptr;
-        check(cudaMallocAsync(&memory, static_cast<std::size_t>(numbers) * sizeof(double), stream), "find memory");
+        check(cudaMallocAsync(&memory, static_cast<std::size_t>(numbers) * sizeof(double), stream),
+              "find memory");
         data_ = static_cast<double*>(memory);
     }
     ~Scratch() { cudaFreeAsync(data_, stream_); }
@@ -49,8 +55,11 @@ class DeviceColumns {
         : first_(first_body),
           count_(count),
           columns_(columns),
-          data_(static_cast<std::size_t>(count > 0 ? pitch() + gpu_order::padded(first_body + count) * columns : 0)) {}
-    double* origin() const { return data_.data() ? data_.data() + pitch() : nullptr; }  // the halo's row comes before
+          data_(static_cast<std::size_t>(
+              count > 0 ? pitch() + gpu_order::padded(first_body + count) * columns : 0)) {}
+    double* origin() const {
+        return data_.data() ? data_.data() + pitch() : nullptr;
+    }  // the halo's row comes before
     std::int64_t pitch() const { return gpu_order::pitch(columns_); }
     int columns() const { return columns_; }
 
@@ -58,21 +67,28 @@ class DeviceColumns {
     void upload(double const* host, std::int64_t host_pitch, cudaStream_t stream) const {
         if (!host || !origin()) return;
         Scratch const plain(count_ * columns_, stream);
-        copy_columns(plain.data(), count_, host + first_, host_pitch, count_, columns_, cudaMemcpyHostToDevice, stream);
-        kernels::to_gpu_order<<<grid(), threads, 0, stream>>>(plain.data() - first_, count_, origin(), pitch(), first_, first_ + count_);
+        copy_columns(plain.data(), count_, host + first_, host_pitch, count_, columns_,
+                     cudaMemcpyHostToDevice, stream);
+        kernels::to_gpu_order<<<grid(), threads, 0, stream>>>(
+            plain.data() - first_, count_, origin(), pitch(), first_, first_ + count_);
         check(cudaGetLastError(), "start a kernel");
     }
     void download(double* host, std::int64_t host_pitch, cudaStream_t stream) const {
         if (!host || !origin()) return;
         Scratch const plain(count_ * columns_, stream);
-        kernels::to_host_order<<<grid(), threads, 0, stream>>>(origin(), pitch(), plain.data() - first_, count_, first_, first_ + count_);
+        kernels::to_host_order<<<grid(), threads, 0, stream>>>(
+            origin(), pitch(), plain.data() - first_, count_, first_, first_ + count_);
         check(cudaGetLastError(), "start a kernel");
-        copy_columns(host + first_, host_pitch, plain.data(), count_, count_, columns_, cudaMemcpyDeviceToHost, stream);
+        copy_columns(host + first_, host_pitch, plain.data(), count_, count_, columns_,
+                     cudaMemcpyDeviceToHost, stream);
     }
 
   private:
     static constexpr int threads = 256;
-    dim3 grid() const { return {static_cast<unsigned>((count_ + threads - 1) / threads), static_cast<unsigned>(columns_)}; }
+    dim3 grid() const {
+        return {static_cast<unsigned>((count_ + threads - 1) / threads),
+                static_cast<unsigned>(columns_)};
+    }
     std::int64_t first_ = 0, count_ = 0;
     int columns_ = 0;
     Buffer<double> data_;
@@ -83,12 +99,19 @@ template <int D>
 class DeviceField {
   public:
     DeviceField() = default;
-    explicit DeviceField(std::int64_t size) : size_(size), columns_(-1, size > 0 ? size + 2 : 0, D) {}
-    View<D> view() const { return columns_.origin() ? View<D>{columns_.origin(), columns_.pitch(), size_} : View<D>{}; }
+    explicit DeviceField(std::int64_t size)
+        : size_(size), columns_(-1, size > 0 ? size + 2 : 0, D) {}
+    View<D> view() const {
+        return columns_.origin() ? View<D>{columns_.origin(), columns_.pitch(), size_} : View<D>{};
+    }
     std::int64_t size() const { return size_; }
     /// With its halo; a view without origin leaves what is there.
-    void upload(ConstView<D> host, cudaStream_t stream) const { columns_.upload(host.origin, host.pitch, stream); }
-    void download(View<D> host, cudaStream_t stream) const { columns_.download(host.origin, host.pitch, stream); }
+    void upload(ConstView<D> host, cudaStream_t stream) const {
+        columns_.upload(host.origin, host.pitch, stream);
+    }
+    void download(View<D> host, cudaStream_t stream) const {
+        columns_.download(host.origin, host.pitch, stream);
+    }
 
   private:
     std::int64_t size_ = 0;
@@ -98,12 +121,17 @@ class DeviceField {
 class DeviceDirections {
   public:
     DeviceDirections() = default;
-    DeviceDirections(std::int64_t size, int directions) : size_(size), columns_(0, size, directions) {}
+    DeviceDirections(std::int64_t size, int directions)
+        : size_(size), columns_(0, size, directions) {}
     DirectionsView view() const { return {columns_.origin(), columns_.pitch()}; }
     std::int64_t size() const { return size_; }
     int directions() const { return columns_.columns(); }
-    void upload(ConstDirectionsView host, cudaStream_t stream) const { columns_.upload(host.origin, host.pitch, stream); }
-    void download(DirectionsView host, cudaStream_t stream) const { columns_.download(host.origin, host.pitch, stream); }
+    void upload(ConstDirectionsView host, cudaStream_t stream) const {
+        columns_.upload(host.origin, host.pitch, stream);
+    }
+    void download(DirectionsView host, cudaStream_t stream) const {
+        columns_.download(host.origin, host.pitch, stream);
+    }
 
   private:
     std::int64_t size_ = 0;

@@ -16,7 +16,8 @@ struct MakeLevels {
     dca::LevelWork const& work;
     template <class Leaf>
     std::unique_ptr<dca::LevelPart> operator()(dca::Of<Leaf>) const {
-        return std::make_unique<dca::SpaceLevels<Leaf, DeviceSpace, DeviceCrossing>>(group, work, DeviceSpace(this_thread()));
+        return std::make_unique<dca::SpaceLevels<Leaf, DeviceSpace, DeviceCrossing>>(
+            group, work, DeviceSpace(this_thread()));
     }
 };
 

@@ -21,13 +21,15 @@ class FixedField {
     DeviceField<D> field_;
 };
 
-/// Of bodies that are all alike one tile, and a pitch of 0: its first row is every row of bodies. The halo then is as any body, not as on
-/// the host.
+/// Of bodies that are all alike one tile, and a pitch of 0: its first row is every row of bodies.
+/// The halo then is as any body, not as on the host.
 template <int D>
 class AlikeField {
   public:
     explicit AlikeField(Field<D> const& host)
-        : size_(host.size()), one_tile_(one_tile_serves(host)), field_(one_tile_ ? gpu_order::tile : size_) {
+        : size_(host.size()),
+          one_tile_(one_tile_serves(host)),
+          field_(one_tile_ ? gpu_order::tile : size_) {
         field_.upload(host.view(), nullptr);
         check(cudaStreamSynchronize(nullptr), "take the model");
     }

@@ -13,7 +13,8 @@ template <class T, dca::Order order>
 class DeviceRecords {
   public:
     explicit DeviceRecords(std::int64_t count)
-        : numbers_(static_cast<std::size_t>(dca::padded_on_gpu(order, count) * dca::RecordsView<T, order>::numbers)) {}
+        : numbers_(static_cast<std::size_t>(dca::padded_on_gpu(order, count) *
+                                            dca::RecordsView<T, order>::numbers)) {}
     dca::RecordsView<T, order> view() { return {numbers_.data()}; }
 
   private:

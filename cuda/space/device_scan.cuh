@@ -1,4 +1,5 @@
-// Scans along chains on a GPU: a launch a stage upwards, a launch a stage downwards, one for both at the top.
+// Scans along chains on a GPU: a launch a stage upwards, a launch a stage downwards, one for both
+// at the top.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +16,12 @@ namespace catena::cuda {
 /// HostSpace::ScanTree says what it promises.
 class DeviceScan {
   public:
-    DeviceScan(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-               std::int64_t slots)
+    DeviceScan(std::vector<dca::Run> const& runs,
+               std::vector<std::vector<dca::Merge>> const& levels,
+               std::vector<dca::Root> const& roots, std::int64_t slots)
         : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
-        for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
+        for (dca::ScanStage const& stage :
+             dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
             stages_.emplace_back(stage, runs_);
     }
     template <class Scan>
@@ -35,19 +38,22 @@ class DeviceScan {
     }
     /// As ScanWalk::at_once.
     template <class Scan, class Action>
-    bool at_once(Scan const& scan, std::int64_t count, Action const& action, cudaStream_t stream) const {
+    bool at_once(Scan const& scan, std::int64_t count, Action const& action,
+                 cudaStream_t stream) const {
         return walk(stream).at_once(scan, count, action);
     }
     /// Whether at_once() would, or the other turn_shared(), and goes_by_steps.
     bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
     /// As ScanWalk::turn_shared.
     template <class Scan, class Numbers>
-    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, cudaStream_t stream) const {
+    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                     DeviceScan const& top, cudaStream_t stream) const {
         return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
     }
     template <class Scan, class Numbers, class Action>
-    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, std::int64_t count,
-                     Action const& action, cudaStream_t stream) const {
+    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                     DeviceScan const& top, std::int64_t count, Action const& action,
+                     cudaStream_t stream) const {
         return walk(stream).turn_shared(scan, exchange, Launches{top, stream}, count, action);
     }
 
@@ -98,32 +104,41 @@ class DeviceScan {
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
             kernels::DeviceScanStage const& stage = tree.stages_.front().view;
             unsigned const blocks = kernels::blocks_of_turn<Scan>(stage, count);
-            std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(stage, blocks);
+            std::size_t const shared =
+                sizeof(double) * kernels::numbers_of_turn<Scan>(stage, blocks);
             if (!tree.has_cluster_of(shared)) return false;
             auto* const kernel = kernels::turn_scan_then<Scan, Action>;
             allow_shared(kernel, shared);
-            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, stage, scan, count, action);
+            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, stage,
+                         scan, count, action);
             return true;
         }
         template <class Scan, class Numbers>
-        void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, Launches const& top) const {
-            kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
+        void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                         Launches const& top) const {
+            kernels::DeviceScanStage const &own = tree.stages_.back().view,
+                                           &above = top.tree.stages_.back().view;
             std::size_t const all = bytes<Scan>(own) + bytes<Scan>(above);
             auto* const kernel = kernels::turn_shared_scan<Scan, kernels::ExchangeByBlock<Numbers>>;
             allow_shared(kernel, all);
-            cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above, exchange.next(), scan);
+            cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above,
+                         exchange.next(), scan);
             ++scans_shared;
         }
         template <class Scan, class Numbers, class Action>
-        bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, Launches const& top, std::int64_t count,
-                              Action const& action) const {
-            kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
+        bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                              Launches const& top, std::int64_t count, Action const& action) const {
+            kernels::DeviceScanStage const &own = tree.stages_.back().view,
+                                           &above = top.tree.stages_.back().view;
             unsigned const blocks = kernels::blocks_of_turn<Scan>(own, count);
-            std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(own, blocks) + bytes<Scan>(above);
+            std::size_t const shared =
+                sizeof(double) * kernels::numbers_of_turn<Scan>(own, blocks) + bytes<Scan>(above);
             if (!tree.has_cluster_of(shared)) return false;
-            auto* const kernel = kernels::turn_shared_scan_then<Scan, kernels::ExchangeByBlock<Numbers>, Action>;
+            auto* const kernel =
+                kernels::turn_shared_scan_then<Scan, kernels::ExchangeByBlock<Numbers>, Action>;
             allow_shared(kernel, shared);
-            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, own, above, exchange.next(), scan, count, action);
+            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, own,
+                         above, exchange.next(), scan, count, action);
             ++scans_shared;
             ++shared_scans_by_bodies;
             return true;
@@ -132,18 +147,25 @@ class DeviceScan {
       private:
         template <class Scan>
         static std::size_t bytes(kernels::DeviceScanStage const& stage) {
-            return sizeof(double) * static_cast<std::size_t>(kernels::BlockOfScan<Scan>::size(stage));
+            return sizeof(double) *
+                   static_cast<std::size_t>(kernels::BlockOfScan<Scan>::size(stage));
         }
         template <class Scan>
-        void launch(void (*kernel)(kernels::DeviceScanStage, Scan), std::size_t i, Scan const& scan) const {
+        void launch(void (*kernel)(kernels::DeviceScanStage, Scan), std::size_t i,
+                    Scan const& scan) const {
             kernels::DeviceScanStage const& stage = tree.stages_[i].view;
-            cuda::launch({stage.blocks, kernels::threads_of_scan(stage), bytes<Scan>(stage)}, stream, kernel, stage, scan);
+            cuda::launch({stage.blocks, kernels::threads_of_scan(stage), bytes<Scan>(stage)},
+                         stream, kernel, stage, scan);
         }
     };
-    ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
+    ScanWalk<Launches> walk(cudaStream_t stream) const {
+        return ScanWalk<Launches>({*this, stream});
+    }
 
     /// Whose blocks have so many bytes of shared memory.
-    bool has_cluster_of(std::size_t shared_bytes) const { return has_clusters_ && shared_bytes <= most_shared_bytes_; }
+    bool has_cluster_of(std::size_t shared_bytes) const {
+        return has_clusters_ && shared_bytes <= most_shared_bytes_;
+    }
 
     bool has_clusters_ = knows_clusters();
     std::size_t most_shared_bytes_ = most_shared_bytes();

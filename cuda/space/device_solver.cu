@@ -2,8 +2,10 @@
 
 namespace catena::cuda {
 
-std::unique_ptr<ChainSolver> make_device_solver(ChainGroup const& group, DeviceSpace const& space, Communicator const& communicator) {
-    if (group.handles == Handles::articulated) return make_articulated_solver(group, space, communicator);
+std::unique_ptr<ChainSolver> make_device_solver(ChainGroup const& group, DeviceSpace const& space,
+                                                Communicator const& communicator) {
+    if (group.handles == Handles::articulated)
+        return make_articulated_solver(group, space, communicator);
     if (group.beads) return make_bead_solver(group, space, communicator);
     if (group.axes == Axes::world) return make_absolute_solver(group, space, communicator);
     switch (group.directions) {

@@ -1,4 +1,5 @@
-// The Space of a GPU (dca/host_space.hpp says what its members promise): a kernel a loop, all on one stream.
+// The Space of a GPU (dca/host_space.hpp says what its members promise): a kernel a loop, all on
+// one stream.
 #pragma once
 
 #include <algorithm>
@@ -6,14 +7,14 @@
 #include <memory>
 #include <optional>
 
+#include "cuda/device/launch.cuh"
+#include "cuda/exchange/peer_exchange.cuh"
 #include "cuda/space/device_blocks.cuh"
 #include "cuda/space/device_model.cuh"
 #include "cuda/space/device_records.cuh"
 #include "cuda/space/device_scan.cuh"
 #include "cuda/space/device_tree.cuh"
 #include "cuda/space/kernels.cuh"
-#include "cuda/device/launch.cuh"
-#include "cuda/exchange/peer_exchange.cuh"
 #include "dca/host_space.hpp"
 #include "tree/scan_then.hpp"
 
@@ -22,14 +23,17 @@ namespace catena::cuda {
 class DeviceSpace {
   public:
     static constexpr bool answers_at_once = false;
-    /// Copies share the stream and the places for answers: one thread at a time asks largest() or get(). The executor must outlive them.
+    /// Copies share the stream and the places for answers: one thread at a time asks largest() or
+    /// get(). The executor must outlive them.
     explicit DeviceSpace(Executor const& on_host)
         : on_host_(&on_host),
           stream_(std::make_shared<Stream>()),
           answer_(std::make_shared<Buffer<unsigned long long>>(1)),
           letter_(std::make_shared<PinnedBuffer<double>>(most_of_a_body)) {}
     /// With ways to other ranks' GPUs, where there are any. Collective.
-    DeviceSpace(Executor const& on_host, Communicator const& communicator) : DeviceSpace(on_host) { peers_ = Peers(communicator); }
+    DeviceSpace(Executor const& on_host, Communicator const& communicator) : DeviceSpace(on_host) {
+        peers_ = Peers(communicator);
+    }
     Executor const& on_host() const { return *on_host_; }
     cudaStream_t stream() const { return stream_->get(); }
 
@@ -56,26 +60,32 @@ class DeviceSpace {
     static constexpr bool has_teams = has_blocks<K>;
     /// Chains that find their place in one block's registers.
     bool pays_by_blocks(ChainGroup const& group) const {
-        return !group.has_tips() && std::all_of(group.pieces.begin(), group.pieces.end(),
-                                                [](dca::Piece const& piece) { return piece.count <= DeviceBlocks::longest_chain; });
+        return !group.has_tips() &&
+               std::all_of(group.pieces.begin(), group.pieces.end(), [](dca::Piece const& piece) {
+                   return piece.count <= DeviceBlocks::longest_chain;
+               });
     }
     template <class Action>
     void each_block(Blocks const& blocks, Action const& action) const {
         if (blocks.count() == 0) return;
-        kernels::each_team<<<blocks.count(), static_cast<unsigned>(blocks.threads()),
-                             kernels::DeviceTeam<Action::K>::shared_bytes(blocks.threads()), stream()>>>(blocks.teams(), action);
+        kernels::
+            each_team<<<blocks.count(), static_cast<unsigned>(blocks.threads()),
+                        kernels::DeviceTeam<Action::K>::shared_bytes(blocks.threads()), stream()>>>(
+                blocks.teams(), action);
         started();
     }
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
         if (count == 0) return;
-        launch({blocks(gpu_order::padded(count)), kernels::threads}, stream(), kernels::for_each<Action>, count, action);
+        launch({blocks(gpu_order::padded(count)), kernels::threads}, stream(),
+               kernels::for_each<Action>, count, action);
     }
     template <class T, class Action>
     void over(Buffer<T> const& items, Action const& action) const {
         if (items.size() == 0) return;
         auto const count = static_cast<std::int64_t>(items.size());
-        launch({blocks(count), kernels::threads}, stream(), kernels::over<T, Action>, items.data(), count, action);
+        launch({blocks(count), kernels::threads}, stream(), kernels::over<T, Action>, items.data(),
+               count, action);
     }
     template <class Scan>
     void climb(ScanTree const& tree, Scan const& scan) const {
@@ -90,15 +100,19 @@ class DeviceSpace {
         tree.climb_and_descend(scan, stream());
     }
     template <class Scan, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count, Action const& action) const {
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count,
+                           Action const& action) const {
         if (tree.at_once(scan, count, action, stream())) return;
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
     template <class Scan, class T, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, Buffer<T> const& items, Action const& action) const {
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, Buffer<T> const& items,
+                           Action const& action) const {
         auto const count = static_cast<std::int64_t>(items.size());
-        if (count > 0 && tree.at_once(scan, count, kernels::OfItem<T, Action>{items.data(), action}, stream())) return;
+        if (count > 0 &&
+            tree.at_once(scan, count, kernels::OfItem<T, Action>{items.data(), action}, stream()))
+            return;
         climb_and_descend(tree, scan);
         over(items, action);
     }
@@ -114,13 +128,18 @@ class DeviceSpace {
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         tree.climb_and_descend(sweep, stream());
     }
-    static bool has_threads_for_bodies(ScanTree const& tree) { return tree.has_threads_for_bodies(); }
-    static bool has_threads_to_spare(std::int64_t items) { return items <= most_items_with_threads_to_spare; }
+    static bool has_threads_for_bodies(ScanTree const& tree) {
+        return tree.has_threads_for_bodies();
+    }
+    static bool has_threads_to_spare(std::int64_t items) {
+        return items <= most_items_with_threads_to_spare;
+    }
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {
         if (count == 0) return 0;
         set_answer(0);
-        launch({blocks(count), kernels::threads}, stream(), kernels::largest<Value>, count, answer_->data(), value);
+        launch({blocks(count), kernels::threads}, stream(), kernels::largest<Value>, count,
+               answer_->data(), value);
         unsigned long long const bits = get(answer_->data());
         double found;
         std::memcpy(&found, &bits, sizeof(found));
@@ -130,13 +149,15 @@ class DeviceSpace {
     template <class T>
     T get(T const* place) const {
         T value;
-        check(cudaMemcpyAsync(&value, place, sizeof(T), cudaMemcpyDeviceToHost, stream()), "give back a value");
+        check(cudaMemcpyAsync(&value, place, sizeof(T), cudaMemcpyDeviceToHost, stream()),
+              "give back a value");
         wait();
         return value;
     }
     template <class T>
     void put(T* place, T const& value) const {
-        check(cudaMemcpyAsync(place, &value, sizeof(T), cudaMemcpyHostToDevice, stream()), "take a value");
+        check(cudaMemcpyAsync(place, &value, sizeof(T), cudaMemcpyHostToDevice, stream()),
+              "take a value");
         wait();  // the source may go
     }
     template <int D>
@@ -157,7 +178,8 @@ class DeviceSpace {
         exchange(communicator, e, kernels::Nothing{});
     }
     template <int D, class First>
-    void exchange(Communicator const& communicator, BodyExchange<D> const& e, First const& first) const {
+    void exchange(Communicator const& communicator, BodyExchange<D> const& e,
+                  First const& first) const {
         if (!e) return;
         if (!peers_) {
             if constexpr (!std::is_same_v<First, kernels::Nothing>) for_each(1, first);
@@ -167,27 +189,37 @@ class DeviceSpace {
         exchange(peers_.to_and_from<D>(e.to, e.source), numbers_of(e), {}, first);
     }
     using Direct = PeerCall;
-    Direct connect(dca::Schedule const& schedule, int width, int beside) const { return peers_.among_all(schedule, width, beside); }
+    Direct connect(dca::Schedule const& schedule, int width, int beside) const {
+        return peers_.among_all(schedule, width, beside);
+    }
     template <class Numbers, int... D>
-    void exchange(Direct const& direct, Numbers const& numbers, BodyExchange<D> const&... beside) const {
+    void exchange(Direct const& direct, Numbers const& numbers,
+                  BodyExchange<D> const&... beside) const {
         exchange(direct, numbers, along(beside...), kernels::Nothing{});
     }
     template <class Sweep>
-    bool turn_shared(Direct const& direct, typename Sweep::ShownNumbers const& numbers, Tree const& tree, Tree const& top,
-                     Sweep const& sweep) const {
-        return turn_shared_by(kernels::ExchangeByBlock<typename Sweep::ShownNumbers>{direct, numbers, {}}, tree, top, sweep);
+    bool turn_shared(Direct const& direct, typename Sweep::ShownNumbers const& numbers,
+                     Tree const& tree, Tree const& top, Sweep const& sweep) const {
+        return turn_shared_by(
+            kernels::ExchangeByBlock<typename Sweep::ShownNumbers>{direct, numbers, {}}, tree, top,
+            sweep);
     }
     template <class Numbers, class Scan, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                     ScanTree const& top, Scan const& scan,
                      BodyExchange<D> const&... beside) const {
-        return turn_shared_by(kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, tree, top, scan);
+        return turn_shared_by(kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)},
+                              tree, top, scan);
     }
     template <class Numbers, class Scan, class T, class Action, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top,
-                     dca::ScanThen<Scan, Buffer<T>, Action> const& all, BodyExchange<D> const&... beside) const {
-        ExchangeInTurn<Numbers> const exchange{peers_, stream_, {direct, numbers, along(beside...)}};
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                     ScanTree const& top, dca::ScanThen<Scan, Buffer<T>, Action> const& all,
+                     BodyExchange<D> const&... beside) const {
+        ExchangeInTurn<Numbers> const exchange{
+            peers_, stream_, {direct, numbers, along(beside...)}};
         kernels::OfItem<T, Action> const action{all.items.data(), all.action};
-        return tree.turn_shared(all.scan, exchange, top, static_cast<std::int64_t>(all.items.size()), action, stream());
+        return tree.turn_shared(all.scan, exchange, top,
+                                static_cast<std::int64_t>(all.items.size()), action, stream());
     }
     template <int D>
     Field<D> read(DeviceField<D> const& field) const {
@@ -237,7 +269,8 @@ class DeviceSpace {
 
     /// As one graph, unless the host has a part in it.
     template <class Action>
-    std::vector<double> time_chained(int chained, int repeat, bool asks_host, Action const& action) const {
+    std::vector<double> time_chained(int chained, int repeat, bool asks_host,
+                                     Action const& action) const {
         auto const all = [&] {
             for (int i = 0; i < chained; ++i) action();
         };
@@ -266,9 +299,11 @@ class DeviceSpace {
         return field.origin + gpu_order::first_number(k, field.pitch);
     }
     template <class Numbers, class First>
-    void exchange(Direct const& direct, Numbers const& numbers, kernels::BodiesBeside const& beside, First const& first) const {
+    void exchange(Direct const& direct, Numbers const& numbers, kernels::BodiesBeside const& beside,
+                  First const& first) const {
         peers_.meet_next(stream_);
-        kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers, beside, first);
+        kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers, beside,
+                                                                            first);
         started();
     }
     template <int... D>
@@ -282,8 +317,13 @@ class DeviceSpace {
     static kernels::BodyNumbers numbers_of(BodyExchange<D> const& e) {
         return {number_of(e.from, e.i), number_of(e.into, e.j)};
     }
-    static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
-    void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
+    static unsigned blocks(std::int64_t count) {
+        return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads);
+    }
+    void set_answer(int byte) const {
+        check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()),
+              "be asked");
+    }
     template <int D, class Change>
     void give_back(DeviceField<D>& field, Field<D> host, Change const& change) const {
         change(host.view());
@@ -292,9 +332,10 @@ class DeviceSpace {
     }
     static void started() { check(cudaGetLastError(), "start a kernel"); }
     template <class AnyTree, class Sweep, class Numbers>
-    bool turn_shared_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree, AnyTree const& top,
-                        Sweep const& sweep) const {
-        return tree.turn_shared(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top, stream());
+    bool turn_shared_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree,
+                        AnyTree const& top, Sweep const& sweep) const {
+        return tree.turn_shared(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top,
+                                stream());
     }
 
     Executor const* on_host_;

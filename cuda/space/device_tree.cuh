@@ -7,14 +7,14 @@
 #include <type_traits>
 #include <vector>
 
-#include "cuda/sweeps/cluster_launch.cuh"
 #include "cuda/device/clusters.hpp"
-#include "cuda/sweeps/group_lanes.cuh"
-#include "cuda/sweeps/revolute_teams.cuh"
 #include "cuda/device/launch.cuh"
 #include "cuda/device/owners.hpp"
 #include "cuda/exchange/peer_exchange.cuh"
 #include "cuda/short/short_chain.cuh"
+#include "cuda/sweeps/cluster_launch.cuh"
+#include "cuda/sweeps/group_lanes.cuh"
+#include "cuda/sweeps/revolute_teams.cuh"
 #include "cuda/sweeps/stage_walk.cuh"
 #include "cuda/sweeps/top_launch.cuh"
 #include "tree/stages.hpp"
@@ -24,21 +24,27 @@ namespace catena::cuda {
 /// HostSpace::Tree says what it promises.
 class DeviceTree {
   public:
-    DeviceTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-               std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
+    DeviceTree(std::vector<dca::Run> const& runs,
+               std::vector<std::vector<dca::Merge>> const& levels,
+               std::vector<dca::Root> const& roots, std::int64_t slots,
+               std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
         : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
         dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
-        PlanByGroups const by_groups = plan_by_groups(runs, levels, roots, slots, restricted, records, sizes, fewest_groups_below_stages);
+        PlanByGroups const by_groups = plan_by_groups(runs, levels, roots, slots, restricted,
+                                                      records, sizes, fewest_groups_below_stages);
         dca::StagePlan const& plan = by_groups.stages;
         stages_above_groups_ = by_groups.stages_above_groups;
         runs_apart_ = plan.runs_apart;
         gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
         dca::StagesTogether const together(plan, sizes);
         for (dca::Stage const& stage : plan.stages)
-            stages_.emplace_back(stage, together, stage.of_runs ? runs_ : RunsView{}, sizes, records);
-        if (together) turn_ = TurnLaunch(together, records, most_shared_bytes_);
+            stages_.emplace_back(stage, together, stage.of_runs ? runs_ : RunsView{}, sizes,
+                                 records);
+        if (together) turn_ = TopLaunch(together, records, most_shared_bytes_);
         auto const one_chain = [&](std::int64_t bodies_of_lane) {
-            return ClusterLaunch(knows_clusters() ? kernels::one_chain_of(runs, levels, roots, bodies_of_lane) : kernels::OneChain{},
+            return ClusterLaunch(knows_clusters()
+                                     ? kernels::one_chain_of(runs, levels, roots, bodies_of_lane)
+                                     : kernels::OneChain{},
                                  most_shared_bytes_);
         };
         short_ = one_chain(dca::part_length);
@@ -62,7 +68,9 @@ class DeviceTree {
     void climb_and_descend(Sweep const& sweep, cudaStream_t stream) const {
         if (stages_.empty()) return;
         if constexpr (Sweep::goes_short)
-            if (Grid const& grid = short_.grid<kernels::ShortWarp<Sweep>>(kernels::turn_short<Sweep>); grid.blocks > 0) {
+            if (Grid const& grid =
+                    short_.grid<kernels::ShortWarp<Sweep>>(kernels::turn_short<Sweep>);
+                grid.blocks > 0) {
                 short_.launch(grid, stream, kernels::turn_short<Sweep>, sweep);
                 ++short_launches;
                 return;
@@ -71,14 +79,15 @@ class DeviceTree {
     }
     /// As StageWalk::turn_shared.
     template <class Sweep, class Numbers>
-    bool turn_shared(Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange, DeviceTree const& top, cudaStream_t stream) const {
+    bool turn_shared(Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
+                     DeviceTree const& top, cudaStream_t stream) const {
         return walk(stream).turn_shared(sweep, exchange, Launches{top, stream});
     }
 
   private:
     struct Stage {
-        Stage(dca::Stage const& stage, dca::StagesTogether const& together, RunsView const& runs, dca::StageSizes const& sizes,
-              dca::StageRecords const& records)
+        Stage(dca::Stage const& stage, dca::StagesTogether const& together, RunsView const& runs,
+              dca::StageSizes const& sizes, dca::StageRecords const& records)
             : words(dca::words_of(stage, together)),
               roots(stage.roots),
               kept(static_cast<std::size_t>(dca::kept_numbers(stage, records))),
@@ -110,60 +119,78 @@ class DeviceTree {
         unsigned blocks(std::size_t i) const { return tree.stages_[i].view.blocks; }
         bool runs_apart() const { return tree.runs_apart_; }
         bool gathers() const { return tree.gathers_; }
-        bool takes_runs(std::size_t i) const { return static_cast<bool>(tree.stages_[i].view.runs); }
+        bool takes_runs(std::size_t i) const {
+            return static_cast<bool>(tree.stages_[i].view.runs);
+        }
         template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::climb<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
+            launch(kernels::climb<Sweep>,
+                   grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>,
+                           sweep),
                    tree.stages_[i].view, sweep);
         }
         template <class Sweep>
         void descend(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::descend<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
+            launch(kernels::descend<Sweep>,
+                   grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>,
+                           sweep),
                    tree.stages_[i].view, sweep);
         }
         template <class Sweep>
         bool can_turn(std::size_t first, Sweep const& sweep) const {
-            return first + 1 == stages() || runs_at_once<kernels::NoExchange>(first, sweep, nullptr);
+            return first + 1 == stages() ||
+                   runs_at_once<kernels::NoExchange>(first, sweep, nullptr);
         }
         template <class Sweep>
         void turn(std::size_t first, Sweep const& sweep) const {
             turn(first, sweep, kernels::NoExchange{}, nullptr);
         }
         template <class Sweep, class Numbers>
-        bool can_turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const&, Launches const& top) const {
+        bool can_turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const&,
+                      Launches const& top) const {
             Stage const& above = top.tree.stages_.back();
-            if (first + 1 < stages()) return runs_at_once<kernels::ExchangeByBlock<Numbers>>(first, sweep, &above);
+            if (first + 1 < stages())
+                return runs_at_once<kernels::ExchangeByBlock<Numbers>>(first, sweep, &above);
             return grid_of_turn(first, sweep, &above).shared_bytes <= shared_bytes();
         }
         template <class Sweep, class Numbers>
-        void turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange, Launches const& top) const {
+        void turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
+                  Launches const& top) const {
             turn(first, sweep, exchange.next(), &top.tree.stages_.back());
             ++turns_shared;
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { launch(kernel, grid, sweep); };
-            if (kernels::climb_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams)) return;
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
+                launch(kernel, grid, sweep);
+            };
+            if (kernels::climb_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams))
+                return;
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, shared_bytes());
             launch(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { launch(kernel, grid, sweep); };
-            if (kernels::descend_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams)) return;
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
+                launch(kernel, grid, sweep);
+            };
+            if (kernels::descend_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams))
+                return;
             kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, shared_bytes());
             launch(kernels::descend_runs<Sweep>, grid, sweep);
         }
         bool stages_above_groups() const { return tree.stages_above_groups_; }
         template <class Sweep>
         void climb_groups(Sweep const& sweep) const {
-            launch(kernels::climb_groups<Sweep>, kernels::grid_of_climb<Sweep>(tree.runs_.count, shared_bytes()), sweep);
+            launch(kernels::climb_groups<Sweep>,
+                   kernels::grid_of_climb<Sweep>(tree.runs_.count, shared_bytes()), sweep);
         }
         template <class Sweep>
         void descend_groups(Sweep const& sweep) const {
-            launch(kernels::descend_groups<Sweep>, kernels::grid_of_descent<Sweep>(tree.runs_.count, shared_bytes()), sweep);
+            launch(kernels::descend_groups<Sweep>,
+                   kernels::grid_of_descent<Sweep>(tree.runs_.count, shared_bytes()), sweep);
         }
         template <class Sweep>
         bool can_turn_groups() const {
@@ -171,41 +198,53 @@ class DeviceTree {
         }
         template <class Sweep>
         void turn_groups(Sweep const& sweep) const {
-            tree.above_groups_.launch(grid_above_groups<Sweep>(), stream, kernels::turn_groups<Sweep>, tree.groups_, sweep);
+            tree.above_groups_.launch(grid_above_groups<Sweep>(), stream,
+                                      kernels::turn_groups<Sweep>, tree.groups_, sweep);
             ++groups_turned;
         }
 
       private:
-        std::size_t shared_bytes() const { return static_cast<std::size_t>(tree.most_shared_bytes_); }  // of a block at most
+        std::size_t shared_bytes() const {
+            return static_cast<std::size_t>(tree.most_shared_bytes_);
+        }  // of a block at most
         template <class Sweep>
         Grid const& grid_above_groups() const {
             return tree.above_groups_.grid<kernels::GroupLanes<Sweep>>(kernels::turn_groups<Sweep>);
         }
         template <class Sweep>
-        static Grid grid_of(Stage const& stage, int planned_threads, int most_threads, Sweep const&) {
+        static Grid grid_of(Stage const& stage, int planned_threads, int most_threads,
+                            Sweep const&) {
             int const of_block = kernels::threads_for<Sweep>(planned_threads, most_threads);
             return {stage.view.blocks, static_cast<unsigned>(of_block),
-                    sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
+                    sizeof(double) * static_cast<std::size_t>(
+                                         kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
         }
         /// `top`: null where nothing is above.
         template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Stage const* top) const {
+        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
+                  Stage const* top) const {
             bool const together = first + 1 < stages();
             launch(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top),
-                   together ? tree.stages_[first].view : kernels::DeviceStage{}, tree.stages_.back().view,
-                   top ? top->view : kernels::DeviceStage{}, together ? tree.turn_.letters() : kernels::TurnLetters{}, exchange, sweep);
+                   together ? tree.stages_[first].view : kernels::DeviceStage{},
+                   tree.stages_.back().view, top ? top->view : kernels::DeviceStage{},
+                   together ? tree.turn_.letters() : kernels::TopLaunchLetters{}, exchange, sweep);
             if (together) ++turns_together;
         }
-        /// While it waits for other ranks, there is room for what they meet in besides (arrived_beads.cu).
+        /// While it waits for other ranks, there is room for what they meet in besides
+        /// (arrived_beads.cu).
         template <class Exchange, class Sweep>
         bool runs_at_once(std::size_t first, Sweep const& sweep, Stage const* top) const {
-            return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top), top ? 1 : 0);
+            return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>,
+                                                 grid_of_turn(first, sweep, top), top ? 1 : 0);
         }
         template <class Sweep>
         Grid grid_of_turn(std::size_t first, Sweep const& sweep, Stage const* top) const {
             Stage const &lower = tree.stages_[first], &upper = tree.stages_.back();
-            int const planned = std::max({lower.threads, upper.threads, top ? kernels::threads_among_ranks<Sweep> : 0});
-            auto const of = [&](Stage const& stage) { return grid_of(stage, planned, kernels::threads_of_turn<Sweep>, sweep); };
+            int const planned = std::max(
+                {lower.threads, upper.threads, top ? kernels::threads_among_ranks<Sweep> : 0});
+            auto const of = [&](Stage const& stage) {
+                return grid_of(stage, planned, kernels::threads_of_turn<Sweep>, sweep);
+            };
             Grid grid = of(upper);
             if (top) grid.shared_bytes += of(*top).shared_bytes;
             if (first + 1 == stages()) return grid;
@@ -216,21 +255,27 @@ class DeviceTree {
             return grid;
         }
         template <class... Parameters>
-        void launch(void (*kernel)(Parameters...), Grid const& grid, std::type_identity_t<Parameters> const&... arguments) const {
+        void launch(void (*kernel)(Parameters...), Grid const& grid,
+                    std::type_identity_t<Parameters> const&... arguments) const {
             allow_shared(kernel, grid.shared_bytes);
             cuda::launch(grid, stream, kernel, arguments...);
         }
         template <class Sweep>
-        void launch(void (*kernel)(RunsView, GroupsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
-            launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_, tree.groups_, sweep);
+        void launch(void (*kernel)(RunsView, GroupsView, Sweep), kernels::RunsGrid const& grid,
+                    Sweep const& sweep) const {
+            launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_,
+                   tree.groups_, sweep);
             ++launches_by_groups;
         }
         template <class Sweep>
-        void launch(void (*kernel)(RunsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
+        void launch(void (*kernel)(RunsView, Sweep), kernels::RunsGrid const& grid,
+                    Sweep const& sweep) const {
             launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_, sweep);
         }
     };
-    StageWalk<Launches> walk(cudaStream_t stream) const { return StageWalk<Launches>({*this, stream}); }
+    StageWalk<Launches> walk(cudaStream_t stream) const {
+        return StageWalk<Launches>({*this, stream});
+    }
 
     int most_shared_bytes_ = 0;  // of a block
     Buffer<dca::Run> run_list_;
@@ -240,7 +285,7 @@ class DeviceTree {
     bool stages_above_groups_ = false;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
-    TurnLaunch turn_;
+    TopLaunch turn_;
     ClusterLaunch short_, above_groups_;
 };
 

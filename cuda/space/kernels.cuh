@@ -1,5 +1,5 @@
-// What runs on a GPU for DeviceSpace: loops, answers, and a sweep's stages. A launcher indexes, loads, calls and stores; the mathematics
-// is in dca/.
+// What runs on a GPU for DeviceSpace: loops, answers, and a sweep's stages. A launcher indexes,
+// loads, calls and stores; the mathematics is in dca/.
 #pragma once
 
 #include "cuda/space/device_field.cuh"
@@ -31,7 +31,9 @@ template <int D>
 struct PutBody {
     double* to;
     Vector<double, D> value;
-    __device__ void operator()(std::int64_t i) const { to[i * gpu_order::lanes] = value[static_cast<int>(i)]; }
+    __device__ void operator()(std::int64_t i) const {
+        to[i * gpu_order::lanes] = value[static_cast<int>(i)];
+    }
 };
 
 /// Doubles from 0 on have the order of their bits, and a NaN is above them all.
@@ -39,7 +41,8 @@ template <class Value>
 __global__ void largest(std::int64_t count, unsigned long long* found, Value value) {
     wait_for_launch();
     unsigned long long mine = 0;
-    if (std::int64_t const i = thread(); i < count) mine = static_cast<unsigned long long>(__double_as_longlong(fabs(value(i))));
+    if (std::int64_t const i = thread(); i < count)
+        mine = static_cast<unsigned long long>(__double_as_longlong(fabs(value(i))));
     for (int lane = 16; lane > 0; lane /= 2) {
         unsigned long long const other = __shfl_down_sync(0xffffffffu, mine, lane);
         mine = other > mine ? other : mine;

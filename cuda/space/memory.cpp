@@ -6,8 +6,8 @@
 
 #include "cuda/space/memory_estimator.hpp"
 #include "dca/leaf_choice.hpp"
-#include "dca/space_levels.hpp"
 #include "dca/solvers/tree_solver.hpp"
+#include "dca/space_levels.hpp"
 #include "dynamics/bead_dynamics.hpp"
 #include "dynamics/joint/joint_dynamics_in.hpp"
 #include "dynamics/rigid_dynamics.hpp"
@@ -17,66 +17,79 @@ namespace {
 
 using namespace dca;
 
-/// Where runs float a tree's memory depends on the directions alone: one leaf stands for all that have so many.
+/// Where runs float a tree's memory depends on the directions alone: one leaf stands for all that
+/// have so many.
 template <class Use>
 auto with_directions(ChainGroup const& group, Use const& use) {
     switch (group.directions) {
         case 1:
             return use(Of<BeadLeaf<1>>{});
         case 2:
-            return use(Of<BodyLeaf<2, MeetingFrames<2, false>>>{});
+            return use(Of<BodyLeaf<2, JointFrameHandles<2, false>>>{});
         case 3:
-            return use(Of<BodyLeaf<3, MeetingFrames<3, false>>>{});
+            return use(Of<BodyLeaf<3, JointFrameHandles<3, false>>>{});
         case 4:
-            return use(Of<BodyLeaf<4, MeetingFrames<4, false>>>{});
+            return use(Of<BodyLeaf<4, JointFrameHandles<4, false>>>{});
         case 5:
-            return use(Of<BodyLeaf<5, MeetingFrames<5, false>>>{});
+            return use(Of<BodyLeaf<5, JointFrameHandles<5, false>>>{});
         default:
-            return use(Of<BodyLeaf<6, MeetingFrames<6, false>>>{});
+            return use(Of<BodyLeaf<6, JointFrameHandles<6, false>>>{});
     }
 }
 
 template <class Use>
 auto with_leaf(ChainGroup const& group, Use const& use) {
-    return group.handles == Handles::articulated ? use(Of<ArticulatedLeaf<false>>{}) : with_directions(group, use);
+    return group.handles == Handles::articulated ? use(Of<ArticulatedLeaf<false>>{})
+                                                 : with_directions(group, use);
 }
 
 std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, Communicator const& communicator) {
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
-        return std::make_unique<TreeSolver<typename decltype(leaf)::type, CountingSpace>>(group, CountingSpace(), communicator);
+        return std::make_unique<TreeSolver<typename decltype(leaf)::type, MemoryEstimator>>(
+            group, MemoryEstimator(), communicator);
     };
     return with_leaf(group, make);
 }
 
-/// The lowest levels, with what crosses where they are cut: at most the bodies' segments, forces and joints.
+/// The lowest levels, with what crosses where they are cut: at most the bodies' segments, forces
+/// and joints.
 void count_levels(ChainGroup const& group, Scene const& scene) {
     GpuLevels const levels = scene.solver.levels_on_gpu();
     Schedule const& s = group.schedule;
-    auto const within = [&](int l) { return std::min(static_cast<std::size_t>(l), s.levels.size()); };
+    auto const within = [&](int l) {
+        return std::min(static_cast<std::size_t>(l), s.levels.size());
+    };
     LevelCut const cut = cut_levels(s, levels);
     with_leaf(group, [&](auto leaf) {
         using Leaf = typename decltype(leaf)::type;
         using Sweeps = typename SweepsOf<Leaf>::Sweeps;
-        using Part = SpaceLevels<Leaf, CountingSpace, CountingCrossing>;
-        LevelWork const work{levels.up > 0, levels.down > 0, 0, within(levels.up), 0, within(levels.down), false};
-        Part part(group, work, CountingSpace());
-        for (auto const* places : {&cut.segments, &cut.forces, &cut.joints_up, &cut.joints_down}) part.choose(*places);
+        using Part = SpaceLevels<Leaf, MemoryEstimator, CountingCrossing>;
+        LevelWork const work{
+            levels.up > 0, levels.down > 0, 0, within(levels.up), 0, within(levels.down), false};
+        Part part(group, work, MemoryEstimator());
+        for (auto const* places : {&cut.segments, &cut.forces, &cut.joints_up, &cut.joints_down})
+            part.choose(*places);
         std::size_t const items = std::max(cut.segments.size() * sizeof(typename Sweeps::Matrices),
-                                           std::max(cut.joints_up.size(), cut.joints_down.size()) * sizeof(typename Sweeps::Joint));
+                                           std::max(cut.joints_up.size(), cut.joints_down.size()) *
+                                               sizeof(typename Sweeps::Joint));
         Count::add(static_cast<std::int64_t>(items));
     });
 }
 
-void count_group(ChainGroup const& group, Scene const& scene, Backend backend, Communicator const& communicator) {
+void count_group(ChainGroup const& group, Scene const& scene, Backend backend,
+                 Communicator const& communicator) {
     if (backend == Backend::cuda_levels) return count_levels(group, scene);
     if (group.axes != Axes::joint && group.directions == 1 && group.schedule.shared.empty())
-        CountingSpace::Blocks{group};  // made at the first step, where it pays
+        MemoryEstimator::Blocks{group};  // made at the first step, where it pays
     if (group.beads) {
-        BeadDynamics<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
+        BeadDynamics<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
+                                      tree_of(group, communicator));
     } else if (!group.linked && group.axes == Axes::joint) {
-        JointDynamicsIn<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
+        JointDynamicsIn<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
+                                         tree_of(group, communicator));
     } else {
-        RigidDynamics<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
+        RigidDynamics<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
+                                       tree_of(group, communicator));
     }
 }
 
@@ -89,7 +102,8 @@ DeviceMemory& DeviceMemory::operator+=(DeviceMemory const& other) {
     return *this;
 }
 
-DeviceMemory memory_needed(ChainGroup const& group, Scene const& scene, Backend backend, Communicator const& communicator) {
+DeviceMemory memory_needed(ChainGroup const& group, Scene const& scene, Backend backend,
+                           Communicator const& communicator) {
     Count const count;
     count_group(group, scene, backend, communicator);
     return count.sum();
@@ -98,8 +112,8 @@ DeviceMemory memory_needed(ChainGroup const& group, Scene const& scene, Backend 
 std::string too_little_memory(std::int64_t needed, std::int64_t free) {
     if (needed <= free) return {};
     double constexpr gib = 1 << 30;
-    return fmt::format("{:.3g} GiB of GPU memory are needed and {:.3g} GiB are free", static_cast<double>(needed) / gib,
-                       static_cast<double>(free) / gib);
+    return fmt::format("{:.3g} GiB of GPU memory are needed and {:.3g} GiB are free",
+                       static_cast<double>(needed) / gib, static_cast<double>(free) / gib);
 }
 
 }  // namespace catena::cuda

@@ -1,5 +1,5 @@
-// How much memory a GPU must have for a group of chains. Known without a GPU: the objects that would be there are made of memory that is
-// only counted.
+// How much memory a GPU must have for a group of chains. Known without a GPU: the objects that
+// would be there are made of memory that is only counted.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,8 @@ struct DeviceMemory {
 /// Of this rank, with cuda or cuda-levels. Collective.
 DeviceMemory memory_needed(ChainGroup const&, Scene const&, Backend, Communicator const&);
 
-/// Whether a GPU keeps one tile for all bodies of a field that never changes: they are alike, and more than fit one.
+/// Whether a GPU keeps one tile for all bodies of a field that never changes: they are alike, and
+/// more than fit one.
 template <int D>
 bool one_tile_serves(Field<D> const& field) {
     return field.size() > gpu_order::tile && field.alike();

@@ -1,4 +1,5 @@
-// A Space (dca/host_space.hpp) without memory: what DeviceSpace would allocate is counted, and nothing is ever computed.
+// A Space (dca/host_space.hpp) without memory: what DeviceSpace would allocate is counted, and
+// nothing is ever computed.
 #pragma once
 
 #include "cuda/space/memory.hpp"
@@ -8,7 +9,8 @@
 
 namespace catena::cuda {
 
-/// Of the objects that this thread makes while it is there: arrays do not know the space they belong to.
+/// Of the objects that this thread makes while it is there: arrays do not know the space they
+/// belong to.
 class Count {
   public:
     Count() : outer_(present()) { present() = this; }
@@ -39,10 +41,11 @@ class Count {
 
 /// As DeviceColumns pads them.
 inline std::int64_t bytes_of_columns(std::int64_t end, int columns) {
-    return static_cast<std::int64_t>(sizeof(double)) * columns * (gpu_order::lanes + gpu_order::padded(end));
+    return static_cast<std::int64_t>(sizeof(double)) * columns *
+           (gpu_order::lanes + gpu_order::padded(end));
 }
 
-class CountingSpace : public HostAccess {
+class MemoryEstimator : public HostAccess {
   public:
     static constexpr bool answers_at_once = false;
 
@@ -50,7 +53,9 @@ class CountingSpace : public HostAccess {
     class Array {
       public:
         Array() = default;
-        explicit Array(std::size_t count) { Count::add(static_cast<std::int64_t>(count * sizeof(T))); }
+        explicit Array(std::size_t count) {
+            Count::add(static_cast<std::int64_t>(count * sizeof(T)));
+        }
         T* data() const { return nullptr; }
         std::size_t size() const { return 0; }
     };
@@ -61,7 +66,8 @@ class CountingSpace : public HostAccess {
     template <class Numbers, class... Beside>
     void exchange(Direct const&, Numbers const&, Beside const&...) const {}
     template <class Numbers, class AnyTree, class Sweep, class... Beside>
-    bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const&, Sweep const&, Beside const&...) const {
+    bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const&, Sweep const&,
+                     Beside const&...) const {
         return false;
     }
     template <int D>
@@ -102,7 +108,8 @@ class CountingSpace : public HostAccess {
     template <int D>
     class Alike : public FieldOf<D> {
       public:
-        explicit Alike(Field<D> const& host) : FieldOf<D>(one_tile_serves(host) ? gpu_order::tile : host.size()) {}
+        explicit Alike(Field<D> const& host)
+            : FieldOf<D>(one_tile_serves(host) ? gpu_order::tile : host.size()) {}
         ConstView<D> view() const { return {}; }
     };
     class Directions {
@@ -149,23 +156,29 @@ class CountingSpace : public HostAccess {
     class Records {
       public:
         explicit Records(std::int64_t count) {
-            Count::add(static_cast<std::int64_t>(sizeof(double)) * dca::padded_on_gpu(order, count) * dca::RecordsView<T, order>::numbers);
+            Count::add(static_cast<std::int64_t>(sizeof(double)) *
+                       dca::padded_on_gpu(order, count) * dca::RecordsView<T, order>::numbers);
         }
         dca::RecordsView<T, order> view() { return {}; }
     };
     class Tree {
       public:
-        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records) {
-            constexpr std::int64_t shared_bytes = 227 << 10, at_once = 132;  // of an H100; others' plans take about as much
+        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
+             std::vector<dca::Root> const& roots, std::int64_t slots,
+             std::span<std::uint8_t const> restricted, dca::StageRecords const& records) {
+            constexpr std::int64_t shared_bytes = 227 << 10,
+                                   at_once = 132;  // of an H100; others' plans take about as much
             dca::StageSizes const sizes = dca::stage_sizes(records, shared_bytes, at_once);
-            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
+            dca::StagePlan const plan =
+                dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             count(runs);
             dca::StagesTogether const together(plan, sizes);
             for (dca::Stage const& stage : plan.stages) {
-                Count::add(static_cast<std::int64_t>(sizeof(dca::StageWord)) * stage.blocks() * dca::layout_of(stage).words());
+                Count::add(static_cast<std::int64_t>(sizeof(dca::StageWord)) * stage.blocks() *
+                           dca::layout_of(stage).words());
                 count(stage.roots);
-                Count::add(static_cast<std::int64_t>(sizeof(double)) * dca::kept_numbers(stage, records));
+                Count::add(static_cast<std::int64_t>(sizeof(double)) *
+                           dca::kept_numbers(stage, records));
             }
             if (!together) return;
             constexpr std::int64_t of_letter = 16, of_launches = 4;
@@ -176,10 +189,12 @@ class CountingSpace : public HostAccess {
     };
     class ScanTree {
       public:
-        ScanTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-                 std::int64_t slots) {
+        ScanTree(std::vector<dca::Run> const& runs,
+                 std::vector<std::vector<dca::Merge>> const& levels,
+                 std::vector<dca::Root> const& roots, std::int64_t slots) {
             count(runs);
-            for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, dca::most_of_scan)) {
+            for (dca::ScanStage const& stage :
+                 dca::plan_scan(runs, levels, roots, slots, dca::most_of_scan)) {
                 count(stage.slot);
                 count(stage.merges);
                 count(stage.tops);
@@ -189,7 +204,8 @@ class CountingSpace : public HostAccess {
         }
     };
 
-    /// Blocks as large as they get: smaller ones, where few chains are spread over the GPU, take up to 2 MB more.
+    /// Blocks as large as they get: smaller ones, where few chains are spread over the GPU, take up
+    /// to 2 MB more.
     class Blocks {
       public:
         explicit Blocks(ChainGroup const& group) {
@@ -273,10 +289,10 @@ class CountingSpace : public HostAccess {
 /// As DeviceCrossing.
 class CountingCrossing {
     template <int D>
-    using FieldOf = CountingSpace::FieldOf<D>;
+    using FieldOf = MemoryEstimator::FieldOf<D>;
 
   public:
-    CountingCrossing(ChainGroup const& group, CountingSpace const&)
+    CountingCrossing(ChainGroup const& group, MemoryEstimator const&)
         : direction_(group.beads || group.linked ? group.size : 0),
           tip_direction_(group.has_tips() ? group.size : 0),
           rotation_(group.beads ? 0 : group.size),
@@ -297,8 +313,8 @@ class CountingCrossing {
     }
     AccelerationsView wanted(AccelerationsView const& host) const { return host; }
     void fetch(AccelerationsView const&) const {}
-    void download(CountingSpace::Array<double> const&, std::vector<double>&) const {}
-    void upload(std::vector<double> const&, CountingSpace::Array<double> const&) const {}
+    void download(MemoryEstimator::Array<double> const&, std::vector<double>&) const {}
+    void upload(std::vector<double> const&, MemoryEstimator::Array<double> const&) const {}
 
   private:
     FieldOf<3> direction_, tip_direction_;
@@ -306,9 +322,9 @@ class CountingCrossing {
     FieldOf<3> moving_r2_;
     FieldOf<6> moving_axes2_;
     FieldOf<3> torque_, force_, omega_;
-    CountingSpace::Directions bias_, tip_bias_;
+    MemoryEstimator::Directions bias_, tip_bias_;
     FieldOf<3> alpha_, acceleration_;
-    CountingSpace::Directions joint_force_, tip_force_;
+    MemoryEstimator::Directions joint_force_, tip_force_;
 };
 
 }  // namespace catena::cuda

@@ -14,10 +14,11 @@ class ClusterLaunch {
   public:
     ClusterLaunch() = default;
     /// `most_bytes`: of shared memory that the GPU gives a block.
-    ClusterLaunch(kernels::OneChain const& chain, int most_bytes) : chain_(chain), most_bytes_(most_bytes) {}
+    ClusterLaunch(kernels::OneChain const& chain, int most_bytes)
+        : chain_(chain), most_bytes_(most_bytes) {}
     explicit operator bool() const { return chain_.warps > 0; }
-    /// The grid of a kernel whose blocks join by such warps (grid_of_cluster()); of no blocks where the GPU does not take the chain in one
-    /// cluster.
+    /// The grid of a kernel whose blocks join by such warps (grid_of_cluster()); of no blocks where
+    /// the GPU does not take the chain in one cluster.
     template <class Warp, class... Parameters>
     Grid const& grid(void (*kernel)(kernels::OneChain, Parameters...)) const {
         auto const [known, is_new] = grids_.try_emplace(reinterpret_cast<void const*>(kernel));
@@ -26,7 +27,8 @@ class ClusterLaunch {
     }
     /// What follows in the stream finds everything as after any launch.
     template <class... Parameters>
-    void launch(Grid const& grid, cudaStream_t stream, void (*kernel)(kernels::OneChain, Parameters...),
+    void launch(Grid const& grid, cudaStream_t stream,
+                void (*kernel)(kernels::OneChain, Parameters...),
                 std::type_identity_t<Parameters> const&... arguments) const {
         EarlyLaunch(grid, stream)(kernel, chain_, arguments...);
     }
@@ -46,13 +48,18 @@ class ClusterLaunch {
     template <class Kernel>
     bool takes(Kernel* kernel, cudaLaunchConfig_t const& config) const {
         if (config.dynamicSmemBytes > static_cast<std::size_t>(most_bytes_)) return false;
-        allow_shared(kernel, static_cast<std::size_t>(most_bytes_));  // always all: another tree's launch may need more than this one
+        allow_shared(
+            kernel,
+            static_cast<std::size_t>(
+                most_bytes_));  // always all: another tree's launch may need more than this one
         if (config.gridDim.x <= kernels::most_in_cluster) return true;
         // More than any GPU that has clusters takes.
-        check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeNonPortableClusterSizeAllowed, 1),
+        check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel),
+                                   cudaFuncAttributeNonPortableClusterSizeAllowed, 1),
               "have large clusters");
         int clusters = 0;
-        if (cudaOccupancyMaxActiveClusters(&clusters, kernel, &config) == cudaSuccess) return clusters > 0;
+        if (cudaOccupancyMaxActiveClusters(&clusters, kernel, &config) == cudaSuccess)
+            return clusters > 0;
         static_cast<void>(cudaGetLastError());
         return false;
     }

@@ -1,9 +1,10 @@
-// What lanes hold of one chain whose handles carry one direction: a lane joins what it holds to what another lane has, in registers, and
-// without branches. Every warp is given the segments of all of them and joins those as well, so that nobody waits twice.
+// What lanes hold of one chain whose handles carry one direction: a lane joins what it holds to
+// what another lane has, in registers, and without branches. Every warp is given the segments of
+// all of them and joins those as well, so that nobody waits twice.
 #pragma once
 
-#include "cuda/sweeps/one_chain.cuh"
 #include "cuda/sweeps/branchless_math.cuh"
+#include "cuda/sweeps/one_chain.cuh"
 
 namespace catena::cuda::kernels {
 
@@ -57,7 +58,7 @@ class JoinedLanes {
     using Segment = typename Sweep::Segment;
     using Node = typename Sweep::Node;
     using State = typename Sweep::Sweeps::State;
-    using Factors = QuickFactors<true>;
+    using Factorizer = BranchlessFactorizer<true>;
     static constexpr int levels_of_warp = levels_above(lanes_of_warp / in_row), most_levels_of_top = levels_above(lanes_of_warp);
     static constexpr int steps_of_warp = in_row - 1 + levels_of_warp, bodies_of_warp = lanes_of_warp * of_lane;
 
@@ -132,7 +133,7 @@ class JoinedLanes {
             Node found;
             bool sure_here = true;
             Segment joined = sweep_.joined_at_once(inboard, quickly, static_cast<int>(restricts >> (lane & (lanes_of_warp - 1)) & 1), found,
-                                                   SureFactors{sure_here});
+                                                   UncheckedFactorizer{sure_here});
             if (!exists) joined.bias.b1 = inboard.bias.b1;
             if (meets && exists) OfLanes::store(nodes, lane, found);
             sure = sure && (!meets || sure_here);
@@ -217,7 +218,7 @@ class JoinedLanes {
         bool const two = unit_ > 1 && first + 1 < chain_.warps;
         if (two) {
             Node found;
-            segment = sweep_.joined(segment, given(first + 1), {(first + 1) * bodies_of_warp, at_top_[1]}, found, Factors{});
+            segment = sweep_.joined(segment, given(first + 1), {(first + 1) * bodies_of_warp, at_top_[1]}, found, Factorizer{});
             OfLanes::store(within, lane_, found);
         }
         Ends ends = solve_lanes<0>(segment, nodes);
@@ -237,7 +238,7 @@ class JoinedLanes {
         constexpr int last = (1 << levels) - 1;
         int const restricted = __shfl_sync(whole_warp, at_top_[0], 0);
         Ends ends{State::zero(), State::zero()};
-        if (lane_ == last) ends.first = sweep_.first_force({0, restricted}, segment, Factors{});
+        if (lane_ == last) ends.first = sweep_.first_force({0, restricted}, segment, Factorizer{});
         ends.first = from_lane(ends.first, last);
         go_down(ends, of_levels, 0, unit_ * bodies_of_warp);
         return ends;

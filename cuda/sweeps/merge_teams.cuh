@@ -1,6 +1,8 @@
-// Merges of a tree by several lanes of a warp each: a column of the matrices a lane, and one lane for the biases. Larger handles have too
-// many numbers for one thread's registers, and too long a way through them. What they leave has the bits of Evaluation's joined() and
-// force() (dca/fused_sweep.hpp). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Merges of a tree by several lanes of a warp each: a column of the matrices a lane, and one lane
+// for the biases. Larger handles have too many numbers for one thread's registers, and too long a
+// way through them. What they leave has the bits of Evaluation's joined() and force()
+// (dca/fused_sweep.hpp). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
+// before it.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +10,8 @@
 #include "cuda/device/cluster.cuh"
 #include "cuda/sweeps/branchless_math.cuh"
 #include "cuda/sweeps/run_parts.cuh"
-#include "tree/stage_encoding.hpp"
 #include "dca/tree_sweeps.hpp"
+#include "tree/stage_encoding.hpp"
 
 namespace catena::cuda::kernels {
 
@@ -24,23 +26,31 @@ class MergeTeam {
 
   public:
     static constexpr int lanes = K < 4 ? 4 : 8;
-    static constexpr int of_place = numbers_of<Node> > numbers_of<Segment> ? numbers_of<Node> : numbers_of<Segment>;
+    static constexpr int of_place =
+        numbers_of<Node> > numbers_of<Segment> ? numbers_of<Node> : numbers_of<Segment>;
     using Segments = PackedRecords<Segment, of_place>;
     using Nodes = PackedRecords<Node, of_place>;
     using Forces = PackedRecords<Directions, K>;
     // In a segment, and in a node.
-    static constexpr int at_z22 = Triangle::size, at_z12 = 2 * Triangle::size, at_b1 = at_z12 + K * K, at_b2 = at_b1 + K;
-    static constexpr int at_inboard = Triangle::size, at_outboard = at_inboard + K * K, at_offset = at_outboard + K * K;
+    static constexpr int at_z22 = Triangle::size, at_z12 = 2 * Triangle::size,
+                         at_b1 = at_z12 + K * K, at_b2 = at_b1 + K;
+    static constexpr int at_inboard = Triangle::size, at_outboard = at_inboard + K * K,
+                         at_offset = at_outboard + K * K;
 
     __device__ MergeTeam()
-        : lane_(static_cast<int>(threadIdx.x) % 32), own_(lane_ % lanes), column_(own_ < K ? own_ : K - 1), has_biases_(own_ == K) {}
+        : lane_(static_cast<int>(threadIdx.x) % 32),
+          own_(lane_ % lanes),
+          column_(own_ < K ? own_ : K - 1),
+          has_biases_(own_ == K) {}
 
-    /// action(i, works) for i of [begin, end) by one team of the block each. All threads of a warp come to each call of `action`; one
-    /// whose team does not work has the i of the warp's first team.
+    /// action(i, works) for i of [begin, end) by one team of the block each. All threads of a warp
+    /// come to each call of `action`; one whose team does not work has the i of the warp's first
+    /// team.
     template <class Action>
     __device__ static void each(int begin, int end, Action const& action) {
         constexpr int of_warp = 32 / lanes;
-        int const team = static_cast<int>(threadIdx.x) / lanes, teams = static_cast<int>(blockDim.x) / lanes;
+        int const team = static_cast<int>(threadIdx.x) / lanes,
+                  teams = static_cast<int>(blockDim.x) / lanes;
         CATENA_NO_UNROLL
         for (int first = begin + team / of_warp * of_warp; first < end; first += teams) {
             int const i = first + team % of_warp;
@@ -48,16 +58,20 @@ class MergeTeam {
         }
     }
 
-    /// Where two segments are, and where what they become is to go, which may be `inboard`, and the joint's node, which may be `outboard`.
+    /// Where two segments are, and where what they become is to go, which may be `inboard`, and the
+    /// joint's node, which may be `outboard`.
     struct Places {
         double *inboard, *outboard, *joined, *node;
     };
-    /// All lanes of a warp come to these. One whose team does not work is given places as well, where it reads and nothing more: those of
-    /// a team of the warp that works, or others that nobody writes meanwhile. The lane of the biases is told the outboard segment's.
-    __device__ dca::SegmentBias<double, K> join(Sweep const& sweep, dca::JointAt const& at, bool works, Places const& places) const {
+    /// All lanes of a warp come to these. One whose team does not work is given places as well,
+    /// where it reads and nothing more: those of a team of the warp that works, or others that
+    /// nobody writes meanwhile. The lane of the biases is told the outboard segment's.
+    __device__ dca::SegmentBias<double, K> join(Sweep const& sweep, dca::JointAt const& at,
+                                                bool works, Places const& places) const {
         bool sure = at.restricted == K;
-        Triangle factor = dca::factorize(sum(places), K, QuickInverse{sure});
-        Directions of_inboard, of_outboard, first, last;  // of the two and of what is joined: the lane's columns, or its biases
+        Triangle factor = dca::factorize(sum(places), K, BranchlessInverse{sure});
+        Directions of_inboard, of_outboard, first,
+            last;  // of the two and of what is joined: the lane's columns, or its biases
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) {
             int const in_triangle = Triangle::at(i, column_ < i ? column_ : i);
@@ -132,8 +146,8 @@ class MergeTeam {
     __device__ static Triangle sum(Places const& places) { return record<Triangle>(places.inboard + at_z22) + record<Triangle>(places.outboard); }
     /// As the sweep's own factorize() and watch().
     __device__ static Triangle factorized(Sweep const& sweep, dca::JointAt const& at, bool works, Triangle const& z) {
-        Triangle const factor = QuickFactors<false>{}(z, at.restricted);
-        dca::Lost found;
+        Triangle const factor = BranchlessFactorizer<false>{}(z, at.restricted);
+        dca::PivotFailure found;
         sweep.s.watch(at, factor, found);
         if (works) sweep.s.note(found);
         return factor;

@@ -1,4 +1,5 @@
-// One whole chain that a launch of one cluster takes up and down its tree: how warps' lanes share it, and what its blocks give each other.
+// One whole chain that a launch of one cluster takes up and down its tree: how warps' lanes share
+// it, and what its blocks give each other.
 #pragma once
 
 #include <bit>
@@ -22,11 +23,14 @@ constexpr int levels_above(int leaves) { return std::bit_width(static_cast<unsig
 struct OneChain {
     int bodies = 0, warps = 0;
 };
-/// That of a tree of one whole chain whose tip is free, in runs as long as they get. A lane has `of_lane` bodies.
-inline OneChain one_chain_of(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
+/// That of a tree of one whole chain whose tip is free, in runs as long as they get. A lane has
+/// `of_lane` bodies.
+inline OneChain one_chain_of(std::vector<dca::Run> const& runs,
+                             std::vector<std::vector<dca::Merge>> const& levels,
                              std::vector<dca::Root> const& roots, std::int64_t of_lane) {
     if (runs.empty() || roots.size() != 1 || roots.front().tip != dca::TipTo::nothing) return {};
-    std::int64_t const bodies = runs.back().body + runs.back().count, of_warp = lanes_of_warp * of_lane;
+    std::int64_t const bodies = runs.back().body + runs.back().count,
+                       of_warp = lanes_of_warp * of_lane;
     std::size_t joined = 1;
     for (std::vector<dca::Merge> const& level : levels) joined += level.size();
     bool const whole = runs.front().body == 0 && joined == runs.size();
@@ -39,12 +43,15 @@ struct ClusterGrid {
     unsigned blocks = 0, threads = 0;
     std::size_t shared_bytes = 0;
 };
-/// As few warps a block as there may be: each then has more of a multiprocessor. `most`: blocks of a cluster. `Warp`: of those that join,
-/// with warps_for_each(joining) and numbers(joining, warps) as ShortLanes'. Precondition: with four warps a block they are enough.
+/// As few warps a block as there may be: each then has more of a multiprocessor. `most`: blocks of
+/// a cluster. `Warp`: of those that join, with warps_for_each(joining) and numbers(joining, warps)
+/// as ShortLanes'. Precondition: with four warps a block they are enough.
 template <class Warp>
 ClusterGrid grid_of_cluster(OneChain const& chain, int most) {
-    int const joining = (chain.warps + most - 1) / most, blocks = (chain.warps + joining - 1) / joining;
-    return {static_cast<unsigned>(blocks), static_cast<unsigned>(lanes_of_warp * joining * Warp::warps_for_each(joining)),
+    int const joining = (chain.warps + most - 1) / most,
+              blocks = (chain.warps + joining - 1) / joining;
+    return {static_cast<unsigned>(blocks),
+            static_cast<unsigned>(lanes_of_warp * joining * Warp::warps_for_each(joining)),
             sizeof(double) * Warp::numbers(joining, chain.warps)};
 }
 /// Of a block of the launch.
@@ -52,13 +59,14 @@ __device__ inline int joining_warps(OneChain const& chain) {
     return (chain.warps + static_cast<int>(gridDim.x) - 1) / static_cast<int>(gridDim.x);
 }
 
-/// One warp that joins keeps what it gives: its block is alone in its cluster, and NVIDIA's checker of memory refuses messages of a block
-/// to itself there.
+/// One warp that joins keeps what it gives: its block is alone in its cluster, and NVIDIA's checker
+/// of memory refuses messages of a block to itself there.
 __device__ inline bool is_alone(OneChain const& chain) { return chain.warps == 1; }
 
 /// A record of `numbers` numbers to all blocks of the cluster, by a warp: its number n to at(n).
 template <int numbers, class At>
-__device__ void send_to_all(OneChain const& chain, Inbox const& inbox, int lane, double const* record, At const& at) {
+__device__ void send_to_all(OneChain const& chain, Inbox const& inbox, int lane,
+                            double const* record, At const& at) {
     constexpr int lanes_of_block = numbers <= lanes_of_warp / 4 ? lanes_of_warp / 4 : lanes_of_warp,
                   at_once = lanes_of_warp / lanes_of_block;
     if (is_alone(chain)) {

@@ -1,6 +1,6 @@
-// Bodies on their way from memory to a thread's own place in its block's shared memory while the thread is busy with the one before them:
-// larger handles leave no registers in which to wait for numbers. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
-// before it.
+// Bodies on their way from memory to a thread's own place in its block's shared memory while the
+// thread is busy with the one before them: larger handles leave no registers in which to wait for
+// numbers. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include "cuda/device/copies.cuh"
@@ -8,13 +8,14 @@
 
 namespace catena::cuda::kernels {
 
-/// Bodies [begin, end) of a thread (`Bodies`: dca::Resting), each once and in turn. A thread's two places lie together, an odd number of
-/// numbers, so that threads do not meet in a bank.
+/// Bodies [begin, end) of a thread (`Bodies`: dca::Resting), each once and in turn. A thread's two
+/// places lie together, an odd number of numbers, so that threads do not meet in a bank.
 template <class Bodies>
 class BodiesInTurn {
     using Read = typename decltype(Bodies::leaf)::template Body<std::int64_t>;
     using Body = typename Bodies::template Body<std::int64_t>;
-    static constexpr int numbers = static_cast<int>(sizeof(Read) / sizeof(double)) - 1;  // but for which body it is
+    static constexpr int numbers =
+        static_cast<int>(sizeof(Read) / sizeof(double)) - 1;  // but for which body it is
     static constexpr int of_thread = 2 * numbers | 1;
 
     /// Readers of leaves (dca/lane_access.hpp): one starts copies, the other finds what has come.

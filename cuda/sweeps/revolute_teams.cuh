@@ -1,7 +1,9 @@
-// Runs on hinges by several lanes of a warp each: where runs are few, a GPU has more threads than that. What does not wait for other bodies
-// the lanes find of a body each, and leave in shared memory; then, on the way up, all have the inertia and each one or two of the six
-// wrenches (floating_run.hpp), and in the end a row of the segment. They leave the bits of one thread's climb_hinges() and
-// descend_hinges(). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Runs on revolute joints by several lanes of a warp each: where runs are few, a GPU has more
+// threads than that. What does not wait for other bodies the lanes find of a body each, and leave
+// in shared memory; then, on the way up, all have the inertia and each one or two of the six
+// wrenches (floating_run.hpp), and in the end a row of the segment. They leave the bits of one
+// thread's climb_revolutes() and descend_revolutes(). A host compiler takes it too, where
+// tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include "cuda/sweeps/team_memory.cuh"
@@ -9,13 +11,15 @@
 namespace catena::cuda::kernels {
 
 constexpr int lanes_of_narrow_team = 4, lanes_of_broad_team = 16;
-// More runs than the first have fewer lanes each, more than the second a thread: they keep a GPU busy with that.
+// More runs than the first have fewer lanes each, more than the second a thread: they keep a GPU
+// busy with that.
 constexpr std::int64_t most_runs_of_broad_teams = 2048, most_runs_of_teams = 8192;
 
-/// All lanes of a warp come to what it does: also with teams that have fewer bodies than others of it.
+/// All lanes of a warp come to what it does: also with teams that have fewer bodies than others of
+/// it.
 template <int lanes, bool whole>
-class HingeTeam {
-    using Body = dca::HingedBody<double>;
+class RevoluteTeam {
+    using Body = dca::ArticulatedBody<double>;
     using Wrench = dca::Wrench<double>;
     using Swing = dca::BodyAcceleration<double>;
     using InRun = dca::LoadedBodyInRun<double>;
@@ -27,28 +31,35 @@ class HingeTeam {
 
   public:
     /// `works`: else it only goes along with the warp's other teams.
-    __device__ HingeTeam(BodiesOfTeam<lanes, whole> const& bodies, int lane, bool works)
-        : bodies_(bodies), own_(lane % lanes), leader_(lane - own_), most_(bodies.most(lane)), works_(works) {}
+    __device__ RevoluteTeam(BodiesOfTeam<lanes, whole> const& bodies, int lane, bool works)
+        : bodies_(bodies),
+          own_(lane % lanes),
+          leader_(lane - own_),
+          most_(bodies.most(lane)),
+          works_(works) {}
     __device__ bool leads() const { return works_ && own_ == 0; }
 
-    /// As dca::climb_hinges(). put_row(i, dca::SegmentRow): by the lane that has it.
+    /// As dca::climb_revolutes(). put_row(i, dca::SegmentRow): by the lane that has it.
     template <class BodyOf, class Kept, class PutRow>
-    __device__ __forceinline__ void climb(BodyOf const& body, Ahead const& ahead, Kept& kept, PutRow const& put_row) {
+    __device__ __forceinline__ void climb(BodyOf const& body, Ahead const& ahead, Kept& kept,
+                                          PutRow const& put_row) {
         Prepared const last_one = prepare(body, ahead, kept);
         begin(body(0));
         go_on<dca::Undriven>(ahead, kept);
         dca::OutboardHandle<double> const before =
-            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last());
+            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward},
+                    before_last());
         end(before, body(bodies_.last()), dca::Undriven{}, kept, put_row);
     }
-    /// The same where hinges' loads are given. `all`: as FollowedBodies.
+    /// The same where revolute joints' loads are given. `all`: as FollowedBodies.
     template <class Leaf, class Kept, class PutRow>
-    __device__ __forceinline__ void climb(dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead, Kept& kept,
-                                          PutRow const& put_row) {
+    __device__ __forceinline__ void climb(dca::RunWithLoads<Leaf> const& loaded, bool all,
+                                          Ahead const& ahead, Kept& kept, PutRow const& put_row) {
         dca::FollowedState<double> const last_one = follow(loaded, all, ahead, kept);
         begin(loaded.first());
         go_on<double>(ahead, kept);
-        dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(bodies_.last() - 1), last_one.inward};
+        dca::OutboardHandle<double> const before{
+            to_matrix_of_unit(last_one.turn) * loaded.axes2(bodies_.last() - 1), last_one.inward};
         Body const last = loaded.last(before.axes, last_one.omega, ByLeader<Kept>{kept, leads()});
         end(before, last, loaded.torque_about(bodies_.last()), kept, put_row);
     }
@@ -73,15 +84,16 @@ class HingeTeam {
     };
     /// All bodies; returns the last of the lane's own.
     template <class BodyOf, class Kept>
-    __device__ __forceinline__ Prepared prepare(BodyOf const& body, Ahead const& ahead, Kept& kept) {
+    __device__ __forceinline__ Prepared prepare(BodyOf const& body, Ahead const& ahead,
+                                                Kept& kept) {
         Prepared own{Mat3::identity(), Mat3::identity(), Vec3::zero()};
         Mat3 turn = own.turn;
         Swing swing{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
         for (int first = 0; first < bodies_of_whole_run; first += lanes) {
             Body const here = body(bodies_.body_or_last(first + own_));
-            Mat3 const mine =
-                along(first, turn, here.turn_to(one_before(here.e2, own.axes2)), [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
+            Mat3 const mine = along(first, turn, here.turn_to(one_before(here.e2, own.axes2)),
+                                    [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
             Vec3 const inward = mine * here.inward2;
             InRun const in_run = dca::in_run(here, mine, one_before(inward, own.inward));
             put_ahead(first, in_run, 0.0, swing, ahead, kept);
@@ -92,13 +104,14 @@ class HingeTeam {
     }
     /// All bodies, as FollowedBodies; returns the last but one.
     template <class Leaf, class Kept>
-    __device__ __forceinline__ dca::FollowedState<double> follow(dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead,
-                                                                 Kept& kept) {
+    __device__ __forceinline__ dca::FollowedState<double> follow(
+        dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead, Kept& kept) {
         struct Turning {
             Vec3 axis;
             double rate;
         };
-        dca::FollowedState<double> own{Quat::identity(), loaded.first_omega(), loaded.first_inward()};
+        dca::FollowedState<double> own{Quat::identity(), loaded.first_omega(),
+                                       loaded.first_inward()};
         Vec3 const first_inward = own.inward;
         Quat turn = own.turn;
         Vec3 omega = own.omega;
@@ -107,20 +120,24 @@ class HingeTeam {
         for (int first = 0; first < bodies_of_whole_run; first += lanes) {
             int const i = first + own_;
             int const read = bodies_.body_or_last(i);
-            dca::BodyOnHinge<double> const here = loaded.on_hinge(read);
+            dca::BodyOnRevolute<double> const here = loaded.on_revolute(read);
             Vec3 const omega_of_last = omega;
-            own.turn = along(first, turn, here.turn, [](Quat& t, Quat const& next) { t = t * next; });
+            own.turn =
+                along(first, turn, here.turn, [](Quat& t, Quat const& next) { t = t * next; });
             Mat3 const mine = to_matrix_of_unit(own.turn);
-            Vec3 const after = along(first, omega, Turning{mine * here.axis, here.rate},
-                                     [](Vec3& w, Turning const& next) { w = plus_scaled(w, next.rate, next.axis); });
-            dca::FollowedBody<double> const body = dca::follow(here, mine, one_before(after, omega_of_last));
+            Vec3 const after = along(
+                first, omega, Turning{mine * here.axis, here.rate},
+                [](Vec3& w, Turning const& next) { w = plus_scaled(w, next.rate, next.axis); });
+            dca::FollowedBody<double> const body =
+                dca::follow(here, mine, one_before(after, omega_of_last));
             Vec3 const inward = i == 0 ? first_inward : body.inward2;
             own.inward = one_before(inward, own.inward);
             InRun in_run = own.go_on(body);
             own.inward = inward;
             loaded.add_wrench(read, in_run);
             put_ahead(first, in_run, loaded.torque_about(read), swing, ahead, kept);
-            if (works_ && bodies_.is_within(i) && (all || i == bodies_.last() - 1)) kept.put_omega(i, transposed_times(mine, own.omega));
+            if (works_ && bodies_.is_within(i) && (all || i == bodies_.last() - 1))
+                kept.put_omega(i, transposed_times(mine, own.omega));
         }
         __syncwarp();
         return of_lane(own, before_last());
@@ -129,14 +146,15 @@ class HingeTeam {
     __device__ int before_last() const { return (bodies_.last() - 1) % lanes; }
     /// Of the bodies from `first` on, one a lane; `swing`: of the one before them.
     template <class Kept>
-    __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about, Swing& swing, Ahead const& ahead,
-                                              Kept& kept) {
+    __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about,
+                                              Swing& swing, Ahead const& ahead, Kept& kept) {
         struct Swung {
             Swing difference;
             Vec3 across;
         };
         int const i = first + own_;
-        swing_ = along(first, swing, Swung{body.difference, body.across}, [](Swing& s, Swung const& next) { swing_on(s, next); });
+        swing_ = along(first, swing, Swung{body.difference, body.across},
+                       [](Swing& s, Swung const& next) { swing_on(s, next); });
         if (!bodies_.is_within(i)) return;
         ahead.put(i - 1, {body, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
                           about_point(load_of(body, swing_), body.centre)});
@@ -165,14 +183,14 @@ class HingeTeam {
         for (int i = 1; i < most_ - 1; ++i) {
             bool const goes = whole || bodies_.is_within(i);
             BodyAhead const next = ahead.get(i - 1);
-            dca::ReleasedHinge<double> const hinge = pass_hinge(next.axis, torque_of<Torque>(next.torque_about), goes);
+            dca::ReleasedRevolute<double> const revolute = pass_revolute(next.axis, torque_of<Torque>(next.torque_about), goes);
             if (!goes) continue;
             CATENA_UNROLL
             for (int s = 0; s < wrenches; ++s) move_point(wrench_[s], next.across);
             if (has_bias()) add_load(wrench_[last_wrench], next.load);
             move_point(all_, next.across);
             add_body(all_, next.body);
-            if (leads()) kept.put(i, hinge);
+            if (leads()) kept.put(i, revolute);
         }
     }
     template <class Torque>
@@ -184,17 +202,17 @@ class HingeTeam {
     }
     /// `goes`: else for other teams' sake.
     template <class Torque>
-    __device__ __forceinline__ dca::ReleasedHinge<double> pass_hinge(Vec3 const& axis, Torque const& torque, bool goes = true) {
-        dca::ReleasedHinge<double> h;
+    __device__ __forceinline__ dca::ReleasedRevolute<double> pass_revolute(Vec3 const& axis, Torque const& torque, bool goes = true) {
+        dca::ReleasedRevolute<double> h;
         double along[wrenches] = {};
         if (goes) {
-            dca::Release<double> const r = release_hinge(all_, axis, h);
+            dca::Release<double> const r = release_revolute(all_, axis, h);
             CATENA_UNROLL
-            for (int s = 0; s < last_wrench; ++s) along[s] = release_hinge(wrench_[s], r);
+            for (int s = 0; s < last_wrench; ++s) along[s] = release_revolute(wrench_[s], r);
             if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
                 along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
             else
-                along[last_wrench] = release_hinge(wrench_[last_wrench], r);
+                along[last_wrench] = release_revolute(wrench_[last_wrench], r);
         }
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes], j % lanes);
@@ -213,17 +231,17 @@ class HingeTeam {
         turn_axes(all_, turn);
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) turn_axes(wrench_[s], turn);
-        dca::ReleasedHinge<double> const hinge = pass_hinge(dca::last_axis<double>(), torque);
-        leave_hinge(all_);
+        dca::ReleasedRevolute<double> const revolute = pass_revolute(dca::last_axis<double>(), torque);
+        leave_revolute(all_);
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) wrench_[s].torque[2] = 0;
-        if (has_bias()) wrench_[last_wrench].torque[2] = dca::left_along_hinge<double>(torque);
+        if (has_bias()) wrench_[last_wrench].torque[2] = dca::left_along_revolute<double>(torque);
         take_difference(last_difference(last, turn * before.inward));
 
         dca::LastBody<double> const body = last_body(last);
         Symmetric<double, 6> const factor = dca::factorize(inertia_of_end(all_, body), 6);
         if (leads()) {
-            kept.put(bodies_.last(), hinge);
+            kept.put(bodies_.last(), revolute);
             kept.put(factor);
             kept.put_axes(before.axes);
         }
@@ -320,14 +338,14 @@ class HingeTeam {
 
 template <bool whole, int lanes, class Sweep>
 __device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
-    HingeTeam<lanes, whole> team(BodiesOfTeam<lanes, whole>(run), lane, works);
-    dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
+    RevoluteTeam<lanes, whole> team(BodiesOfTeam<lanes, whole>(run), lane, works);
+    dca::RunWorkspace<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
     BodiesAhead<lanes> const ahead(shared_numbers, lane);
     auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) { sweep.store_row(run.slot, i, row); };
     if (sweep.follows()) {
         team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
     } else {
-        auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
+        auto const body = [&](int i) { return sweep.s.leaf.revolute(sweep.bodies.loads, run.body + i); };
         team.climb(body, ahead, kept, put_row);
     }
     sweep.s.note(kept.lost());
@@ -336,18 +354,18 @@ template <bool whole, int lanes, class Sweep>
 __device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
     BodiesOfTeam<lanes, whole> const bodies(run);
     bool const leads = works && lane % lanes == 0;
-    dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, false);
+    dca::RunWorkspace<typename Sweep::Sweeps> const kept(sweep.s, run, false);
     auto const first = sweep.s.forces.load(run.body), next = sweep.s.forces.load(run.next);
-    HingesBehind<Sweep, lanes, whole> const behind(bodies, shared_numbers, lane);
+    RevolutesBehind<Sweep, lanes, whole> const behind(bodies, shared_numbers, lane);
     behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
-    dca::descend_hinges<double>(
+    dca::descend_revolutes<double>(
         bodies.count(), false, [&](int i) { return behind.frame(i); }, behind, first, next,
-        [&](int i, dca::HingedFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
+        [&](int i, dca::RevoluteFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
             if (leads) sweep.accelerate(run, i, frame, a);
         },
         [](int, dca::BodyAcceleration<double>&) {},
-        [&](int i, double of_hinge) {
-            if (leads) sweep.turn(run, i, of_hinge);
+        [&](int i, double of_revolute) {
+            if (leads) sweep.turn(run, i, of_revolute);
         });
 }
 /// Whether all lanes of the warp say so. By shuffles: nvcc 13 makes of what comes after a vote code that takes a quarter longer.
@@ -358,11 +376,11 @@ __device__ inline bool all_lanes(int lane, bool says) {
     return all != 0;
 }
 /// A team without a run goes along with that of the warp's other one.
-__device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run, bool by_hinges) {
+__device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run, bool by_revolutes) {
     std::int64_t const other = wanted ^ 1;
-    return by_hinges ? run : runs[other < runs.count ? other : runs.count - 1];
+    return by_revolutes ? run : runs[other < runs.count ? other : runs.count - 1];
 }
-/// Whole runs by teams where a warp has no others; broad teams take others on hinges, too, but not those of one or two bodies: these, and
+/// Whole runs by teams where a warp has no others; broad teams take others on revolute joints, too, but not those of one or two bodies: these, and
 /// what is beside whole runs of narrow teams, a thread takes.
 template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
@@ -370,19 +388,19 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep s
     std::int64_t const wanted = thread() / lanes;
     bool const works = wanted < runs.count;
     dca::Run const run = runs[works ? wanted : runs.count - 1];
-    bool const by_hinges = run.count > 2 && sweep.takes(run);
-    bool const whole = all_lanes(lane, by_hinges && run.count == dca::longest_run);
+    bool const by_revolutes = run.count > 2 && sweep.takes(run);
+    bool const whole = all_lanes(lane, by_revolutes && run.count == dca::longest_run);
     wait_for_launch();
     if (whole) {
         climb_by_team<true, lanes>(sweep, run, lane, works);
         return;
     }
     if constexpr (lanes == bodies_of_whole_run) {
-        if (!all_lanes(lane, !by_hinges)) {
-            dca::Run const of_team = for_team(runs, wanted, run, by_hinges);
-            climb_by_team<false, lanes>(sweep, of_team, lane, works && by_hinges);
+        if (!all_lanes(lane, !by_revolutes)) {
+            dca::Run const of_team = for_team(runs, wanted, run, by_revolutes);
+            climb_by_team<false, lanes>(sweep, of_team, lane, works && by_revolutes);
         }
-        if (by_hinges) return;
+        if (by_revolutes) return;
     }
     if (works && lane % lanes == 0) climb_run(sweep, run);
 }
@@ -393,19 +411,19 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep
     std::int64_t const wanted = thread() / lanes;
     bool const works = wanted < runs.count;
     dca::Run const run = runs[works ? wanted : runs.count - 1];
-    bool const by_hinges = run.count > 2 && !sweep.goes_by_all() && sweep.takes(run);
-    bool const whole = all_lanes(lane, by_hinges && run.count == dca::longest_run);
+    bool const by_revolutes = run.count > 2 && !sweep.goes_by_all() && sweep.takes(run);
+    bool const whole = all_lanes(lane, by_revolutes && run.count == dca::longest_run);
     wait_for_launch();
     if (whole) {
         descend_by_team<true, lanes>(sweep, run, lane, works);
         return;
     }
     if constexpr (lanes == bodies_of_whole_run) {
-        if (!all_lanes(lane, !by_hinges)) {
-            dca::Run const of_team = for_team(runs, wanted, run, by_hinges);
-            descend_by_team<false, lanes>(sweep, of_team, lane, works && by_hinges);
+        if (!all_lanes(lane, !by_revolutes)) {
+            dca::Run const of_team = for_team(runs, wanted, run, by_revolutes);
+            descend_by_team<false, lanes>(sweep, of_team, lane, works && by_revolutes);
         }
-        if (by_hinges) return;
+        if (by_revolutes) return;
     }
     if (works && lane % lanes == 0) descend_run(sweep, run);
 }
@@ -415,7 +433,7 @@ RunsGrid grid_of_teams(std::int64_t runs, std::size_t numbers_of_warp) {
     grid.shared_bytes = sizeof(double) * numbers_of_warp;
     return grid;
 }
-/// Of each of so many runs on hinges; none: a thread takes it alone.
+/// Of each of so many runs on revolute joints; none: a thread takes it alone.
 constexpr int lanes_of_teams(std::int64_t runs) {
     return runs <= most_runs_of_broad_teams ? lanes_of_broad_team : runs <= most_runs_of_teams ? lanes_of_narrow_team : 0;
 }
@@ -434,7 +452,7 @@ template <class Sweep, class Launch>
 bool descend_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     if constexpr (dca::takes_whole_runs<Sweep>) {
         constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
-        std::size_t const numbers = lanes == broad ? HingesBehind<Sweep, broad, true>::size : HingesBehind<Sweep, narrow, true>::size;
+        std::size_t const numbers = lanes == broad ? RevolutesBehind<Sweep, broad, true>::size : RevolutesBehind<Sweep, narrow, true>::size;
         if (lanes == broad) launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, numbers));
         if (lanes == narrow) launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, numbers));
         return lanes != 0;

@@ -1,5 +1,6 @@
-// A group of runs (run_groups.hpp) up and down, by a warp whose lane i has run i of it; on the way down several may do the same. A host
-// compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// A group of runs (run_groups.hpp) up and down, by a warp whose lane i has run i of it; on the way
+// down several may do the same. A host compiler takes it too, where tests/support/cuda_on_host.hpp
+// stands before it.
 #pragma once
 
 #include "cuda/device/cluster.cuh"

@@ -1,4 +1,5 @@
-// Runs that the warp which has them joins itself: the lowest levels of a long chain's tree, without a launch of their own.
+// Runs that the warp which has them joins itself: the lowest levels of a long chain's tree, without
+// a launch of their own.
 #pragma once
 
 #include <algorithm>
@@ -16,13 +17,14 @@ constexpr std::int64_t bodies_of_group = runs_of_group * dca::longest_run;  // b
 /// With fewer, the runs' launches would lose more by them than those of the stages above gain.
 constexpr std::int64_t fewest_groups_below_stages = 4096;
 
-/// Whether sweeps with such records can, those of handles with one direction: a lane joins what it holds to what another lane has, in
-/// registers.
+/// Whether sweeps with such records can, those of handles with one direction: a lane joins what it
+/// holds to what another lane has, in registers.
 constexpr bool go_by_groups(dca::StageRecords const& records) { return records.state == 1; }
 
-/// As if they were runs. None where the tree's lowest levels do not join the first 32 runs, the next ones and so on, and nothing else, as
-/// where chains begin in between.
-inline std::vector<dca::Run> groups_of(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
+/// As if they were runs. None where the tree's lowest levels do not join the first 32 runs, the
+/// next ones and so on, and nothing else, as where chains begin in between.
+inline std::vector<dca::Run> groups_of(std::vector<dca::Run> const& runs,
+                                       std::vector<std::vector<dca::Merge>> const& levels,
                                        dca::StageRecords const& records) {
     if (!go_by_groups(records) || runs.empty() || levels.size() < levels_of_group) return {};
     for (std::size_t i = 0; i < runs.size(); ++i)
@@ -34,7 +36,9 @@ inline std::vector<dca::Run> groups_of(std::vector<dca::Run> const& runs, std::v
         for (std::size_t i = 0; i < merges.size(); ++i) {
             dca::Run const &a = parts[2 * i], &b = parts[2 * i + 1];
             dca::Merge const& m = merges[i];
-            if (m.inboard != a.slot || m.outboard != b.slot || m.first != a.body || m.joint != b.body || m.next != b.next) return {};
+            if (m.inboard != a.slot || m.outboard != b.slot || m.first != a.body ||
+                m.joint != b.body || m.next != b.next)
+                return {};
             parts[i] = {a.body, a.count + b.count, m.slot, b.next};
         }
         if (parts.size() % 2 == 1) parts[merges.size()] = parts.back();
@@ -50,11 +54,15 @@ struct GroupsView {
     explicit CATENA_HD operator bool() const { return list != nullptr; }
     CATENA_HD std::int64_t slot(std::int64_t i) const { return list[i].slot; }
     CATENA_HD std::int64_t first(std::int64_t i) const { return i * bodies_of_group; }
-    CATENA_HD std::int64_t next(std::int64_t i) const { return i < inner ? first(i + 1) : list[i].next; }
+    CATENA_HD std::int64_t next(std::int64_t i) const {
+        return i < inner ? first(i + 1) : list[i].next;
+    }
 };
 inline GroupsView view_of_groups(std::vector<dca::Run> const& groups, dca::Run const* list) {
     GroupsView view{groups.empty() ? nullptr : list};
-    while (view.inner < std::ssize(groups) && groups[static_cast<std::size_t>(view.inner)].next == view.first(view.inner + 1)) ++view.inner;
+    while (view.inner < std::ssize(groups) &&
+           groups[static_cast<std::size_t>(view.inner)].next == view.first(view.inner + 1))
+        ++view.inner;
     return view;
 }
 
@@ -64,10 +72,14 @@ struct PlanByGroups {
     bool stages_above_groups = false;  // else above runs
     dca::StagePlan stages;
 };
-/// From `fewest` groups on stages stand above these, with blocks as narrow as one launch that takes all up and down again allows.
-inline PlanByGroups plan_by_groups(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
-                                   std::vector<dca::Root> const& roots, std::int64_t slots, std::span<std::uint8_t const> restricted,
-                                   dca::StageRecords const& records, dca::StageSizes sizes, std::int64_t fewest) {
+/// From `fewest` groups on stages stand above these, with blocks as narrow as one launch that takes
+/// all up and down again allows.
+inline PlanByGroups plan_by_groups(std::vector<dca::Run> const& runs,
+                                   std::vector<std::vector<dca::Merge>> const& levels,
+                                   std::vector<dca::Root> const& roots, std::int64_t slots,
+                                   std::span<std::uint8_t const> restricted,
+                                   dca::StageRecords const& records, dca::StageSizes sizes,
+                                   std::int64_t fewest) {
     PlanByGroups plan;
     plan.groups = groups_of(runs, levels, records);
     plan.stages_above_groups = !plan.groups.empty() && std::ssize(plan.groups) >= fewest;
@@ -77,8 +89,11 @@ inline PlanByGroups plan_by_groups(std::vector<dca::Run> const& runs, std::vecto
     }
     std::int64_t const most = sizes.threads;
     sizes.runs_apart = true;
-    for (sizes.threads = 32; sizes.threads < most && std::ssize(plan.groups) > 2 * sizes.threads * sizes.together;) sizes.threads *= 2;
-    plan.stages = dca::plan_stages(plan.groups, {levels.begin() + levels_of_group, levels.end()}, roots, slots, restricted, sizes);
+    for (sizes.threads = 32;
+         sizes.threads < most && std::ssize(plan.groups) > 2 * sizes.threads * sizes.together;)
+        sizes.threads *= 2;
+    plan.stages = dca::plan_stages(plan.groups, {levels.begin() + levels_of_group, levels.end()},
+                                   roots, slots, restricted, sizes);
     return plan;
 }
 

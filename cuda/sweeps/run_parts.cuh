@@ -1,22 +1,27 @@
-// Records in a block's shared memory, and what its threads do with a few runs of a sweep, up and down: a thread a part. A host compiler
-// takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Records in a block's shared memory, and what its threads do with a few runs of a sweep, up and
+// down: a thread a part. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
+// before it.
 #pragma once
 
-#include "cuda/sweeps/prefetch.cuh"
 #include "cuda/sweeps/branchless_math.cuh"
+#include "cuda/sweeps/prefetch.cuh"
 #include "cuda/sweeps/runs_view.hpp"
 
 namespace catena::cuda::kernels {
 
-__device__ inline std::int64_t thread() { return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x; }
+__device__ inline std::int64_t thread() {
+    return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+}
 
 alignas(16) extern __shared__ double shared_numbers[];
 
-/// Records in a block's shared memory, `stride` numbers from one to the next: neither neighbouring threads nor those a power of two apart
-/// meet in a bank, and how far a number is from its record's first one a compiler knows.
+/// Records in a block's shared memory, `stride` numbers from one to the next: neither neighbouring
+/// threads nor those a power of two apart meet in a bank, and how far a number is from its record's
+/// first one a compiler knows.
 template <class T, int stride_ = static_cast<int>(sizeof(T) / sizeof(double))>
 struct PackedRecords {
-    static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double)), stride = stride_ | 1;
+    static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double)),
+                         stride = stride_ | 1;
     static_assert(numbers <= stride);
     static constexpr __host__ __device__ std::size_t size(int count) {
         return static_cast<std::size_t>(dca::packed_numbers(stride, count));
@@ -58,14 +63,14 @@ __device__ void move_some(int begin, int end, int step, Get const& get, Put cons
 /// does.
 template <class Sweep>
 concept takes_factors = requires(Sweep const& sweep, typename Sweep::Segment const& segment, typename Sweep::Node& node) {
-    sweep.joined(segment, segment, dca::JointAt{}, node, QuickFactors<Sweep::K == 1>{});
+    sweep.joined(segment, segment, dca::JointAt{}, node, BranchlessFactorizer<Sweep::K == 1>{});
 };
 template <class Sweep>
 __device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename Sweep::Segment const& inboard,
                                                   typename Sweep::Segment const& outboard, dca::JointAt const& at,
                                                   typename Sweep::Node& node) {
     if constexpr (takes_factors<Sweep>)
-        return sweep.joined(inboard, outboard, at, node, QuickFactors<Sweep::K == 1>{});
+        return sweep.joined(inboard, outboard, at, node, BranchlessFactorizer<Sweep::K == 1>{});
     else
         return sweep.joined(inboard, outboard, at, node);
 }
@@ -73,7 +78,7 @@ __device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename S
 template <bool quick, class Sweep, class Reader = dca::ReadHere>
 __device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t begin, std::int64_t end, Reader const& by = {}) {
     if constexpr (quick && takes_factors<Sweep>)
-        return sweep.read(begin, end, QuickInverseLength{}, by);
+        return sweep.read(begin, end, BranchlessInverseLength{}, by);
     else if constexpr (takes_factors<Sweep>)
         return sweep.read(begin, end, dca::InverseLength{}, by);
     else
@@ -82,7 +87,7 @@ __device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t be
 template <class Sweep, class Part>
 __device__ typename Sweep::Segment part_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part) {
     if constexpr (takes_factors<Sweep>)
-        return sweep.part(run, p, part, QuickFactors<Sweep::K == 1>{});
+        return sweep.part(run, p, part, BranchlessFactorizer<Sweep::K == 1>{});
     else
         return sweep.part(run, p, part);
 }
@@ -91,7 +96,7 @@ template <bool unroll, class Sweep, class Part, class State, class Passages>
 __device__ void down_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part, State const& first, State const& next,
                              Passages&& passages) {
     if constexpr (Sweep::K > 1)
-        sweep.template down<unroll>(run, p, part, first, next, passages, QuickFactors<false>{});
+        sweep.template down<unroll>(run, p, part, first, next, passages, BranchlessFactorizer<false>{});
     else
         sweep.template down<unroll>(run, p, part, first, next, passages);
 }

@@ -1,5 +1,6 @@
-// Scans along chains (tree/stages.hpp, plan_scan) on a GPU: a block climbs its part of the tree in its shared memory and descends there. A
-// host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Scans along chains (tree/stages.hpp, plan_scan) on a GPU: a block climbs its part of the tree in
+// its shared memory and descends there. A host compiler takes it too, where
+// tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include <algorithm>
@@ -25,16 +26,16 @@ struct DeviceScanStage {
     std::int32_t const* level_end = nullptr;
 };
 
-/// Whose runs' values come from their bodies' steps, one after the other (HingeScan); and what comes after the scan may come before it for
-/// runs that begin at the ground.
+/// Whose runs' values come from their bodies' steps, one after the other (RevoluteScan); and what
+/// comes after the scan may come before it for runs that begin at the ground.
 template <class Scan>
 concept goes_by_steps = requires(Scan const& scan, dca::Run const& run) {
     scan.step(run, 0);
     scan.begins_at_ground(run);
 };
 
-/// A block's part of it. On the way up a joined value takes the inboard one's place and that the outboard one's, on the way down what lies
-/// before a segment takes its place.
+/// A block's part of it. On the way up a joined value takes the inboard one's place and that the
+/// outboard one's, on the way down what lies before a segment takes its place.
 template <class Scan>
 class BlockOfScan {
     using Value = typename Scan::Value;
@@ -45,15 +46,19 @@ class BlockOfScan {
     static __host__ __device__ int size(DeviceScanStage const& stage) {
         return static_cast<int>(Values::size(stage.width)) + stage.width + (stage.levels + 1) / 2;
     }
-    /// Reads the lists, and what lies before what is complete where that is `known`: nothing waits for these later. A thread an item.
-    __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory, bool known, unsigned number = blockIdx.x)
+    /// Reads the lists, and what lies before what is complete where that is `known`: nothing waits
+    /// for these later. A thread an item.
+    __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory,
+                           bool known, unsigned number = blockIdx.x)
         : stage_(stage),
           scan_(scan),
           values_{memory},
           merges_(reinterpret_cast<dca::ScanMerge*>(memory + Values::size(stage.width))),
           level_end_(reinterpret_cast<std::int32_t*>(merges_ + stage.width)) {
         dca::ScanBlock const here = stage.block[number];
-        std::int64_t const item = here.item.begin + threadIdx.x, merge = here.merge.begin + threadIdx.x, top = here.top.begin + threadIdx.x;
+        std::int64_t const item = here.item.begin + threadIdx.x,
+                           merge = here.merge.begin + threadIdx.x,
+                           top = here.top.begin + threadIdx.x;
         has_item_ = item < here.item.end;
         has_top_ = top < here.top.end;
         if (has_item_) slot_ = stage.slot[item];
@@ -61,7 +66,8 @@ class BlockOfScan {
         if (has_top_) top_ = stage.tops[top];
         if (merge < here.merge.end) merges_[threadIdx.x] = stage.merges[merge];
         if (static_cast<int>(threadIdx.x) < stage.levels)
-            level_end_[threadIdx.x] = stage.level_end[static_cast<std::int64_t>(number) * stage.levels + threadIdx.x];
+            level_end_[threadIdx.x] =
+                stage.level_end[static_cast<std::int64_t>(number) * stage.levels + threadIdx.x];
         if (known) learn();
     }
     /// What lies before what is complete.
@@ -72,11 +78,14 @@ class BlockOfScan {
     /// `runs_are_known`: as wholes.
     template <bool runs_are_known = false>
     __device__ void climb() const {
-        if (has_item_) values_.store(place(), !runs_are_known && stage_.runs ? scan_.of_run(run_) : scan_.whole(slot_));
+        if (has_item_)
+            values_.store(place(),
+                          !runs_are_known && stage_.runs ? scan_.of_run(run_) : scan_.whole(slot_));
         CATENA_NO_UNROLL
         for (int l = 0; l < stage_.levels; ++l)
             at_merge(l, [&](dca::ScanMerge const& m) {
-                Value const inboard = values_.load(m.inboard), joined = scan_.joined(inboard, values_.load(m.outboard));
+                Value const inboard = values_.load(m.inboard),
+                            joined = scan_.joined(inboard, values_.load(m.outboard));
                 values_.store(m.inboard, joined);
                 values_.store(m.outboard, inboard);
             });
@@ -100,7 +109,8 @@ class BlockOfScan {
         CATENA_NO_UNROLL
         for (int l = stage_.levels - 1; l >= 0; --l)
             at_merge(l, [&](dca::ScanMerge const& m) {
-                values_.store(m.outboard, scan_.joined(values_.load(m.inboard), values_.load(m.outboard)));
+                values_.store(m.outboard,
+                              scan_.joined(values_.load(m.inboard), values_.load(m.outboard)));
             });
         __syncthreads();
         if (has_item_) scan_.set_before(slot_, values_.load(place()));
@@ -132,7 +142,8 @@ class BlockOfScan {
 template <class Scan>
 constexpr int scans_at_once = sizeof(typename Scan::Value) <= 8 * sizeof(double) ? 2 : 1;
 template <class Scan>
-__global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) climb_scan(DeviceScanStage stage, Scan scan) {
+__global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>)
+    climb_scan(DeviceScanStage stage, Scan scan) {
     wait_for_launch();
     BlockOfScan<Scan> const block(stage, scan, shared_numbers, false);
     block.climb();
@@ -156,17 +167,21 @@ template <class Action>
 inline constexpr bool is_of_items = false;
 template <class Item, class Action>
 inline constexpr bool is_of_items<OfItem<Item, Action>> = true;
-/// action(k) for every body or item k, by all threads of the launch: neighbours at neighbouring places.
+/// action(k) for every body or item k, by all threads of the launch: neighbours at neighbouring
+/// places.
 template <bool of_items, class Action>
 __device__ void for_all(std::int64_t count, Action const& action) {
-    std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x, end = of_items ? count : gpu_order::padded(count);
+    std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x,
+                       end = of_items ? count : gpu_order::padded(count);
     for (std::int64_t i = thread(); i < end; i += threads)
         if (std::int64_t const k = of_items ? i : gpu_order::body(i); k < count) action(k);
 }
-/// What a cluster's blocks find of the runs of a stage of one block: a thread a body, then a thread a run.
+/// What a cluster's blocks find of the runs of a stage of one block: a thread a body, then a thread
+/// a run.
 template <class Scan>
 class RunsByStep {
-    static constexpr int bodies = static_cast<int>(dca::longest_run), at_once = most_of_scan / bodies;
+    static constexpr int bodies = static_cast<int>(dca::longest_run),
+                         at_once = most_of_scan / bodies;
     using Steps = PackedRecords<typename Scan::Step>;
 
   public:
@@ -191,10 +206,12 @@ class RunsByStep {
         CATENA_NO_UNROLL
         for (int i = thread / bodies; begin_ + i < end_; i += at_once) {
             dca::Run const run = stage_.runs[begin_ + i];
-            if (thread % bodies < run.count) steps_.store(i * bodies + thread % bodies, scan_.step(run, thread % bodies));
+            if (thread % bodies < run.count)
+                steps_.store(i * bodies + thread % bodies, scan_.step(run, thread % bodies));
         }
         __syncthreads();
-        if (int const i = begin_ + thread; i < end_) scan_.set_whole(stage_.slot[i], whole(thread, static_cast<int>(stage_.runs[i].count)));
+        if (int const i = begin_ + thread; i < end_)
+            scan_.set_whole(stage_.slot[i], whole(thread, static_cast<int>(stage_.runs[i].count)));
     }
 
   private:
@@ -203,7 +220,8 @@ class RunsByStep {
         auto rotation = rotation_of_first;
         auto omega = omega_of_first;
         CATENA_NO_UNROLL
-        for (int body = 1; body < count; ++body) Scan::go_on(rotation, omega, steps_.load(i * bodies + body));
+        for (int body = 1; body < count; ++body)
+            Scan::go_on(rotation, omega, steps_.load(i * bodies + body));
         return Scan::ended(rotation, omega);
     }
 
@@ -212,11 +230,11 @@ class RunsByStep {
     Steps steps_;
     int begin_, end_;
 };
-/// Of one block's runs, and then action(i) for every item i, a run of the stage's: by one cluster, whose first block turns() when all runs'
-/// wholes are known.
+/// Of one block's runs, and then action(i) for every item i, a run of the stage's: by one cluster,
+/// whose first block turns() when all runs' wholes are known.
 template <class Scan, class Action, class Turns>
-__device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, double* memory, std::int64_t count, Action const& action,
-                              Turns const& turns) {
+__device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, double* memory,
+                              std::int64_t count, Action const& action, Turns const& turns) {
     static_assert(is_of_items<Action>);
     RunsByStep<Scan>(stage, scan, memory)();
     meet_cluster();
@@ -231,14 +249,17 @@ __device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, do
 }
 /// Of one block, and then action(k) for every body or item k: by one cluster.
 template <class Scan, class Action>
-__global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
+__global__ void __launch_bounds__(most_of_scan)
+    turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
     wait_for_launch();
     if constexpr (goes_by_steps<Scan>) {
-        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true, 0);  // lists on their way meanwhile
-        turn_by_steps(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage), count, action, [&] {
-            block.template climb<true>();
-            block.descend();
-        });
+        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true,
+                                      0);  // lists on their way meanwhile
+        turn_by_steps(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage), count, action,
+                      [&] {
+                          block.template climb<true>();
+                          block.descend();
+                      });
     } else {
         if (blockIdx.x == 0) {
             BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
@@ -252,8 +273,10 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage s
 /// Of that, of most_of_scan threads each.
 template <class Scan>
 unsigned blocks_of_turn(DeviceScanStage const& stage, std::int64_t count) {
-    std::int64_t const wanted = goes_by_steps<Scan> ? std::max(count, stage.width * dca::longest_run) : count;
-    return static_cast<unsigned>(std::min<std::int64_t>(most_in_cluster, (wanted - 1) / most_of_scan + 1));
+    std::int64_t const wanted =
+        goes_by_steps<Scan> ? std::max(count, stage.width * dca::longest_run) : count;
+    return static_cast<unsigned>(
+        std::min<std::int64_t>(most_in_cluster, (wanted - 1) / most_of_scan + 1));
 }
 template <class Scan>
 std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
@@ -263,7 +286,8 @@ std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
 }
 /// Of one block, with exchange() and the one block of the top `above` in between, as turn().
 template <bool runs_are_known, class Scan, class Exchange>
-__device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above, Exchange const& exchange) {
+__device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above,
+                                  Exchange const& exchange) {
     block.template climb<runs_are_known>();
     block.put_tops();
     __syncthreads();
@@ -276,7 +300,8 @@ __device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> co
     block.descend();
 }
 template <class Scan, class Exchange>
-__global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
+__global__ void __launch_bounds__(most_of_scan)
+    turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
     wait_for_launch();
     BlockOfScan<Scan> block(stage, scan, shared_numbers, false);
     BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
@@ -285,7 +310,8 @@ __global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage
 /// The same of one block's runs, and then action(i) as turn_scan_then().
 template <class Scan, class Exchange, class Action>
 __global__ void __launch_bounds__(most_of_scan)
-    turn_shared_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan, std::int64_t count, Action action) {
+    turn_shared_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan,
+                          std::int64_t count, Action action) {
     wait_for_launch();
     double* const of_top = shared_numbers + BlockOfScan<Scan>::size(stage);
     BlockOfScan<Scan> block(stage, scan, shared_numbers, false, 0);
@@ -294,13 +320,16 @@ __global__ void __launch_bounds__(most_of_scan)
                   [&] { turn_shared_block<true>(block, above, exchange); });
 }
 template <class Scan>
-__global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {
+__global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>)
+    descend_scan(DeviceScanStage stage, Scan scan) {
     wait_for_launch();
     BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
     block.take();
     block.descend();
 }
 
-inline unsigned threads_of_scan(DeviceScanStage const& stage) { return static_cast<unsigned>((stage.width + 31) / 32 * 32); }
+inline unsigned threads_of_scan(DeviceScanStage const& stage) {
+    return static_cast<unsigned>((stage.width + 31) / 32 * 32);
+}
 
 }  // namespace catena::cuda::kernels

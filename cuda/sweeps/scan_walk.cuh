@@ -4,14 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "cuda/sweeps/scan_kernels.cuh"
 #include "cuda/sweeps/frontier_launch.hpp"
+#include "cuda/sweeps/scan_kernels.cuh"
 
 namespace catena::cuda {
 
-/// `Launches`: stages() and blocks(i) of stage i; climb(i, scan), turn(i, scan) and descend(i, scan) of it; whether
-/// turn_then(scan, count, action) was launched; turn_shared(scan, exchange, top) of the last stage, what ranks show each other and `top`,
-/// and whether turn_shared_then(scan, exchange, top, count, action) was launched.
+/// `Launches`: stages() and blocks(i) of stage i; climb(i, scan), turn(i, scan) and descend(i,
+/// scan) of it; whether turn_then(scan, count, action) was launched; turn_shared(scan, exchange,
+/// top) of the last stage, what ranks show each other and `top`, and whether turn_shared_then(scan,
+/// exchange, top, count, action) was launched.
 template <class Launches>
 class ScanWalk {
   public:
@@ -51,8 +52,10 @@ class ScanWalk {
     }
     /// And at_once().
     template <class Scan, class Exchange, class Action>
-    bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top, std::int64_t count, Action const& action) const {
-        return is_one_block() && turns_in_a_block(launches_, top) && launches_.turn_shared_then(scan, exchange, top, count, action);
+    bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top,
+                     std::int64_t count, Action const& action) const {
+        return is_one_block() && turns_in_a_block(launches_, top) &&
+               launches_.turn_shared_then(scan, exchange, top, count, action);
     }
 
   private:

@@ -1,5 +1,5 @@
-// A block's part of a sweep's stage (tree/stages.hpp) on a GPU. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
-// before it.
+// A block's part of a sweep's stage (tree/stages.hpp) on a GPU. A host compiler takes it too, where
+// tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include <algorithm>
@@ -18,17 +18,20 @@ struct DeviceStage {
     RunsView runs = {};  // the items; none where they are not
     dca::StageWord const* words = nullptr;
     dca::StageRoot const* roots = nullptr;
-    double* kept = nullptr;  // of every block, its segments' memory: StageRecords::kept numbers a place
-    bool gathers = false;    // as dca::Stage
+    double* kept =
+        nullptr;  // of every block, its segments' memory: StageRecords::kept numbers a place
+    bool gathers = false;  // as dca::Stage
 };
 
-/// Whether lanes of a warp share a merge: larger segments and biases at once find no registers in one.
+/// Whether lanes of a warp share a merge: larger segments and biases at once find no registers in
+/// one.
 template <class Sweep>
 constexpr bool merges_by_teams = false;
 template <class Sweep>
     requires requires(Sweep const& sweep) { sweep.matrices(), sweep.biases(); }
 constexpr bool merges_by_teams<Sweep> = (Sweep::K > dca::most_directions_of_a_thread);
-/// Threads of a stage's block at most; of one that turns, where few blocks have a GPU to themselves.
+/// Threads of a stage's block at most; of one that turns, where few blocks have a GPU to
+/// themselves.
 template <class Sweep>
 constexpr int threads_of = merges_by_teams<Sweep> ? 128 : Sweep::Sweeps::in_stage.threads;
 template <class Sweep>
@@ -36,7 +39,8 @@ constexpr int threads_of_turn = merges_by_teams<Sweep> ? 256 : threads_of<Sweep>
 /// And blocks that share a multiprocessor where a stage's memory lets them.
 template <class Sweep>
 constexpr int blocks_of_stage = merges_by_teams<Sweep> ? 4 : 1;
-/// Threads where so many are planned for a merge each, and there may be so many. Teams always take all.
+/// Threads where so many are planned for a merge each, and there may be so many. Teams always take
+/// all.
 template <class Sweep>
 constexpr int threads_for(int planned, int most) {
     return merges_by_teams<Sweep> ? most : planned;
@@ -45,13 +49,16 @@ constexpr int threads_for(int planned, int most) {
 /// action(i) for i of [0, count) by a block's threads.
 template <class Action>
 __device__ void each_of(int count, Action const& action) {
-    for (auto i = static_cast<int>(threadIdx.x); i < count; i += static_cast<int>(blockDim.x)) action(i);
+    for (auto i = static_cast<int>(threadIdx.x); i < count; i += static_cast<int>(blockDim.x))
+        action(i);
 }
 /// How segments, nodes and forces lie in a stage's shared memory: a node in the place of a segment.
 template <class Sweep>
 struct RecordsOfStage {
     using Segments = PackedRecords<typename Sweep::Segment>;
-    using Nodes = PackedRecords<typename Sweep::Sweeps::Node, std::max(Segments::stride, numbers_of<typename Sweep::Sweeps::Node>)>;
+    using Nodes =
+        PackedRecords<typename Sweep::Sweeps::Node,
+                      std::max(Segments::stride, numbers_of<typename Sweep::Sweeps::Node>)>;
     using Forces = PackedRecords<typename Sweep::Sweeps::State>;
     static_assert(!Sweep::keeps_nodes || Nodes::stride == Segments::stride);
 };
@@ -64,8 +71,9 @@ struct RecordsOfStage<Sweep> {
     using Forces = typename MergeTeam<Sweep>::Forces;
 };
 
-/// A block's part of a stage, in its shared memory: its words, which are read once, and the segments and forces at its places. A sweep
-/// that keeps nodes, or whose merges go by teams, has those there as well, each in the place of the outboard segment that it was made of.
+/// A block's part of a stage, in its shared memory: its words, which are read once, and the
+/// segments and forces at its places. A sweep that keeps nodes, or whose merges go by teams, has
+/// those there as well, each in the place of the outboard segment that it was made of.
 template <class Sweep>
 class BlockOfStage {
     using Segment = typename Sweep::Segment;
@@ -77,13 +85,16 @@ class BlockOfStage {
     static constexpr bool by_teams = merges_by_teams<Sweep>;
 
   public:
-    /// Numbers that it needs, of so many threads; an even number, so that words may stand behind them.
+    /// Numbers that it needs, of so many threads; an even number, so that words may stand behind
+    /// them.
     static __host__ __device__ int size(DeviceStage const& stage, int of_threads) {
-        int const all = before_parts(stage) + (stage.runs ? static_cast<int>(Segments::size(of_threads)) : 0);
+        int const all =
+            before_parts(stage) + (stage.runs ? static_cast<int>(Segments::size(of_threads)) : 0);
         return all + all % 2;
     }
     /// `block` of the stage.
-    __device__ BlockOfStage(DeviceStage const& stage, unsigned block, Sweep const& sweep, double* memory)
+    __device__ BlockOfStage(DeviceStage const& stage, unsigned block, Sweep const& sweep,
+                            double* memory)
         : stage_(stage),
           block_(block),
           sweep_(sweep),
@@ -99,22 +110,27 @@ class BlockOfStage {
         dca::StageWord const* const from = stage_.words + static_cast<std::int64_t>(block_) * count;
         auto* const to = reinterpret_cast<dca::StageWord*>(memory_);
         move_some<4>(
-            static_cast<int>(threadIdx.x), count, static_cast<int>(blockDim.x), [&](int i) { return from[i]; },
+            static_cast<int>(threadIdx.x), count, static_cast<int>(blockDim.x),
+            [&](int i) { return from[i]; },
             [&](int i, dca::StageWord const& word) { to[i] = word; });
     }
 
-    /// `part`: of the thread's bodies, where items are runs. `and_down`: the way down is the same launch's.
+    /// `part`: of the thread's bodies, where items are runs. `and_down`: the way down is the same
+    /// launch's.
     template <bool and_down>
     __device__ void take_items(typename Sweep::Part& part) const {
         dca::BlockHead const& head = words_.head();
         if constexpr (by_teams)
             take_segments();
         else if (!stage_.runs)
-            each_of(head.items, [&](int i) { segments_.store(i, sweep_.load(words_.item(i).own_slot())); });
+            each_of(head.items,
+                    [&](int i) { segments_.store(i, sweep_.load(words_.item(i).own_slot())); });
         else
             climb_some_runs<and_down>(
                 stage_.runs, head.first_item, head.first_item + head.items, sweep_, parts_, part,
-                [&](std::int64_t i, Segment const& segment) { segments_.store(static_cast<int>(i - head.first_item), segment); });
+                [&](std::int64_t i, Segment const& segment) {
+                    segments_.store(static_cast<int>(i - head.first_item), segment);
+                });
     }
     /// What the blocks below give, and the rest as anywhere.
     __device__ void take_items(Letters const& letters) const {
@@ -123,19 +139,22 @@ class BlockOfStage {
             dca::BlockItem const& item = words_.item(i);
             if (item.comes_by_letter()) return;
             if constexpr (by_teams)
-                for (int n = 0; n < Segments::numbers; ++n) segments_.number(i, n) = sweep_.s.number_of_segment(item.own_slot(), n);
+                for (int n = 0; n < Segments::numbers; ++n)
+                    segments_.number(i, n) = sweep_.s.number_of_segment(item.own_slot(), n);
             else
                 segments_.store(i, sweep_.load(item.own_slot()));
         });
-        // Neighbouring threads take neighbouring items, as many numbers of an item as there are threads left.
+        // Neighbouring threads take neighbouring items, as many numbers of an item as there are
+        // threads left.
         constexpr int at_once = Segments::numbers > 16 ? 16 : 8;  // memory is far
         auto const all = static_cast<int>(blockDim.x), own = static_cast<int>(threadIdx.x);
         int side_by_side = 32;
         while (side_by_side < items && side_by_side < all) side_by_side *= 2;
         for (int i = own % side_by_side; i < items; i += side_by_side)
             if (words_.item(i).comes_by_letter())
-                letters.take_some<at_once>(i, own / side_by_side, Segments::numbers, all / side_by_side,
-                                           [&](int n, double number) { segments_.number(i, n) = number; });
+                letters.take_some<at_once>(
+                    i, own / side_by_side, Segments::numbers, all / side_by_side,
+                    [&](int n, double number) { segments_.number(i, n) = number; });
     }
     __device__ void climb() const {
         CATENA_NO_UNROLL
@@ -143,8 +162,11 @@ class BlockOfStage {
             __syncthreads();
             if constexpr (by_teams)
                 each_merge_of_team(l, [&](auto const& team, dca::BlockMerge const& m, bool works) {
-                    double *const inboard = segments_.record(m.inboard), *const outboard = segments_.record(m.outboard);
-                    team.join(sweep_, {m.joint, m.restricted}, works, {inboard, outboard, inboard, outboard});
+                    double *const inboard = segments_.record(m.inboard), *const outboard =
+                                                                             segments_.record(
+                                                                                 m.outboard);
+                    team.join(sweep_, {m.joint, m.restricted}, works,
+                              {inboard, outboard, inboard, outboard});
                 });
             else
                 each_merge(l, [&](dca::BlockMerge const& m) { join(m); });
@@ -156,7 +178,9 @@ class BlockOfStage {
         if constexpr (by_teams)
             for (int i = 0; i < ups; ++i) give(words_.up(i));
         else
-            each_of(ups, [&](int i) { sweep_.store(words_.up(i).at, segments_.load(words_.up(i).place)); });
+            each_of(ups, [&](int i) {
+                sweep_.store(words_.up(i).at, segments_.load(words_.up(i).place));
+            });
     }
     /// To the block of the stage above.
     __device__ void give_up(Letters const& letters) const {
@@ -168,20 +192,23 @@ class BlockOfStage {
     }
     __device__ void close() const {
         dca::BlockHead const& head = words_.head();
-        each_of(head.roots, [&](int i) { close(i == 0 ? head.root : stage_.roots[head.first_root + i]); });
+        each_of(head.roots,
+                [&](int i) { close(i == 0 ? head.root : stage_.roots[head.first_root + i]); });
     }
     /// Between a climb and a descent of their own.
     __device__ void put_nodes() const {
         if constexpr (by_teams)
             copy(segments_.origin, kept());
         else if constexpr (Sweep::keeps_nodes)
-            each_merge([&](dca::BlockMerge const& m) { sweep_.keep(m.joint, nodes_.load(m.outboard)); });
+            each_merge(
+                [&](dca::BlockMerge const& m) { sweep_.keep(m.joint, nodes_.load(m.outboard)); });
     }
     __device__ void take_nodes() const {
         if constexpr (by_teams)
             copy(kept(), segments_.origin);
         else if constexpr (Sweep::keeps_nodes)
-            each_merge([&](dca::BlockMerge const& m) { nodes_.store(m.outboard, sweep_.node(m.joint)); });
+            each_merge(
+                [&](dca::BlockMerge const& m) { nodes_.store(m.outboard, sweep_.node(m.joint)); });
     }
     __device__ void take_forces() const {
         each_of(words_.head().downs, [&](int i) { take_force(words_.down(i)); });
@@ -251,7 +278,7 @@ class BlockOfStage {
         Segment const whole = segments_.load(closed.place);
         if constexpr (takes_factors<Sweep>)
             if (closed.root.tip == dca::TipTo::nothing)
-                return sweep_.close_free({closed.root.first, closed.restricted}, whole, QuickFactors<false>{});
+                return sweep_.close_free({closed.root.first, closed.restricted}, whole, BranchlessFactorizer<false>{});
         sweep_.close(closed.root, whole);
     }
     __device__ void take_force(dca::BlockHanded const& down) const { forces_.store(down.place, sweep_.s.forces.load(down.at)); }
@@ -317,7 +344,7 @@ class BlockOfStage {
     DeviceStage const& stage_;
     unsigned block_;
     Sweep const& sweep_;
-    dca::BlockWords words_;
+    dca::BlockEncoding words_;
     Segments segments_;
     Nodes nodes_;
     Forces forces_;

@@ -1,4 +1,5 @@
-// A sweep's stages (tree/stages.hpp) on a GPU. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// A sweep's stages (tree/stages.hpp) on a GPU. A host compiler takes it too, where
+// tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include "cuda/sweeps/run_groups.cuh"
@@ -8,12 +9,14 @@ namespace catena::cuda::kernels {
 
 constexpr int threads = 128;  // that many find registers for merges of every K
 
-/// Whether the next launch may start meanwhile. With larger handles its blocks that wait take more than they save.
+/// Whether the next launch may start meanwhile. With larger handles its blocks that wait take more
+/// than they save.
 template <class Sweep>
 constexpr bool lets_next_start = Sweep::Sweeps::K == 1;
 
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>) climb(DeviceStage stage, Sweep sweep) {
+__global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
+    climb(DeviceStage stage, Sweep sweep) {
     BlockOfStage<Sweep> const block(stage, blockIdx.x, sweep, shared_numbers);
     block.take_words();
     __syncthreads();
@@ -26,7 +29,8 @@ __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>) cli
     block.put_nodes();
 }
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>) descend(DeviceStage stage, Sweep sweep) {
+__global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
+    descend(DeviceStage stage, Sweep sweep) {
     BlockOfStage<Sweep> const block(stage, blockIdx.x, sweep, shared_numbers);
     block.take_words();
     __syncthreads();
@@ -43,27 +47,33 @@ constexpr int threads_among_ranks = std::min(256, threads_of_turn<Sweep>);
 struct NoExchange {
     __device__ void operator()() const {}
 };
-/// Up and down again: blocks of the last stage, `upper`. With a stage below, all of whose blocks run at once, the one block of `upper`
-/// comes last: it is all ears before the others have anything to say. With a `top` that ranks share, of one block as `upper`, exchange(),
-/// which all threads of that one call, shows what is in its slots to other ranks and fills in theirs, and it turns the top. The same
-/// instructions do all of it.
+/// Up and down again: blocks of the last stage, `upper`. With a stage below, all of whose blocks
+/// run at once, the one block of `upper` comes last: it is all ears before the others have anything
+/// to say. With a `top` that ranks share, of one block as `upper`, exchange(), which all threads of
+/// that one call, shows what is in its slots to other ranks and fills in theirs, and it turns the
+/// top. The same instructions do all of it.
 template <class Sweep, class Exchange>
 __global__ void __launch_bounds__(threads_of_turn<Sweep>)
-    turn(DeviceStage lower, DeviceStage upper, DeviceStage top, TurnLetters letters, Exchange exchange, Sweep sweep) {
+    turn(DeviceStage lower, DeviceStage upper, DeviceStage top, TopLaunchLetters letters,
+         Exchange exchange, Sweep sweep) {
     constexpr bool among_ranks = !std::is_same_v<Exchange, NoExchange>;
-    bool const by_letters = lower.blocks > 0, is_upper = blockIdx.x >= lower.blocks, has_top = among_ranks && is_upper;
+    bool const by_letters = lower.blocks > 0, is_upper = blockIdx.x >= lower.blocks,
+               has_top = among_ranks && is_upper;
     if constexpr (lets_next_start<Sweep>)
-        if (by_letters && !has_top) let_next_launch_start();  // which would else take the room of what other ranks wait for
+        if (by_letters && !has_top)
+            let_next_launch_start();  // which would else take the room of what other ranks wait for
     // Alone, a stage that gathers has nothing to do: all that it would is in its slots.
     int const begin = has_top && !by_letters && upper.gathers ? 1 : 0, end = has_top ? 2 : 1;
     auto const with_block = [&](bool is_top, auto const& action) {
         DeviceStage const stage = is_top ? top : is_upper ? upper : lower;
         unsigned const block = is_top ? 0 : is_upper ? blockIdx.x - lower.blocks : blockIdx.x;
-        int const before = is_top ? BlockOfStage<Sweep>::size(upper, static_cast<int>(blockDim.x)) : 0;
+        int const before =
+            is_top ? BlockOfStage<Sweep>::size(upper, static_cast<int>(blockDim.x)) : 0;
         action(BlockOfStage<Sweep>(stage, block, sweep, shared_numbers + before));
     };
     CATENA_NO_UNROLL
-    for (int i = begin; i < end; ++i) with_block(i == 1, [](auto const& block) { block.take_words(); });
+    for (int i = begin; i < end; ++i)
+        with_block(i == 1, [](auto const& block) { block.take_words(); });
     __syncthreads();
     wait_for_launch();
     if (by_letters) letters.open();
@@ -104,18 +114,20 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     }
     if (by_letters && threadIdx.x == 0) letters.close();
 }
-/// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want few registers, and many to hide that
-/// memory is far; on planar and spherical joints the way down does. On links' way up a fourth block finds none for quotients without
-/// branches.
+/// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want
+/// few registers, and many to hide that memory is far; on planar and spherical joints the way down
+/// does. On links' way up a fourth block finds none for quotients without branches.
 template <class Sweep>
 constexpr int blocks_of_climb = Sweep::Sweeps::K > 1   ? 1
                                 : takes_factors<Sweep> ? 3
                                                        : 4;
 template <class Sweep>
-constexpr int blocks_of_descent = Sweep::Sweeps::K == 1                                                    ? 4
-                                  : comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3
-                                                                                                           : 1;
-/// Whether a thread takes a whole run on the way up: larger handles would have most of them wait for one that joins the parts.
+constexpr int blocks_of_descent =
+    Sweep::Sweeps::K == 1                                                    ? 4
+    : comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3
+                                                                             : 1;
+/// Whether a thread takes a whole run on the way up: larger handles would have most of them wait
+/// for one that joins the parts.
 template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;
 /// As climb_run(), quickly. `read(p)`: of part p.
@@ -133,40 +145,50 @@ __device__ void climb_parts_quickly(Sweep const& sweep, dca::Run const& run, Rea
 template <class Sweep>
 __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
     if constexpr (comes_ahead<Sweep>) {
-        static_assert(Sweep::K > 1);  // bodies come once, and links look again where quick factors give up
+        static_assert(Sweep::K >
+                      1);  // bodies come once, and links look again where quick factors give up
         using Bodies = BodiesInTurn<BodiesOf<Sweep>>;
         Bodies bodies(sweep.bodies, run.body, run.body + run.count, shared_numbers);
         climb_parts_quickly(sweep, run, [&](int) { return typename Bodies::Part{bodies}; });
     } else if constexpr (takes_factors<Sweep> && !dca::takes_whole_runs<Sweep>) {
-        climb_parts_quickly(sweep, run, [&](int p) { return sweep.read(dca::begin_of(run, p), dca::end_of(run, p)); });
+        climb_parts_quickly(sweep, run, [&](int p) {
+            return sweep.read(dca::begin_of(run, p), dca::end_of(run, p));
+        });
     } else {
         climb_run(sweep, run);
     }
 }
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_runs(RunsView runs, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>)
+    climb_runs(RunsView runs, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     if constexpr (whole_runs<Sweep>) {
         if (std::int64_t const i = thread(); i < runs.count) climb_whole(sweep, runs[i]);
     } else {
         typename Sweep::Part part;
-        climb_some_runs<false>(runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), runs.count, sweep,
-                               shared_numbers, part,
-                               [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
+        climb_some_runs<false>(
+            runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run),
+            runs.count, sweep, shared_numbers, part,
+            [&](std::int64_t i, typename Sweep::Segment const& segment) {
+                sweep.store(runs[i].slot, segment);
+            });
     }
 }
 /// From the last block to the first: what the way up read last is still near.
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_runs(RunsView runs, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>)
+    descend_runs(RunsView runs, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     std::int64_t const block = gridDim.x - 1 - blockIdx.x;
     if constexpr (dca::takes_whole_runs<Sweep>) {
-        if (std::int64_t const i = block * blockDim.x + threadIdx.x; i < runs.count) descend_run(sweep, runs[i]);
+        if (std::int64_t const i = block * blockDim.x + threadIdx.x; i < runs.count)
+            descend_run(sweep, runs[i]);
     } else {
         descend_some_runs<true, false, true>(
-            runs, block * (blockDim.x / dca::parts_of_run), runs.count, sweep, shared_numbers, nullptr,
+            runs, block * (blockDim.x / dca::parts_of_run), runs.count, sweep, shared_numbers,
+            nullptr,
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
     }
@@ -175,26 +197,31 @@ __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_run
 /// The same with the levels above that join groups of runs, a block a group.
 static_assert(threads == runs_of_group * dca::parts_of_run);
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_groups(RunsView runs, GroupsView groups, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>)
+    climb_groups(RunsView runs, GroupsView groups, Sweep sweep) {
     using Segment = typename Sweep::Segment;
     constexpr std::size_t any_gpu_shares = 48 << 10;
-    static_assert(sizeof(double) * PackedRecords<Segment>::size(threads) <= any_gpu_shares);  // so that blocks are no smaller
+    static_assert(sizeof(double) * PackedRecords<Segment>::size(threads) <=
+                  any_gpu_shares);  // so that blocks are no smaller
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     typename Sweep::Part part;
     Segment own = Segment::zero();
-    climb_some_runs<false>(runs, std::int64_t{blockIdx.x} * runs_of_group, runs.count, sweep, shared_numbers, part,
+    climb_some_runs<false>(runs, std::int64_t{blockIdx.x} * runs_of_group, runs.count, sweep,
+                           shared_numbers, part,
                            [&](std::int64_t, Segment const& segment) { own = segment; });
     if (threadIdx.x < runs_of_group) GroupOfRuns(groups, runs, blockIdx.x).climb(sweep, own);
 }
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_groups(RunsView runs, GroupsView groups, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>)
+    descend_groups(RunsView runs, GroupsView groups, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     std::int64_t const group = gridDim.x - 1 - blockIdx.x;
     auto const ends = GroupOfRuns(groups, runs, group).descend(sweep);
     descend_some_runs<true, false, true>(
-        runs, group * runs_of_group, runs.count, sweep, shared_numbers, nullptr, [&](dca::Run const&, std::int64_t) { return ends.first; },
+        runs, group * runs_of_group, runs.count, sweep, shared_numbers, nullptr,
+        [&](dca::Run const&, std::int64_t) { return ends.first; },
         [&](dca::Run const&, std::int64_t) { return ends.next; });
 }
 
@@ -205,14 +232,16 @@ struct RunsGrid {
 /// Threads of whole groups of 32 runs, which walk side by side.
 inline RunsGrid grid_of_runs(std::int64_t runs, int threads_of_run, int threads_of_block) {
     std::int64_t const wanted = (runs + 31) / 32 * 32 * threads_of_run;
-    return {static_cast<unsigned>((wanted + threads_of_block - 1) / threads_of_block), static_cast<unsigned>(threads_of_block), 0};
+    return {static_cast<unsigned>((wanted + threads_of_block - 1) / threads_of_block),
+            static_cast<unsigned>(threads_of_block), 0};
 }
 /// Threads of a block of whole runs: a warp, so that few runs spread over a GPU.
 template <class Sweep>
 constexpr int threads_of_whole_runs = dca::takes_whole_runs<Sweep> ? 32 : threads;
 /// The largest blocks whose numbers(threads) in shared memory the GPU has.
 template <class Numbers>
-RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads, std::size_t most_shared_bytes, Numbers const& numbers) {
+RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads,
+                        std::size_t most_shared_bytes, Numbers const& numbers) {
     int of_block = most_threads;
     while (of_block > 32 && sizeof(double) * numbers(of_block) > most_shared_bytes) of_block /= 2;
     RunsGrid grid = grid_of_runs(runs, threads_of_run, of_block);
@@ -223,18 +252,21 @@ RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads,
 template <class Sweep>
 RunsGrid grid_of_climb(std::int64_t runs, std::size_t most_shared_bytes) {
     if constexpr (comes_ahead<Sweep>)
-        return grid_that_fits(runs, 1, threads, most_shared_bytes, BodiesInTurn<BodiesOf<Sweep>>::size);
+        return grid_that_fits(runs, 1, threads, most_shared_bytes,
+                              BodiesInTurn<BodiesOf<Sweep>>::size);
     else if constexpr (whole_runs<Sweep>)
         return grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>);
     else
-        return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes, PackedRecords<typename Sweep::Segment>::size);
+        return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes,
+                              PackedRecords<typename Sweep::Segment>::size);
 }
 template <class Sweep>
 RunsGrid grid_of_descent(std::int64_t runs, std::size_t most_shared_bytes) {
     if constexpr (dca::takes_whole_runs<Sweep>)
         return grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>);
     else
-        return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes, numbers_of_descent<Sweep>);
+        return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes,
+                              numbers_of_descent<Sweep>);
 }
 
 }  // namespace catena::cuda::kernels

@@ -3,17 +3,19 @@
 
 #include <cstddef>
 
-#include "cuda/sweeps/group_lanes.cuh"
 #include "cuda/sweeps/frontier_launch.hpp"
+#include "cuda/sweeps/group_lanes.cuh"
 #include "cuda/sweeps/stage_kernels.cuh"
 
 namespace catena::cuda {
 
-/// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers(), blocks(i) of stage i and whether it
-/// takes_runs(i); climb(i, sweep) and descend(i, sweep) of stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one
-/// after it, if any, where can_turn() says so; climb_runs(sweep) and descend_runs(sweep). It can turn the last stage alone. Groups of runs
-/// (run_groups.hpp): climb_groups(sweep) and descend_groups(sweep), in the place of the runs' where there are stages_above_groups(); where
-/// it can_turn_groups<Sweep>(), turn_groups(sweep) between these stands for all stages.
+/// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers(),
+/// blocks(i) of stage i and whether it takes_runs(i); climb(i, sweep) and descend(i, sweep) of
+/// stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one after it, if
+/// any, where can_turn() says so; climb_runs(sweep) and descend_runs(sweep). It can turn the last
+/// stage alone. Groups of runs (run_groups.hpp): climb_groups(sweep) and descend_groups(sweep), in
+/// the place of the runs' where there are stages_above_groups(); where it can_turn_groups<Sweep>(),
+/// turn_groups(sweep) between these stands for all stages.
 template <class Launches>
 class StageWalk {
   public:
@@ -41,14 +43,15 @@ class StageWalk {
         turn_stages(sweep);
         descend_runs(sweep);
     }
-    /// The same with what ranks show each other and the `top` that they share, if one launch turns it with the last stages; else nothing is
-    /// done.
+    /// The same with what ranks show each other and the `top` that they share, if one launch turns
+    /// it with the last stages; else nothing is done.
     template <class Sweep, class Exchange>
     bool turn_shared(Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
         if (!turns_in_a_block(launches_, top)) return false;
         std::size_t const stages = launches_.stages();
         for (std::size_t const turned : {std::size_t{2}, std::size_t{1}})
-            if (stages >= turned && !goes_apart<Sweep>(stages - turned) && launches_.can_turn(stages - turned, sweep, exchange, top)) {
+            if (stages >= turned && !goes_apart<Sweep>(stages - turned) &&
+                launches_.can_turn(stages - turned, sweep, exchange, top)) {
                 climb_runs(sweep);
                 turn_from(stages - turned, sweep, exchange, top);
                 descend_runs(sweep);
@@ -59,9 +62,11 @@ class StageWalk {
 
   private:
     /// Without one that gathers, which has nothing to do alone.
-    std::size_t working_stages() const { return launches_.stages() - (launches_.gathers() ? 1 : 0); }
-    /// Where merges go by teams, a stage with runs is for the sweep's two sweeps one after the other: a thread finds no registers for runs'
-    /// segments and biases at once.
+    std::size_t working_stages() const {
+        return launches_.stages() - (launches_.gathers() ? 1 : 0);
+    }
+    /// Where merges go by teams, a stage with runs is for the sweep's two sweeps one after the
+    /// other: a thread finds no registers for runs' segments and biases at once.
     template <class Sweep>
     bool goes_apart(std::size_t stage) const {
         return kernels::merges_by_teams<Sweep> && launches_.takes_runs(stage);
@@ -69,7 +74,8 @@ class StageWalk {
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
         std::size_t const stages = launches_.stages(),
-                          first = stages >= 2 && launches_.can_turn(stages - 2, sweep) ? stages - 2 : stages - 1;
+                          first = stages >= 2 && launches_.can_turn(stages - 2, sweep) ? stages - 2
+                                                                                       : stages - 1;
         if constexpr (kernels::merges_by_teams<Sweep>)
             if (goes_apart<Sweep>(first)) {
                 climb_stages(stages, sweep.matrices());

@@ -1,5 +1,6 @@
-// What a team of lanes keeps of its run in shared memory (revolute_teams.cuh): on the way up what it needs of the bodies ahead, on the way
-// down of the hinges behind. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// What a team of lanes keeps of its run in shared memory (revolute_teams.cuh): on the way up what
+// it needs of the bodies ahead, on the way down of the revolute joints behind. A host compiler
+// takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include "cuda/sweeps/stage_kernels.cuh"
@@ -16,17 +17,22 @@ class SlotsOfTeam {
   public:
     static constexpr std::size_t size = Records::size(teams * slots);
     __device__ SlotsOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes) {}
-    __device__ void put(int slot, T const& value) const { records_.store(slot * teams + team_, value); }
+    __device__ void put(int slot, T const& value) const {
+        records_.store(slot * teams + team_, value);
+    }
     __device__ T get(int slot) const { return records_.load(slot * teams + team_); }
-    __device__ double& number(int slot, int n) const { return records_.number(slot * teams + team_, n); }
+    __device__ double& number(int slot, int n) const {
+        return records_.number(slot * teams + team_, n);
+    }
 
   private:
     Records records_;
     int team_;
 };
-constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run), bodies_within = bodies_of_whole_run - 2;
-/// How many bodies a team's run has. `whole`: as a whole run, which teams of any width take; else three or more, and the warp's other teams
-/// may have another number.
+constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run),
+              bodies_within = bodies_of_whole_run - 2;
+/// How many bodies a team's run has. `whole`: as a whole run, which teams of any width take; else
+/// three or more, and the warp's other teams may have another number.
 template <int lanes, bool whole>
 class BodiesOfTeam {
   public:
@@ -40,63 +46,73 @@ class BodiesOfTeam {
         int most = count();
         if constexpr (!whole)
             for (int apart = lanes; apart < 32; apart *= 2)
-                if (int const other = __shfl_sync(0xffffffffu, most, lane ^ apart); other > most) most = other;
+                if (int const other = __shfl_sync(0xffffffffu, most, lane ^ apart); other > most)
+                    most = other;
         return most;
     }
 
   private:
     int count_;
 };
-/// What a run needs of a body to go on to it. All are found before what the way up needs takes the registers; not those of the first and
-/// the last, so that eight warps have room.
+/// What a run needs of a body to go on to it. All are found before what the way up needs takes the
+/// registers; not those of the first and the last, so that eight warps have room.
 struct BodyAhead : dca::BodyInRun<double> {
-    double torque_about;  // the hinge, where that is in no body's own
+    double torque_about;  // the revolute joint, where that is in no body's own
     dca::AddedBody<double> body;
     dca::Wrench<double> load;  // about handle 2
 };
 template <int lanes>
 using BodiesAhead = SlotsOfTeam<BodyAhead, lanes, bodies_within>;
 /// And to come back from it, where the force at the run's first joint is known.
-struct HingeBehind {
-    dca::PushedHinge<double> hinge;
+struct RevoluteBehind {
+    dca::PushedRevolute<double> revolute;
     dca::BodyInRun<double> body;
 };
 template <class Sweep, int lanes, bool whole>
-class HingesBehind {
-    using Tail = typename dca::HingesInJoints<typename Sweep::Sweeps>::Tail;
-    using Hinges = SlotsOfTeam<HingeBehind, lanes, bodies_of_whole_run - 1>;
+class RevolutesBehind {
+    using Tail = typename dca::RunWorkspace<typename Sweep::Sweeps>::Tail;
+    using Revolutes = SlotsOfTeam<RevoluteBehind, lanes, bodies_of_whole_run - 1>;
     using Tails = SlotsOfTeam<Tail, lanes, 1>;
-    using Frames = SlotsOfTeam<dca::HingedFrame<double>, lanes, 3>;  // of the first body and the last two
+    using Frames =
+        SlotsOfTeam<dca::RevoluteFrame<double>, lanes, 3>;  // of the first body and the last two
     static_assert(lanes >= 3);
 
   public:
-    static constexpr std::size_t size = Hinges::size + Tails::size + Frames::size;
-    __device__ HingesBehind(BodiesOfTeam<lanes, whole> const& bodies, double* memory, int lane)
+    static constexpr std::size_t size = Revolutes::size + Tails::size + Frames::size;
+    __device__ RevolutesBehind(BodiesOfTeam<lanes, whole> const& bodies, double* memory, int lane)
         : bodies_(bodies),
-          hinges_(memory, lane),
-          tail_(memory + Hinges::size, lane),
-          frames_(memory + Hinges::size + Tails::size, lane),
+          revolutes_(memory, lane),
+          tail_(memory + Revolutes::size, lane),
+          frames_(memory + Revolutes::size + Tails::size, lane),
           own_(lane % lanes) {}
     /// All lanes of the warp together.
     template <class Kept, class Frame>
-    __device__ void fetch(Kept const& kept, Vector<double, 5> const& first, Frame const& frame) const {
+    __device__ void fetch(Kept const& kept, Vector<double, 5> const& first,
+                          Frame const& frame) const {
         if (own_ < 3) frames_.put(own_, frame(own_ == 0 ? 0 : bodies_.count() - 3 + own_));
         CATENA_NO_UNROLL
-        for (int i = 1 + own_; i < bodies_.count(); i += lanes) hinges_.put(i - 1, {pushed(kept.hinge(i), first), kept.body(i)});
-        move_some<8>(own_, numbers_of<Tail>, lanes, [&](int n) { return kept.tail(n); }, [&](int n, double v) { tail_.number(0, n) = v; });
+        for (int i = 1 + own_; i < bodies_.count(); i += lanes)
+            revolutes_.put(i - 1, {pushed(kept.revolute(i), first), kept.body(i)});
+        move_some<8>(
+            own_, numbers_of<Tail>, lanes, [&](int n) { return kept.tail(n); },
+            [&](int n, double v) { tail_.number(0, n) = v; });
         __syncwarp();
     }
-    // What dca::descend_hinges() asks for.
-    __device__ dca::HingedFrame<double> frame(int i) const { return frames_.get(i == 0 ? 0 : i - (bodies_.count() - 3)); }
-    __device__ dca::PushedHinge<double> hinge(int i) const { return hinges_.get(i - 1).hinge; }
-    __device__ dca::BodyInRun<double> body(int i) const { return hinges_.get(i - 1).body; }
+    // What dca::descend_revolutes() asks for.
+    __device__ dca::RevoluteFrame<double> frame(int i) const {
+        return frames_.get(i == 0 ? 0 : i - (bodies_.count() - 3));
+    }
+    __device__ dca::PushedRevolute<double> revolute(int i) const {
+        return revolutes_.get(i - 1).revolute;
+    }
+    __device__ dca::BodyInRun<double> body(int i) const { return revolutes_.get(i - 1).body; }
     __device__ dca::RunsEnd<double> end() const { return tail_.get(0).end; }
     __device__ Mat3 axes() const { return tail_.get(0).axes; }
     __device__ dca::BodyAcceleration<double> swing(int) const { return tail_.get(0).swing; }
 
   private:
     BodiesOfTeam<lanes, whole> bodies_;
-    Hinges hinges_;
+    Revolutes revolutes_;
     Tails tail_;
     Frames frames_;
     int own_;

@@ -10,11 +10,11 @@
 namespace catena::cuda {
 
 /// Of a tree, whose GPU and context it belongs to.
-class TurnLaunch {
+class TopLaunch {
   public:
-    TurnLaunch() = default;
+    TopLaunch() = default;
     /// `most_bytes`: of shared memory that the GPU gives a block.
-    TurnLaunch(dca::StagesTogether const& stages, dca::StageRecords const& records, int most_bytes)
+    TopLaunch(dca::StagesTogether const& stages, dca::StageRecords const& records, int most_bytes)
         : up_(stages.numbers_up(records)),
           down_(stages.numbers_down(records)),
           launches_(stages.blocks()),
@@ -22,9 +22,11 @@ class TurnLaunch {
           forces_(static_cast<int>(stages.upper->forces)),
           most_bytes_(most_bytes) {}
     explicit operator bool() const { return launches_.size() > 0; }
-    kernels::TurnLetters letters() const { return {{up_.data(), items_}, {down_.data(), forces_}, launches_.data()}; }
-    /// Whether the GPU runs all of the grid's blocks at once, and has so many multiprocessors to spare; of a kernel and a tree there is one
-    /// grid.
+    kernels::TopLaunchLetters letters() const {
+        return {{up_.data(), items_}, {down_.data(), forces_}, launches_.data()};
+    }
+    /// Whether the GPU runs all of the grid's blocks at once, and has so many multiprocessors to
+    /// spare; of a kernel and a tree there is one grid.
     template <class Kernel>
     bool fits(Kernel* kernel, Grid const& grid, int spare) const {
         auto const [known, is_new] = fits_.try_emplace(reinterpret_cast<void const*>(kernel));
@@ -38,9 +40,11 @@ class TurnLaunch {
         if (grid.shared_bytes > static_cast<std::size_t>(most_bytes_)) return false;
         allow_shared(kernel, grid.shared_bytes);
         int of_multiprocessor = 0;
-        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&of_multiprocessor, kernel, static_cast<int>(grid.threads), grid.shared_bytes),
+        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
+                  &of_multiprocessor, kernel, static_cast<int>(grid.threads), grid.shared_bytes),
               "say how many blocks it runs at once");
-        return grid.blocks <= static_cast<unsigned>(of_multiprocessor * (multiprocessors() - spare));
+        return grid.blocks <=
+               static_cast<unsigned>(of_multiprocessor * (multiprocessors() - spare));
     }
 
     Buffer<kernels::LetterBox> up_, down_;

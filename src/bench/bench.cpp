@@ -2,15 +2,15 @@
 #include <spdlog/spdlog.h>
 
 #include "bench/benchmarks.hpp"
-#include "report/figures.hpp"
 #include "bench/generated.hpp"
 #include "console/text.hpp"
-#include "report/version.hpp"
-#include "oracle/oracle.hpp"
 #include "error.hpp"
 #include "measure/hardware.hpp"
 #include "measure/solver_errors.hpp"
 #include "measure/timing.hpp"
+#include "oracle/oracle.hpp"
+#include "report/figures.hpp"
+#include "report/version.hpp"
 
 namespace catena::command {
 namespace {
@@ -18,24 +18,36 @@ namespace {
 Outcome list() {
     Outcome outcome;
     outcome.text =
-        "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor "
+        "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for "
+        "every backend of the processor "
         "(--backend "
         "cuda: the GPU's)\n"
-        "evaluation  with everything read and written in place: many evaluations of random chains one after the other (cuda, one\n"
-        "            rank: as one graph); of links and spherical joints the solver alone in absolute coordinates, its memory traffic and "
+        "evaluation  with everything read and written in place: many evaluations of random chains "
+        "one after the other (cuda, one\n"
+        "            rank: as one graph); of links and spherical joints the solver alone in "
+        "absolute coordinates, its memory traffic and "
         "the floor\n"
         "            that it sets, of other joints kinematics, loads and rates as well\n"
-        "peers       forward dynamics of random chains beside Pinocchio, Simbody and MuJoCo, and where each of them stops\n"
-        "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
-        "sampling    what alpha-synuclein, or a scene's chain, samples on rigid links, harmonic bonds and constraints at several steps: "
+        "peers       forward dynamics of random chains beside Pinocchio, Simbody and MuJoCo, and "
+        "where each of them stops\n"
+        "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and "
+        "with constraints\n"
+        "sampling    what alpha-synuclein, or a scene's chain, samples on rigid links, harmonic "
+        "bonds and constraints at several steps: "
         "size,\n"
         "            configurational temperature, the largest usable step of each and its ns/day\n"
-        "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n"
-        "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this machine, beside the chapter's numbers\n"
+        "overlap     a step with forces through the host, with and without the matrix sweep under "
+        "way meanwhile\n"
+        "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this "
+        "machine, beside the chapter's numbers\n"
         "            (--figure, --output)\n"
-        "network     latency and bandwidth between ranks, and the solver's own gathers; catena plan --network takes what --json writes\n"
-        "plan        the planner's predictions of an evaluation beside what is measured, and its choices beside the best of all\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve", "peers", "openmm", "sampling", "overlap", "figures", "network", "plan"}}};
+        "network     latency and bandwidth between ranks, and the solver's own gathers; catena "
+        "plan --network takes what --json writes\n"
+        "plan        the planner's predictions of an evaluation beside what is measured, and its "
+        "choices beside the best of all\n";
+    outcome.json = {{"benchmarks",
+                     {"evaluation", "solve", "peers", "openmm", "sampling", "overlap", "figures",
+                      "network", "plan"}}};
     return outcome;
 }
 
@@ -65,14 +77,23 @@ struct Measured {
     double a_body(Spread const& s) const { return 1e9 * s.median / static_cast<double>(bodies); }
 };
 
-Measured measure(Scene& scene, std::string const& joint, Backend backend, Communicator const& communicator, int repeat) {
+Measured measure(Scene& scene, std::string const& joint, Backend backend,
+                 Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
     ChainSystem system(scene, Axes::joint, communicator);
     Executor const& executor = system.executor();
-    Measured m{joint, scene.bodies(), name_of(backend), executor.threads(), executor.simd(), time_evaluations(system, repeat), 0, 0};
+    Measured m{joint,
+               scene.bodies(),
+               name_of(backend),
+               executor.threads(),
+               executor.simd(),
+               time_evaluations(system, repeat),
+               0,
+               0};
     m.residual = system.residual();
     m.bound = system.residual_bound();
-    spdlog::info("{} {} {}: {:.3g} ns a body", joint, m.bodies, m.backend, m.a_body(m.timing.evaluation));
+    spdlog::info("{} {} {}: {:.3g} ns a body", joint, m.bodies, m.backend,
+                 m.a_body(m.timing.evaluation));
     return m;
 }
 
@@ -93,7 +114,8 @@ Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
               {"bias_sweep", nanoseconds(m.timing.bias_sweep)},
               {"evaluation", nanoseconds(m.timing.evaluation)},
               {"aba_oracle", oracle.count > 0 ? nanoseconds(oracle) : Json(nullptr)}}},
-            {"sweeps_an_evaluation", {{"matrix", m.timing.matrix_sweeps}, {"bias", m.timing.bias_sweeps}}},
+            {"sweeps_an_evaluation",
+             {{"matrix", m.timing.matrix_sweeps}, {"bias", m.timing.bias_sweeps}}},
             {"residual", m.residual},
             {"residual_bound", m.bound},
             {"valid", m.valid()}};
@@ -109,10 +131,12 @@ Outcome begun(std::string const& name, Communicator const& communicator) {
     return outcome;
 }
 /// `what`: the table's figures.
-Outcome ended(Outcome outcome, std::string const& what, Table const& table, Communicator const& communicator) {
+Outcome ended(Outcome outcome, std::string const& what, Table const& table,
+              Communicator const& communicator) {
     outcome.json["valid"] = outcome.valid;
-    outcome.text = fmt::format("{}. {}, {}; {}, {}\n", what, counted(communicator.size(), "rank", "ranks"), hardware_text(),
-                               compiler_name(), instruction_set());
+    outcome.text =
+        fmt::format("{}. {}, {}; {}, {}\n", what, counted(communicator.size(), "rank", "ranks"),
+                    hardware_text(), compiler_name(), instruction_set());
     outcome.text += table.text();
     outcome.complaint = "a residual above its bound: see the results";
     return outcome;
@@ -120,14 +144,16 @@ Outcome ended(Outcome outcome, std::string const& what, Table const& table, Comm
 
 std::string words_of(std::string const& loads) {
     if (loads == "none") return "; gravity alone";
-    return loads == "torques" ? "; gravity and torques of joints" : "; gravity, torques of joints and a wrench on every body";
+    return loads == "torques" ? "; gravity and torques of joints"
+                              : "; gravity, torques of joints and a wrench on every body";
 }
 
 Outcome solve(Communicator const& communicator, BenchRequest const& request) {
-    std::vector<Backend> const backends = request.backends.empty() ? cpu_backends() : request.backends;
-    Table table(
-        {"joint", "bodies", "backend", "threads", "matrix sweep", "bias sweep", "evaluation", "ABA oracle", "residual", "bound", ""},
-        {0, 2, 10});
+    std::vector<Backend> const backends =
+        request.backends.empty() ? cpu_backends() : request.backends;
+    Table table({"joint", "bodies", "backend", "threads", "matrix sweep", "bias sweep",
+                 "evaluation", "ABA oracle", "residual", "bound", ""},
+                {0, 2, 10});
     Outcome outcome = begun("solve", communicator);
     outcome.json["loads"] = request.loads;
     outcome.json["alike"] = request.alike;
@@ -135,25 +161,32 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
         for (std::int64_t const bodies : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request), request.loads);
             if (request.alike) make_alike(scene);
-            bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
-            Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
+            bool const with_oracle =
+                communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
+            Spread const oracle =
+                with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
             for (Backend const backend : backends) {
                 Measured const m = measure(scene, joint, backend, communicator, request.repeat);
                 outcome.valid = outcome.valid && m.valid();
-                auto const ns = [&](Spread const& s) { return s.count > 0 ? fmt::format("{:.3g}", m.a_body(s)) : "-"; };
-                table.add({joint, std::to_string(bodies), m.backend, std::to_string(m.threads), ns(m.timing.matrix_sweep),
-                           ns(m.timing.bias_sweep), ns(m.timing.evaluation), ns(oracle), fmt::format("{:.1e}", m.residual),
+                auto const ns = [&](Spread const& s) {
+                    return s.count > 0 ? fmt::format("{:.3g}", m.a_body(s)) : "-";
+                };
+                table.add({joint, std::to_string(bodies), m.backend, std::to_string(m.threads),
+                           ns(m.timing.matrix_sweep), ns(m.timing.bias_sweep),
+                           ns(m.timing.evaluation), ns(oracle), fmt::format("{:.1e}", m.residual),
                            fmt::format("{:.1e}", m.bound), m.valid() ? "VALID" : "INVALID"});
                 outcome.json["results"].push_back(json_of(m, scene, oracle));
             }
         }
-    std::string const what = fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too{}", request.repeat,
-                                         words_of(request.loads));
+    std::string const what =
+        fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too{}",
+                    request.repeat, words_of(request.loads));
     return ended(std::move(outcome), what, table, communicator);
 }
 
-/// Bytes a body that an evaluation must read and must write, whatever the algorithm: links: mass, position, velocity, force; acceleration.
-/// Bodies on spherical joints: mass, inertia, two handles, orientation, angular velocity, force, torque; two accelerations. 0: not said.
+/// Bytes a body that an evaluation must read and must write, whatever the algorithm: links: mass,
+/// position, velocity, force; acceleration. Bodies on spherical joints: mass, inertia, two handles,
+/// orientation, angular velocity, force, torque; two accelerations. 0: not said.
 struct Traffic {
     double read = 0, write = 0;
 };
@@ -173,9 +206,11 @@ struct AtOnce {
     SimdLevel simd = SimdLevel::off;
     bool direct_exchange = false;
 };
-/// Whether the solver is measured alone, in absolute coordinates; else kinematics, loads and the joints' rates count as well.
+/// Whether the solver is measured alone, in absolute coordinates; else kinematics, loads and the
+/// joints' rates count as well.
 bool is_absolute(std::string const& joint) { return joint == "link" || joint == "spherical"; }
-AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend, Communicator const& communicator, int repeat) {
+AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend,
+                    Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
     ChainSystem system(scene, is_absolute(joint) ? Axes::world : Axes::joint, communicator);
     system.evaluate();
@@ -187,15 +222,17 @@ AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend, Com
     found.simd = system.executor().simd();
     found.direct_exchange = system.solver_reports().front().direct_exchange;
     int const chained = chained_for(scene.bodies());
-    found.seconds = spread_of(is_absolute(joint) ? system.absolute().front()->time_at_once(chained, repeat)
-                                                 : system.joint().front()->time_at_once(chained, repeat));
+    found.seconds =
+        spread_of(is_absolute(joint) ? system.absolute().front()->time_at_once(chained, repeat)
+                                     : system.joint().front()->time_at_once(chained, repeat));
     return found;
 }
 
 /// Those that find matrices and biases in one sweep.
 std::vector<Backend> backends_at_once(BenchRequest const& request) {
     if (!request.handles.empty() && request.handles != name_of(Handles::projected))
-        throw InputError(request.handles + " handles need a sweep after the other", "--handles", "use projected ones");
+        throw InputError(request.handles + " handles need a sweep after the other", "--handles",
+                         "use projected ones");
     std::vector<Backend> chosen = request.backends;
     if (chosen.empty()) {
         chosen = cpu_backends();
@@ -203,15 +240,17 @@ std::vector<Backend> backends_at_once(BenchRequest const& request) {
     }
     for (Backend const backend : chosen) {
         if (backend == Backend::serial || backend == Backend::cuda_levels)
-            throw InputError(std::string(name_of(backend)) + " takes one sweep after the other", "--backend",
-                             "use segments, openmp or cuda");
+            throw InputError(std::string(name_of(backend)) + " takes one sweep after the other",
+                             "--backend", "use segments, openmp or cuda");
     }
     return chosen;
 }
 
 Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = backends_at_once(request);
-    Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
+    Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor",
+                 "residual", "bound", ""},
+                {0, 2, 10});
     Outcome outcome = begun("evaluation", communicator);
     outcome.json["loads"] = request.loads;
     outcome.json["alike"] = request.alike;
@@ -220,19 +259,26 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
             Scene scene = random_scene(joint, bodies, overrides_of(request), request.loads);
             if (request.alike) make_alike(scene);
             for (Backend const backend : backends) {
-                AtOnce const found = time_at_once(scene, joint, backend, communicator, request.repeat);
+                AtOnce const found =
+                    time_at_once(scene, joint, backend, communicator, request.repeat);
                 bool const valid = found.residual <= found.bound;
                 outcome.valid = outcome.valid && valid;
                 auto const n = static_cast<double>(scene.bodies());
                 Traffic const traffic = traffic_of(joint, request.alike);
-                double const rate = n * (traffic.read + traffic.write) / found.seconds.median * 1e-9;
+                double const rate =
+                    n * (traffic.read + traffic.write) / found.seconds.median * 1e-9;
                 // Two sweeps over what is read, at what an H200's memory delivers, each rank's.
-                double const floor = n / communicator.size() * (2 * traffic.read + traffic.write) / 4.2e12 / found.seconds.median;
+                double const floor = n / communicator.size() * (2 * traffic.read + traffic.write) /
+                                     4.2e12 / found.seconds.median;
                 bool const gpu = backend == Backend::cuda;
-                table.add({joint, std::to_string(bodies), name_of(backend), std::to_string(found.threads),
-                           fmt::format("{:.4g}", 1e6 * found.seconds.median), fmt::format("{:.3g}", 1e9 * found.seconds.median / n),
-                           rate > 0 ? fmt::format("{:.0f}", rate) : "-", gpu && rate > 0 ? fmt::format("{:.2f}", floor) : "-",
-                           fmt::format("{:.1e}", found.residual), fmt::format("{:.1e}", found.bound), valid ? "VALID" : "INVALID"});
+                table.add({joint, std::to_string(bodies), name_of(backend),
+                           std::to_string(found.threads),
+                           fmt::format("{:.4g}", 1e6 * found.seconds.median),
+                           fmt::format("{:.3g}", 1e9 * found.seconds.median / n),
+                           rate > 0 ? fmt::format("{:.0f}", rate) : "-",
+                           gpu && rate > 0 ? fmt::format("{:.2f}", floor) : "-",
+                           fmt::format("{:.1e}", found.residual),
+                           fmt::format("{:.1e}", found.bound), valid ? "VALID" : "INVALID"});
                 outcome.json["results"].push_back(
                     {{"joint", joint},
                      {"bodies", bodies},
@@ -243,7 +289,9 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                      {"chained", chained_for(bodies)},
                      {"repeat", found.seconds.count},
                      {"microseconds",
-                      {{"median", 1e6 * found.seconds.median}, {"min", 1e6 * found.seconds.min}, {"max", 1e6 * found.seconds.max}}},
+                      {{"median", 1e6 * found.seconds.median},
+                       {"min", 1e6 * found.seconds.min},
+                       {"max", 1e6 * found.seconds.max}}},
                      {"gigabytes_per_second", rate > 0 ? Json(rate) : Json(nullptr)},
                      {"floor_over_time", gpu && rate > 0 ? Json(floor) : Json(nullptr)},
                      {"residual", found.residual},
@@ -252,8 +300,10 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
             }
         }
     std::string const what = fmt::format(
-        "an evaluation, inputs and outputs in place, median of {}; links and spherical joints the solver alone, others with kinematics, "
-        "loads and rates{}; GB/s counts what must be read and written once; floor: two sweeps over what is read at 4.2 TB/s",
+        "an evaluation, inputs and outputs in place, median of {}; links and spherical joints the "
+        "solver alone, others with kinematics, "
+        "loads and rates{}; GB/s counts what must be read and written once; floor: two sweeps over "
+        "what is read at 4.2 TB/s",
         request.repeat, words_of(request.loads));
     return ended(std::move(outcome), what, table, communicator);
 }
@@ -262,7 +312,8 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
 
 Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
     if (request.handles == name_of(Handles::articulated) && request.name != "list")
-        throw InputError("articulated handles are not measured by bench " + request.name, "--handles",
+        throw InputError("articulated handles are not measured by bench " + request.name,
+                         "--handles",
                          "take projected or full; `catena report` shows them beside these");
     if (request.name == "list") return list();
     if (request.name == "figures") return bench_figures(communicator, request);
@@ -272,7 +323,8 @@ Outcome run_bench(Communicator const& communicator, BenchRequest const& request)
     if (request.name == "peers") return bench_peers(communicator, request);
     if (request.name == "openmm") return bench_openmm(communicator, request);
     if (request.name == "sampling") return bench_sampling(communicator, request);
-    return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);
+    return request.name == "overlap" ? bench_overlap(communicator, request)
+                                     : solve(communicator, request);
 }
 
 }  // namespace catena::command

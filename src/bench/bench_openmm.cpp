@@ -1,4 +1,5 @@
-// Steps of Catena beside OpenMM's own, on the same beads in the same run; and what it brings to work on while forces are computed.
+// Steps of Catena beside OpenMM's own, on the same beads in the same run; and what it brings to
+// work on while forces are computed.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
@@ -13,18 +14,19 @@
 #include "bench/generated.hpp"
 #include "bench/step_makers.hpp"
 #include "console/text.hpp"
-#include "report/version.hpp"
-#include "run/rank_exchange.hpp"
-#include "page/html.hpp"
 #include "io/output_file.hpp"
-#include "page/timeline_picture.hpp"
 #include "measure/hardware.hpp"
 #include "measure/timing.hpp"
+#include "page/html.hpp"
+#include "page/timeline_picture.hpp"
+#include "report/version.hpp"
+#include "run/rank_exchange.hpp"
 
 namespace catena::command {
 namespace {
 
-/// OpenMM's set-up of so many constraints has not ended within minutes; more are tried in a process that can be stopped.
+/// OpenMM's set-up of so many constraints has not ended within minutes; more are tried in a process
+/// that can be stopped.
 constexpr std::int64_t most_constraints_unguarded = 200000;
 constexpr std::chrono::seconds patience{30};
 constexpr double block_seconds = 0.1, longest_block = 4;
@@ -35,7 +37,8 @@ constexpr int timed_steps = 3;      // the median one is drawn
 struct Runner {
     std::function<void(int)> step;
     int of_block = 1;
-    int period = 1;  // steps after which all that is done now and then has been done: in a block, where that is not too long
+    int period = 1;  // steps after which all that is done now and then has been done: in a block,
+                     // where that is not too long
     std::vector<double> seconds = {};
 
     void warm_up() {
@@ -79,8 +82,10 @@ struct OwnFound {
     void fail(std::string const& text) { text.copy(failure, sizeof(failure) - 1); }
 };
 
-/// In a process of its own, before this one has touched a GPU: steps with so many constraints, or what came instead.
-OwnFound try_constraints(std::int64_t beads, BenchRequest const& request, Communicator const& communicator) {
+/// In a process of its own, before this one has touched a GPU: steps with so many constraints, or
+/// what came instead.
+OwnFound try_constraints(std::int64_t beads, BenchRequest const& request,
+                         Communicator const& communicator) {
     OwnFound found;
     int ends[2];
     if (::pipe(ends) != 0) return found;
@@ -91,8 +96,9 @@ OwnFound try_constraints(std::int64_t beads, BenchRequest const& request, Commun
             scene.forces.openmm->platform = "CPU";
             ChainSystem system(scene, Axes::world, communicator);
             scene.forces.openmm->platform = "CUDA";
-            auto own = make_openmm_own(*scene.forces.openmm, system.beads(), communicator, OwnLinks::constraints,
-                                       own_run(scene, Backend::cuda), system.snapshot().position);
+            auto own = make_openmm_integrator(*scene.forces.openmm, system.beads(), communicator,
+                                              OwnLinks::constraints, own_run(scene, Backend::cuda),
+                                              system.snapshot().position);
             own->step(2);
             double const start = seconds_now();
             own->step(10);
@@ -107,7 +113,8 @@ OwnFound try_constraints(std::int64_t beads, BenchRequest const& request, Commun
     auto const deadline = std::chrono::steady_clock::now() + patience;
     int status = 0;
     pid_t ended = 0;
-    while (child > 0 && (ended = ::waitpid(child, &status, WNOHANG)) == 0 && std::chrono::steady_clock::now() < deadline)
+    while (child > 0 && (ended = ::waitpid(child, &status, WNOHANG)) == 0 &&
+           std::chrono::steady_clock::now() < deadline)
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (child > 0 && ended == 0) {
         ::kill(child, SIGKILL);
@@ -131,7 +138,10 @@ double median(std::vector<double> const& seconds) { return spread_of(seconds).me
 class Hidden {
   public:
     explicit Hidden(ChainSystem const& system)
-        : system_(system), matrix_(system.matrix_seconds()), hidden_(system.hidden_seconds()), forces_(forces_of(system)) {}
+        : system_(system),
+          matrix_(system.matrix_seconds()),
+          hidden_(system.hidden_seconds()),
+          forces_(forces_of(system)) {}
     double share() const {
         double const matrix = system_.matrix_seconds() - matrix_;
         return matrix > 0 ? (system_.hidden_seconds() - hidden_) / matrix : 0.0;
@@ -150,20 +160,26 @@ class Hidden {
 };
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
-std::string step_text(double seconds) { return std::isfinite(seconds) ? duration_text(seconds) : "-"; }
-std::string ratio_text(double ratio) { return std::isfinite(ratio) ? fmt::format("{:.2f}", ratio) : "-"; }
+std::string step_text(double seconds) {
+    return std::isfinite(seconds) ? duration_text(seconds) : "-";
+}
+std::string ratio_text(double ratio) {
+    return std::isfinite(ratio) ? fmt::format("{:.2f}", ratio) : "-";
+}
 
 /// OpenMM with one kind of links, in turn with Catena; a failure is what is found.
 struct Rival {
     OwnLinks links;
-    std::unique_ptr<OpenMmOwn> own = nullptr;
+    std::unique_ptr<OpenMmIntegrator> own = nullptr;
     Runner runner = {};
     OwnFound found = {};
 
-    void make(CatenaSteps& catena, Communicator const& communicator, Backend backend, std::vector<Vec3> const& positions) {
+    void make(CatenaSteps& catena, Communicator const& communicator, Backend backend,
+              std::vector<Vec3> const& positions) {
         try {
-            own = make_openmm_own(*catena.scene().forces.openmm, catena.system().beads(), communicator, links,
-                                  own_run(catena.scene(), backend), positions);
+            own = make_openmm_integrator(*catena.scene().forces.openmm, catena.system().beads(),
+                                         communicator, links, own_run(catena.scene(), backend),
+                                         positions);
             runner.step = [this](int count) { own->step(count); };
             runner.period = period_of(catena.system());
             runner.warm_up();
@@ -195,7 +211,8 @@ struct SideBySide {
     bool valid = false;
 };
 
-SideBySide compare(std::int64_t beads, BenchRequest const& request, Communicator const& communicator, Backend backend,
+SideBySide compare(std::int64_t beads, BenchRequest const& request,
+                   Communicator const& communicator, Backend backend,
                    std::optional<OwnFound> const& constrained_before) {
     CatenaSteps catena(scene_for(beads, request, backend), communicator);
     ChainSystem& system = catena.system();
@@ -218,15 +235,21 @@ SideBySide compare(std::int64_t beads, BenchRequest const& request, Communicator
     if (constrained_before) constraints.found = *constrained_before;
     double const steps = static_cast<double>(own.of_block) * request.repeat;
     double const step = median(own.seconds), energy = catena.energy();
-    double const to_bonds = step / bonds.found.seconds, to_constraints = constraints.found.seconds / step;
+    double const to_bonds = step / bonds.found.seconds,
+                 to_constraints = constraints.found.seconds / step;
 
     SideBySide r;
-    auto const finite = [](OwnFound const& found) { return found.failure[0] != 0 || std::isfinite(found.energy); };
-    r.valid = catena.constraint_error() <= catena.tolerance() && std::isfinite(energy) && finite(bonds.found) && finite(constraints.found);
+    auto const finite = [](OwnFound const& found) {
+        return found.failure[0] != 0 || std::isfinite(found.energy);
+    };
+    r.valid = catena.constraint_error() <= catena.tolerance() && std::isfinite(energy) &&
+              finite(bonds.found) && finite(constraints.found);
     auto const rival_json = [](Rival const& rival) {
-        Json json{
-            {"seconds_per_step", json_of(rival.runner.seconds)}, {"energy", rival.found.energy}, {"link_error", rival.found.link_error}};
-        if (rival.runner.seconds.empty()) json["seconds_per_step"] = {{"median", rival.found.seconds}};
+        Json json{{"seconds_per_step", json_of(rival.runner.seconds)},
+                  {"energy", rival.found.energy},
+                  {"link_error", rival.found.link_error}};
+        if (rival.runner.seconds.empty())
+            json["seconds_per_step"] = {{"median", rival.found.seconds}};
         if (rival.found.failure[0] != 0) json["failure"] = std::string(rival.found.failure);
         return json;
     };
@@ -248,28 +271,42 @@ SideBySide compare(std::int64_t beads, BenchRequest const& request, Communicator
               {"catena_over_harmonic", to_bonds},
               {"constrained_over_catena", to_constraints},
               {"valid", r.valid}};
-    r.row = {std::to_string(beads),          system.openmm()->path(), step_text(step),
-             step_text(bonds.found.seconds), ratio_text(to_bonds),    step_text(constraints.found.seconds),
-             ratio_text(to_constraints),     percent(hidden.share()), fmt::format("{:.1e}", catena.constraint_error()),
+    r.row = {std::to_string(beads),
+             system.openmm()->path(),
+             step_text(step),
+             step_text(bonds.found.seconds),
+             ratio_text(to_bonds),
+             step_text(constraints.found.seconds),
+             ratio_text(to_constraints),
+             percent(hidden.share()),
+             fmt::format("{:.1e}", catena.constraint_error()),
              r.valid ? "VALID" : "INVALID"};
-    if (bonds.found.failure[0] != 0) spdlog::warn("{} beads, OpenMM with bonds: {}", beads, bonds.found.failure);
-    if (constraints.found.failure[0] != 0) spdlog::warn("{} beads, OpenMM with constraints: {}", beads, constraints.found.failure);
+    if (bonds.found.failure[0] != 0)
+        spdlog::warn("{} beads, OpenMM with bonds: {}", beads, bonds.found.failure);
+    if (constraints.found.failure[0] != 0)
+        spdlog::warn("{} beads, OpenMM with constraints: {}", beads, constraints.found.failure);
     return r;
 }
 
 Json head(char const* name) {
-    return {{"bench", name}, {"build", version_json()}, {"hardware", hardware_json()}, {"results", Json::array()}};
+    return {{"bench", name},
+            {"build", version_json()},
+            {"hardware", hardware_json()},
+            {"results", Json::array()}};
 }
 
-std::vector<std::int64_t> sizes_of(BenchRequest const& request, std::vector<std::int64_t> const& usual) {
+std::vector<std::int64_t> sizes_of(BenchRequest const& request,
+                                   std::vector<std::int64_t> const& usual) {
     std::vector<std::int64_t> sizes;
-    for (std::int64_t const size : request.sizes.empty() ? usual : request.sizes) sizes.push_back(beads_of_condensate(size));
+    for (std::int64_t const size : request.sizes.empty() ? usual : request.sizes)
+        sizes.push_back(beads_of_condensate(size));
     return sizes;
 }
 
 /// A step's phases, in the manner of the founding chapter's Fig. 2.7.
 void write_pictures(std::string const& folder, std::string const& pictures) {
-    std::string const intro = "<h1>What is hidden behind the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";
+    std::string const intro =
+        "<h1>What is hidden behind the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";
     write_text_file(folder + "/overlap.html", html_page("Catena: overlap", intro + pictures));
 }
 
@@ -280,36 +317,45 @@ Outcome bench_openmm(Communicator const& communicator, BenchRequest const& reque
     auto const sizes = sizes_of(request, {140, 9940, 99960, 1000020});
     std::vector<std::optional<OwnFound>> guarded;
     for (std::int64_t const beads : sizes)  // before anything here has touched the GPU
-        guarded.push_back(beads > most_constraints_unguarded ? std::optional(try_constraints(beads, request, communicator)) : std::nullopt);
-    Table table({"beads", "path", "Catena", "bonds", "ratio", "constraints", "speed-up", "sweep hidden", "constraint error", ""}, {1, 9});
+        guarded.push_back(beads > most_constraints_unguarded
+                              ? std::optional(try_constraints(beads, request, communicator))
+                              : std::nullopt);
+    Table table({"beads", "path", "Catena", "bonds", "ratio", "constraints", "speed-up",
+                 "sweep hidden", "constraint error", ""},
+                {1, 9});
     Outcome outcome;
     outcome.json = head("openmm");
     std::string failures;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-        SideBySide const r = compare(sizes[i], request, communicator, backend_of(request), guarded[i]);
+        SideBySide const r =
+            compare(sizes[i], request, communicator, backend_of(request), guarded[i]);
         outcome.valid = outcome.valid && r.valid;
         outcome.json["results"].push_back(r.json);
         table.add(r.row);
         for (char const* const rival : {"openmm_harmonic", "openmm_constrained"})
             if (r.json[rival].contains("failure"))
-                failures += fmt::format("  {} beads, {}: {}\n", sizes[i], rival, r.json[rival]["failure"].get<std::string>());
+                failures += fmt::format("  {} beads, {}: {}\n", sizes[i], rival,
+                                        r.json[rival]["failure"].get<std::string>());
     }
     outcome.json["valid"] = outcome.valid;
     outcome.text = fmt::format(
-        "One step of 10 fs, alpha-synuclein at 330 mg/ml, median of {} blocks in turn: Catena's g-BAOAB on rigid links, {}'s own "
-        "LangevinMiddle with harmonic bonds and with constraints. ratio: Catena to bonds; speed-up: constraints to Catena. {}\n",
+        "One step of 10 fs, alpha-synuclein at 330 mg/ml, median of {} blocks in turn: Catena's "
+        "g-BAOAB on rigid links, {}'s own "
+        "LangevinMiddle with harmonic bonds and with constraints. ratio: Catena to bonds; "
+        "speed-up: constraints to Catena. {}\n",
         request.repeat, openmm_version(), hardware_text());
     outcome.text += table.text() + failures;
-    outcome.complaint = "a constraint error above its tolerance, or an energy that is not finite: see the results";
+    outcome.complaint =
+        "a constraint error above its tolerance, or an energy that is not finite: see the results";
     return outcome;
 }
 
 Outcome bench_overlap(Communicator const& communicator, BenchRequest const& request) {
     need_one_rank(communicator, "overlap");
     if (!request.output.empty()) make_output_folder(request.output);
-    Table table(
-        {"beads", "backend", "platform", "path", "overlap off", "on", "matrix sweep", "hidden", "gain", "at most", "constraint error", ""},
-        {1, 2, 3, 11});
+    Table table({"beads", "backend", "platform", "path", "overlap off", "on", "matrix sweep",
+                 "hidden", "gain", "at most", "constraint error", ""},
+                {1, 2, 3, 11});
     Outcome outcome;
     std::string pictures;
     outcome.json = head("overlap");
@@ -322,7 +368,8 @@ Outcome bench_overlap(Communicator const& communicator, BenchRequest const& requ
         CatenaSteps off(scene, communicator);
         openmm.overlap = true;
         CatenaSteps on(std::move(scene), communicator);
-        Runner without{[&](int count) { off.step(count); }}, with{[&](int count) { on.step(count); }};
+        Runner without{[&](int count) { off.step(count); }},
+            with{[&](int count) { on.step(count); }};
         without.warm_up();
         with.warm_up();
         off.adapt();
@@ -330,40 +377,48 @@ Outcome bench_overlap(Communicator const& communicator, BenchRequest const& requ
         Hidden const hidden(on.system());
         take_turns({&without, &with}, request.repeat);
         double const error = larger(off.constraint_error(), on.constraint_error());
-        bool const valid = error <= on.tolerance() && std::isfinite(off.energy()) && std::isfinite(on.energy());
+        bool const valid =
+            error <= on.tolerance() && std::isfinite(off.energy()) && std::isfinite(on.energy());
         double const a = median(without.seconds), b = median(with.seconds);
         outcome.valid = outcome.valid && valid;
-        double const sweep = hidden.matrix() / (static_cast<double>(with.of_block) * request.repeat);
+        double const sweep =
+            hidden.matrix() / (static_cast<double>(with.of_block) * request.repeat);
         if (!request.output.empty())
             for (CatenaSteps* steps : {&off, &on}) {
                 Json const timeline(gather_timelines(communicator, steps->timelines(timed_steps)));
-                pictures +=
-                    fmt::format("<h2>{} beads, overlap {}</h2>\n", beads, steps == &off ? "off" : "on") + timeline_picture(timeline);
+                pictures += fmt::format("<h2>{} beads, overlap {}</h2>\n", beads,
+                                        steps == &off ? "off" : "on") +
+                            timeline_picture(timeline);
             }
         outcome.json["results"].push_back(
             {{"beads", beads},
              {"backend", name_of(on.system().backend())},
              {"platform", on.system().openmm()->platform()},
              {"path", on.system().openmm()->path()},
-             {"seconds_per_step", {{"overlap_off", json_of(without.seconds)}, {"overlap_on", json_of(with.seconds)}}},
+             {"seconds_per_step",
+              {{"overlap_off", json_of(without.seconds)}, {"overlap_on", json_of(with.seconds)}}},
              {"gain", 1 - b / a},
              {"largest_gain", sweep / a},
              {"matrix_sweep_seconds_per_step", sweep},
              {"matrix_sweep_hidden", hidden.share()},
              {"constraint_error", error},
              {"valid", valid}});
-        table.add({std::to_string(beads), name_of(on.system().backend()), on.system().openmm()->platform(), on.system().openmm()->path(),
-                   step_text(a), step_text(b), step_text(sweep), percent(hidden.share()), percent(1 - b / a),
-                   fmt::format("{:.2g} %", 100 * sweep / a), fmt::format("{:.1e}", error), valid ? "VALID" : "INVALID"});
+        table.add({std::to_string(beads), name_of(on.system().backend()),
+                   on.system().openmm()->platform(), on.system().openmm()->path(), step_text(a),
+                   step_text(b), step_text(sweep), percent(hidden.share()), percent(1 - b / a),
+                   fmt::format("{:.2g} %", 100 * sweep / a), fmt::format("{:.1e}", error),
+                   valid ? "VALID" : "INVALID"});
     }
     outcome.json["valid"] = outcome.valid;
     if (!request.output.empty()) write_pictures(request.output, pictures);
     outcome.text = fmt::format(
-        "One step of 10 fs, forces by {}, median of {} blocks in turn; a gain above \"at most\", the matrix sweep's share of a step, is "
+        "One step of 10 fs, forces by {}, median of {} blocks in turn; a gain above \"at most\", "
+        "the matrix sweep's share of a step, is "
         "the noise of the forces' times. {}\n",
         openmm_version(), request.repeat, hardware_text());
     outcome.text += table.text();
-    outcome.complaint = "a constraint error above its tolerance, or an energy that is not finite: see the results";
+    outcome.complaint =
+        "a constraint error above its tolerance, or an energy that is not finite: see the results";
     return outcome;
 }
 

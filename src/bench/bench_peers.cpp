@@ -10,10 +10,10 @@
 #include "bench/peer_benchmark.hpp"
 #include "bench/peers.hpp"
 #include "console/text.hpp"
-#include "report/version.hpp"
 #include "error.hpp"
 #include "measure/hardware.hpp"
 #include "measure/solver_errors.hpp"
+#include "report/version.hpp"
 
 namespace catena::command {
 namespace {
@@ -23,24 +23,30 @@ constexpr std::chrono::seconds most_evaluation{2};
 constexpr std::int64_t most_bodies = 1000000;
 
 void check(BenchRequest const& request, Communicator const& communicator) {
-    if (communicator.size() > 1) throw InputError("peers run on one rank", "catena bench peers", "run it without mpirun");
+    if (communicator.size() > 1)
+        throw InputError("peers run on one rank", "catena bench peers", "run it without mpirun");
     for (std::string const& joint : request.joints)
         if (joint != "link" && joint != "spherical" && joint != "revolute" && joint != "planar")
-            throw InputError("`" + joint + "` is not written for the peers", "--joints", "use link, spherical, revolute or planar");
+            throw InputError("`" + joint + "` is not written for the peers", "--joints",
+                             "use link, spherical, revolute or planar");
     for (std::int64_t const bodies : request.sizes)
         if (bodies > most_bodies)
-            throw InputError(fmt::format("{} bodies", bodies), "--sizes", "take 1e6 at most: what answers are compared with ends there");
-    if (!request.set.empty()) throw InputError("the peers' chains are given", "--set", "choose --sizes and --joints");
+            throw InputError(fmt::format("{} bodies", bodies), "--sizes",
+                             "take 1e6 at most: what answers are compared with ends there");
+    if (!request.set.empty())
+        throw InputError("the peers' chains are given", "--set", "choose --sizes and --joints");
 }
 
 Json json_of(Peer::Limits const& l) {
-    return {{"set_up_seconds", l.set_up.count()}, {"evaluation_seconds", l.evaluation.count()}, {"memory_bytes", l.memory_bytes}};
+    return {{"set_up_seconds", l.set_up.count()},
+            {"evaluation_seconds", l.evaluation.count()},
+            {"memory_bytes", l.memory_bytes}};
 }
 
 /// The peers in turn, and where they stopped.
 class Runners {
   public:
-    void add_to(PeerContest& contest, PeerStop const& here) {
+    void add_to(PeerBenchmark& contest, PeerStop const& here) {
         peers_.write(contest.table());
         for (PeerProgram const& program : peers_.programs()) {
             if (!program.missing.empty() || has_stopped(program.name, here.joint)) continue;
@@ -53,20 +59,27 @@ class Runners {
             }
         }
     }
-    void add(std::vector<PeerStop> const& stops) { stops_.insert(stops_.end(), stops.begin(), stops.end()); }
+    void add(std::vector<PeerStop> const& stops) {
+        stops_.insert(stops_.end(), stops.begin(), stops.end());
+    }
     void describe(Outcome& outcome) const {
         outcome.json["limits"] = json_of(peers_.limits());
         outcome.json["peers"] = peers_.json();
         for (std::string const& line : peers_.not_run()) outcome.text += line + "\n";
         for (PeerStop const& stop : stops_) {
-            outcome.json["stops"].push_back({{"peer", stop.peer}, {"joint", stop.joint}, {"bodies", stop.bodies}, {"why", stop.why}});
-            outcome.text += fmt::format("{} stops at {} bodies, {}: {}\n", stop.peer, stop.bodies, stop.joint, stop.why);
+            outcome.json["stops"].push_back({{"peer", stop.peer},
+                                             {"joint", stop.joint},
+                                             {"bodies", stop.bodies},
+                                             {"why", stop.why}});
+            outcome.text += fmt::format("{} stops at {} bodies, {}: {}\n", stop.peer, stop.bodies,
+                                        stop.joint, stop.why);
         }
     }
 
   private:
     bool has_stopped(std::string const& peer, std::string const& joint) const {
-        return std::any_of(stops_.begin(), stops_.end(), [&](PeerStop const& s) { return s.peer == peer && s.joint == joint; });
+        return std::any_of(stops_.begin(), stops_.end(),
+                           [&](PeerStop const& s) { return s.peer == peer && s.joint == joint; });
     }
     Peers peers_{peer_programs(), {most_set_up, most_evaluation, memory_for_peers()}};
     std::vector<PeerStop> stops_;
@@ -78,14 +91,23 @@ Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
     check(request, communicator);
     std::sort(request.sizes.begin(), request.sizes.end());
     Runners peers;
-    Table table({"joint", "bodies", "by", "threads", "ns a body", "of Catena's", "error", "bound", "residual", ""}, {0, 2, 9});
+    Table table({"joint", "bodies", "by", "threads", "ns a body", "of Catena's", "error", "bound",
+                 "residual", ""},
+                {0, 2, 9});
     Outcome outcome;
-    outcome.json = {{"bench", "peers"}, {"build", version_json()}, {"hardware", hardware_json()}, {"ranks", 1},
-                    {"limits", Json()}, {"peers", Json()},         {"results", Json::array()},    {"stops", Json::array()}};
+    outcome.json = {{"bench", "peers"},
+                    {"build", version_json()},
+                    {"hardware", hardware_json()},
+                    {"ranks", 1},
+                    {"limits", Json()},
+                    {"peers", Json()},
+                    {"results", Json::array()},
+                    {"stops", Json::array()}};
     outcome.json["loads"] = request.loads;
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
-            PeerContest contest(random_scene(joint, bodies, overrides_of(request), request.loads), joint);
+            PeerBenchmark contest(random_scene(joint, bodies, overrides_of(request), request.loads),
+                                  joint);
             contest.add(request.backends.empty() ? cpu_backends() : request.backends, communicator);
             peers.add_to(contest, {"", joint, "", bodies});
             peers.add(contest.take_turns(request.repeat));
@@ -93,12 +115,16 @@ Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
             spdlog::info("{} bodies on {} joints: measured", bodies, joint);
         }
     outcome.text = fmt::format(
-        "ns a body of forward dynamics, positions to accelerations, loads: {}; blocks of {} in turn, medians of {}; of Catena's: over its "
+        "ns a body of forward dynamics, positions to accelerations, loads: {}; blocks of {} in "
+        "turn, medians of {}; of Catena's: over its "
         "quickest "
-        "whole evaluation on one core; error: the largest of a joint's acceleration, over the largest acceleration; its bound: 32 depth "
+        "whole evaluation on one core; error: the largest of a joint's acceleration, over the "
+        "largest acceleration; its bound: 32 depth "
         "2^-53 times "
-        "the growth of roundings, depth the tree's or, of a peer, the number of bodies. {}; Catena: {}, {}\n",
-        request.loads, duration_text(block_seconds), request.repeat, hardware_text(), compiler_name(), instruction_set());
+        "the growth of roundings, depth the tree's or, of a peer, the number of bodies. {}; "
+        "Catena: {}, {}\n",
+        request.loads, duration_text(block_seconds), request.repeat, hardware_text(),
+        compiler_name(), instruction_set());
     outcome.text += table.text();
     peers.describe(outcome);
     outcome.json["valid"] = outcome.valid;

@@ -1,4 +1,5 @@
-// What a chain samples on rigid links, on harmonic bonds and on constraints, at which step, and how fast.
+// What a chain samples on rigid links, on harmonic bonds and on constraints, at which step, and how
+// fast.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,15 +10,19 @@
 #include "bench/sampling_verdict.hpp"
 #include "bench/step_makers.hpp"
 #include "console/text.hpp"
-#include "report/version.hpp"
 #include "io/output.hpp"
 #include "measure/hardware.hpp"
+#include "report/version.hpp"
 
 namespace catena::command {
 namespace {
 
 Json json_of(Blocked const& b, char const* unit) {
-    return {{"mean", b.mean}, {"error", b.error}, {"unit", unit}, {"block", b.block}, {"plateau", b.plateau}};
+    return {{"mean", b.mean},
+            {"error", b.error},
+            {"unit", unit},
+            {"block", b.block},
+            {"plateau", b.plateau}};
 }
 
 Json json_of(SamplingRow const& row, std::int64_t copies) {
@@ -66,10 +71,12 @@ Json json_of(SamplingMethodVerdict const& verdict) {
     for (std::size_t i = 0; i < verdict.rows.size(); ++i) {
         SamplingBias const& b = verdict.bias[i];
         SamplingRow const& row = *verdict.rows[i];
-        biases.push_back({{"step_ps", row.step},
-                          {"usable", row.valid() ? std::string(b.word()) : row.state},
-                          {"radius_of_gyration", {{"percent", b.gyration}, {"error", b.gyration_error}}},
-                          {"configurational_temperature", {{"percent", b.temperature}, {"error", b.temperature_error}}}});
+        biases.push_back(
+            {{"step_ps", row.step},
+             {"usable", row.valid() ? std::string(b.word()) : row.state},
+             {"radius_of_gyration", {{"percent", b.gyration}, {"error", b.gyration_error}}},
+             {"configurational_temperature",
+              {{"percent", b.temperature}, {"error", b.temperature_error}}}});
     }
     return {{"method", name_of(verdict.method)},
             {"biases", biases},
@@ -77,36 +84,44 @@ Json json_of(SamplingMethodVerdict const& verdict) {
             {"usable_not_contradicted", json_of(verdict.allowed)}};
 }
 
-Json json_of(Difference const& d) { return {{"value", d.value}, {"error", d.error}, {"errors", d.errors()}}; }
+Json json_of(Difference const& d) {
+    return {{"value", d.value}, {"error", d.error}, {"errors", d.errors()}};
+}
 
 std::string sign_text(Difference const& d, int digits) {
     if (!std::isfinite(d.errors())) return fmt::format("{:+.{}f} +- ?", d.value, digits);
-    return fmt::format("{:+.{}f} +- {:.{}f} ({:+.1f} errors)", d.value, digits, d.error, digits, d.errors());
+    return fmt::format("{:+.{}f} +- {:.{}f} ({:+.1f} errors)", d.value, digits, d.error, digits,
+                       d.errors());
 }
 
 /// "2.98 +- 0.01", a star where the error had not come to its plateau.
 std::string text_of(Blocked const& b, int digits) {
     if (!std::isfinite(b.mean)) return "-";
     if (!std::isfinite(b.error)) return fmt::format("{:.{}f} +- ?", b.mean, digits);
-    return fmt::format("{:.{}f} +- {:.{}f}{}", b.mean, digits, b.error, digits, b.plateau ? "" : "*");
+    return fmt::format("{:.{}f} +- {:.{}f}{}", b.mean, digits, b.error, digits,
+                       b.plateau ? "" : "*");
 }
 
 std::string femtoseconds(double ps) { return fmt::format("{:.4g}", 1e3 * ps); }
-std::string rate_text(double ns_per_day) { return std::isfinite(ns_per_day) ? fmt::format("{:.4g}", ns_per_day) : "-"; }
+std::string rate_text(double ns_per_day) {
+    return std::isfinite(ns_per_day) ? fmt::format("{:.4g}", ns_per_day) : "-";
+}
 
 std::string table_of(std::vector<SamplingRow> const& rows) {
-    Table table(
-        {"links", "step fs", "ns in all", "Rg nm", "Ree nm", "cosine", "T conf. K", "T kin. K", "link error", "a step", "ns/day", ""},
-        {0, 11});
+    Table table({"links", "step fs", "ns in all", "Rg nm", "Ree nm", "cosine", "T conf. K",
+                 "T kin. K", "link error", "a step", "ns/day", ""},
+                {0, 11});
     for (SamplingRow const& row : rows) {
         if (row.state != "VALID" && row.state != "INVALID") {
-            table.add({name_of(row.method), femtoseconds(row.step), "-", "-", "-", "-", "-", "-", fmt::format("{:.1e}", row.link_error),
-                       "-", "-", row.state});
+            table.add({name_of(row.method), femtoseconds(row.step), "-", "-", "-", "-", "-", "-",
+                       fmt::format("{:.1e}", row.link_error), "-", "-", row.state});
             continue;
         }
-        table.add({name_of(row.method), femtoseconds(row.step), fmt::format("{:.4g}", row.all), text_of(row.gyration, 4),
-                   text_of(row.end_to_end, 3), text_of(row.cosine, 5), text_of(row.temperature, 2), text_of(row.kinetic, 2),
-                   fmt::format("{:.1e}", row.link_error), row.steps > 0 ? duration_text(row.seconds.median) : "-",
+        table.add({name_of(row.method), femtoseconds(row.step), fmt::format("{:.4g}", row.all),
+                   text_of(row.gyration, 4), text_of(row.end_to_end, 3), text_of(row.cosine, 5),
+                   text_of(row.temperature, 2), text_of(row.kinetic, 2),
+                   fmt::format("{:.1e}", row.link_error),
+                   row.steps > 0 ? duration_text(row.seconds.median) : "-",
                    rate_text(row.ns_per_day()), row.state});
     }
     return table.text();
@@ -115,7 +130,8 @@ std::string table_of(std::vector<SamplingRow> const& rows) {
 std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
     Table table({"links", "step fs", "Rg %", "T conf. %", "usable", "ns/day"}, {0, 4});
     auto const percent = [](double value, double error) {
-        return std::isfinite(value) ? fmt::format("{:+.2f} +- {:.2f}", value, error) : std::string("-");
+        return std::isfinite(value) ? fmt::format("{:+.2f} +- {:.2f}", value, error)
+                                    : std::string("-");
     };
     for (SamplingMethodVerdict const& each : verdicts) {
         for (std::size_t i = 0; i < each.rows.size(); ++i) {
@@ -123,12 +139,14 @@ std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
             SamplingBias const& b = each.bias[i];
             table.add({name_of(each.method), femtoseconds(row->step),
                        i == 0 && row->valid() ? "reference" : percent(b.gyration, b.gyration_error),
-                       percent(b.temperature, b.temperature_error), row->valid() ? b.word() : row->state,
+                       percent(b.temperature, b.temperature_error),
+                       row->valid() ? b.word() : row->state,
                        row->valid() ? rate_text(row->ns_per_day()) : "-"});
         }
     }
     std::string text =
-        "Bias of Rg against the same method's smallest step, of the configurational temperature against that of the thermostat. Usable: "
+        "Bias of Rg against the same method's smallest step, of the configurational temperature "
+        "against that of the thermostat. Usable: "
         "both below 1 %, and their errors; shown: even with two standard errors more.\n" +
         table.text();
     for (SamplingMethodVerdict const& each : verdicts) {
@@ -140,9 +158,11 @@ std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
             continue;
         }
         text += fmt::format("{} fs ({}), {} ns/day", femtoseconds(each.allowed->step),
-                            each.shown == each.allowed ? "shown" : "not contradicted", rate_text(each.allowed->ns_per_day()));
+                            each.shown == each.allowed ? "shown" : "not contradicted",
+                            rate_text(each.allowed->ns_per_day()));
         if (each.shown && each.shown != each.allowed)
-            text += fmt::format("; shown up to {} fs, {} ns/day", femtoseconds(each.shown->step), rate_text(each.shown->ns_per_day()));
+            text += fmt::format("; shown up to {} fs, {} ns/day", femtoseconds(each.shown->step),
+                                rate_text(each.shown->ns_per_day()));
         text += "\n";
     }
     return text;
@@ -151,9 +171,10 @@ std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
 std::string difference_text(std::vector<SamplingDifference> const& differences) {
     std::string text;
     for (SamplingDifference const& d : differences)
-        text += fmt::format("{} ({} fs) minus {} ({} fs): Rg {} nm, Ree {} nm, cosine {}\n", name_of(d.of->method),
-                            femtoseconds(d.of->step), name_of(d.less->method), femtoseconds(d.less->step), sign_text(d.gyration, 4),
-                            sign_text(d.end_to_end, 3), sign_text(d.cosine, 5));
+        text += fmt::format(
+            "{} ({} fs) minus {} ({} fs): Rg {} nm, Ree {} nm, cosine {}\n", name_of(d.of->method),
+            femtoseconds(d.of->step), name_of(d.less->method), femtoseconds(d.less->step),
+            sign_text(d.gyration, 4), sign_text(d.end_to_end, 3), sign_text(d.cosine, 5));
     return text;
 }
 
@@ -165,14 +186,18 @@ std::string name_of_chain(std::string const& first, std::int64_t copies) {
 std::string heading(SamplingCopies const& copies, SamplingOptions const& options) {
     Scene const& scene = copies.model();
     return fmt::format(
-        "{} of {} ({} beads), {} K, friction {}/ps, without a box; {} ps discarded, a sample every {} ps, {} ps on rigid links before.\n"
-        "Catena's g-BAOAB on rigid links (rigid-fixman: with the Fixman potential, its chains on the host), {}'s LangevinMiddle with "
+        "{} of {} ({} beads), {} K, friction {}/ps, without a box; {} ps discarded, a sample every "
+        "{} ps, {} ps on rigid links before.\n"
+        "Catena's g-BAOAB on rigid links (rigid-fixman: with the Fixman potential, its chains on "
+        "the host), {}'s LangevinMiddle with "
         "harmonic bonds and constraints. {}\n"
-        "Errors: standard ones by blocking, copies pooled (* no plateau). ns/day: of the copies side by side, without their samples; every "
+        "Errors: standard ones by blocking, copies pooled (* no plateau). ns/day: of the copies "
+        "side by side, without their samples; every "
         "copy counts in \"ns in all\".\n",
-        counted(copies.copies(), "copy", "copies"), name_of_chain(scene.chains.front().name, copies.copies()), copies.beads_of_copy(),
-        scene.dynamics.temperature, scene.dynamics.friction, options.discard, options.every, options.equilibration, openmm_version(),
-        hardware_text());
+        counted(copies.copies(), "copy", "copies"),
+        name_of_chain(scene.chains.front().name, copies.copies()), copies.beads_of_copy(),
+        scene.dynamics.temperature, scene.dynamics.friction, options.discard, options.every,
+        options.equilibration, openmm_version(), hardware_text());
 }
 
 /// The nearest and the farthest out of all rows.
@@ -182,12 +207,17 @@ std::string distances_text(std::vector<SamplingRow> const& rows) {
         if (row.valid()) nearest = std::min(nearest, row.nearest);
         rounding = std::max(rounding, row.rounding);
     }
-    std::string const far = fmt::format("Single precision, where OpenMM has it, rounds positions by {:.0e} nm at most.\n", rounding);
+    std::string const far = fmt::format(
+        "Single precision, where OpenMM has it, rounds positions by {:.0e} nm at most.\n",
+        rounding);
     if (!std::isfinite(nearest)) return far;
-    return fmt::format("Copies came no nearer to each other than {:.4g} nm; forces reach {} nm. ", nearest, SamplingCopies::cutoff()) + far;
+    return fmt::format("Copies came no nearer to each other than {:.4g} nm; forces reach {} nm. ",
+                       nearest, SamplingCopies::cutoff()) +
+           far;
 }
 
-void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions const& options, std::vector<SamplingRow> const& rows) {
+void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions const& options,
+              std::vector<SamplingRow> const& rows) {
     auto const verdicts = verdicts_of(rows, copies.model().dynamics.temperature);
     auto const differences = differences_of(verdicts);
     outcome.json["results"] = Json::array();
@@ -198,14 +228,18 @@ void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions co
     for (SamplingRow const& row : rows) {
         outcome.json["results"].push_back(json_of(row, copies.copies()));
         outcome.valid = outcome.valid && row.state != "INVALID" && row.state != "failed";
-        if (!row.valid()) remarks += fmt::format("  {}, {} fs: {}: {}\n", name_of(row.method), femtoseconds(row.step), row.state, row.why);
+        if (!row.valid())
+            remarks += fmt::format("  {}, {} fs: {}: {}\n", name_of(row.method),
+                                   femtoseconds(row.step), row.state, row.why);
         if (row.cut && row.valid())
-            remarks += fmt::format("  {}, {} fs: ended after {} s with {:.4g} ps of each copy\n", name_of(row.method),
-                                   femtoseconds(row.step), options.seconds, row.time);
+            remarks +=
+                fmt::format("  {}, {} fs: ended after {} s with {:.4g} ps of each copy\n",
+                            name_of(row.method), femtoseconds(row.step), options.seconds, row.time);
     }
     for (SamplingMethodVerdict const& each : verdicts) {
         outcome.json["verdicts"].push_back(json_of(each));
-        outcome.valid = outcome.valid && each.rows.front()->valid();  // a longer step that is too long is a finding
+        outcome.valid = outcome.valid &&
+                        each.rows.front()->valid();  // a longer step that is too long is a finding
     }
     for (SamplingDifference const& d : differences)
         outcome.json["differences"].push_back({{"of", name_of(d.of->method)},
@@ -215,11 +249,12 @@ void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions co
                                                {"end_to_end_distance_nm", json_of(d.end_to_end)},
                                                {"cosine", json_of(d.cosine)}});
     outcome.json["valid"] = outcome.valid;
-    outcome.text =
-        heading(copies, options) + table_of(rows) + remarks + distances_text(rows) + usable_text(verdicts) + difference_text(differences);
+    outcome.text = heading(copies, options) + table_of(rows) + remarks + distances_text(rows) +
+                   usable_text(verdicts) + difference_text(differences);
 }
 
-Json head(SamplingCopies const& copies, SamplingOptions const& options, CommonOptions const& common) {
+Json head(SamplingCopies const& copies, SamplingOptions const& options,
+          CommonOptions const& common) {
     Scene const& scene = copies.model();
     return {{"bench", "sampling"},
             {"command", common.command_line},
@@ -248,7 +283,8 @@ Outcome bench_sampling(Communicator const& communicator, BenchRequest const& req
     Outcome outcome;
     outcome.json = head(copies, options, request);
     outcome.complaint =
-        "links off by more than their tolerance, copies that met, means that are not finite, or a method without samples at its smallest "
+        "links off by more than their tolerance, copies that met, means that are not finite, or a "
+        "method without samples at its smallest "
         "step: see the results";
     auto const say = [&](std::string const& line) {
         if (!request.quiet) std::fputs((line + "\n").c_str(), stderr);
@@ -256,13 +292,17 @@ Outcome bench_sampling(Communicator const& communicator, BenchRequest const& req
     if (options.equilibration > 0) say(fmt::format("{} ps on rigid links", options.equilibration));
     equilibrate(copies, request, communicator, backend, options.equilibration);
     std::vector<SamplingRow> rows;
-    std::string const at_most = options.seconds > 0 ? fmt::format(", {} s at most", options.seconds) : "";
-    for (double const step : options.steps)  // all methods at the first step, in case that time is up
+    std::string const at_most =
+        options.seconds > 0 ? fmt::format(", {} s at most", options.seconds) : "";
+    for (double const step :
+         options.steps)  // all methods at the first step, in case that time is up
         for (std::string const& method : options.methods) {
             say(fmt::format("{}, {} fs{}", method, femtoseconds(step), at_most));
-            rows.push_back(run_sampling_row(copies, request, communicator, backend, sampling_method_named("--methods", method), step));
+            rows.push_back(run_sampling_row(copies, request, communicator, backend,
+                                            sampling_method_named("--methods", method), step));
             conclude(outcome, copies, options, rows);
-            if (!request.json.empty() && request.json != "-") write_text_file(request.json, json_text(outcome.json));
+            if (!request.json.empty() && request.json != "-")
+                write_text_file(request.json, json_text(outcome.json));
         }
     return outcome;
 }

@@ -8,12 +8,14 @@
 
 namespace catena::command {
 
-Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides, std::string const& loads) {
+Scene random_scene(std::string const& joint, std::int64_t bodies,
+                   std::vector<std::string> const& overrides, std::string const& loads) {
     std::string const name = fmt::format("random-{}-{}", joint, bodies);
     std::string const text = fmt::format(
         "title: random chain, {0}, {1} bodies\n"
         "units: si\n"
-        "chains: [{{name: random, base: {2}, generator: {{random: {{bodies: {1}, joint: {0}, seed: 1}}}}}}]\n"
+        "chains: [{{name: random, base: {2}, generator: {{random: {{bodies: {1}, joint: {0}, seed: "
+        "1}}}}}}]\n"
         "forces: {{gravity: [0, 0, -9.81]}}\n",
         joint, bodies, joint == "link" ? "free" : "fixed");
     Scene scene = parse_scene(text, name, overrides);
@@ -41,7 +43,8 @@ Scene swinging_scene(std::string const& joint, std::vector<std::string> const& o
     std::string const text = fmt::format(
         "title: 8 swinging bodies, {0}\n"
         "units: si\n"
-        "chains: [{{name: swinging, base: fixed, generator: {{random: {{bodies: 8, joint: {0}, seed: 4{1}}}}}}}]\n"
+        "chains: [{{name: swinging, base: fixed, generator: {{random: {{bodies: 8, joint: {0}, "
+        "seed: 4{1}}}}}}}]\n"
         "forces: {{gravity: [0, -3, -5]}}\n",
         joint, joint == "link" ? "" : ", loads: false");
     return parse_scene(text, "swinging-" + joint, overrides);
@@ -49,17 +52,22 @@ Scene swinging_scene(std::string const& joint, std::vector<std::string> const& o
 
 Scene elastic_scene(std::vector<std::string> const& overrides) {
     constexpr int rods = 8;
-    constexpr double stiffness = 5.3;  // its slowest mode takes 1.6 s, a quarter of that is where a run of half a second ends
+    constexpr double stiffness = 5.3;  // its slowest mode takes 1.6 s, a quarter of that is where a
+                                       // run of half a second ends
     constexpr double turning = 2.0;    // of the last rod
-    // Curvature of a clamped rod that bends under the weight of its own sag: all but the slowest mode's; u: 1 at the clamp, 0 at the end.
+    // Curvature of a clamped rod that bends under the weight of its own sag: all but the slowest
+    // mode's; u: 1 at the clamp, 0 at the end.
     auto const bending = [](double u) { return u * u * (1.5 - u * (2.0 / 3 - u * u * u / 30)); };
-    std::string text = "title: clamped elastic rod, 8 rods\nunits: si\nchains:\n  - name: rod\n    base: fixed\n    bodies:\n";
+    std::string text =
+        "title: clamped elastic rod, 8 rods\nunits: si\nchains:\n  - name: rod\n    base: fixed\n  "
+        "  bodies:\n";
     double sum = 0;
     for (int k = 0; k < rods; ++k) sum += bending(1 - static_cast<double>(k) / rods);
     for (int k = 0; k < rods; ++k) {
         double const rate = turning * bending(1 - static_cast<double>(k) / rods) / sum;
         text += fmt::format(
-            "      - {{mass: 0.1, com: [0.05, 0, 0], inertia: [5e-6, 8.6e-5, 8.6e-5], joint: {{type: spherical, translation: [{}, 0, 0], "
+            "      - {{mass: 0.1, com: [0.05, 0, 0], inertia: [5e-6, 8.6e-5, 8.6e-5], joint: "
+            "{{type: spherical, translation: [{}, 0, 0], "
             "stiffness: [{}, {}, {}], qd: [0, {}, {}]}}}}\n",
             k == 0 ? 0.0 : 0.1, stiffness, stiffness, stiffness, 0.5 * rate, rate);
     }
@@ -79,21 +87,26 @@ Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides)
 namespace {
 
 constexpr char const* alpha_synuclein =
-    "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEM"
+    "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGF"
+    "VKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEM"
     "PSEEGYQDYEPEA";
 constexpr std::int64_t beads_of_chain = 140;
 
 std::string alpha_synucleins(std::int64_t chains, std::string const& box) {
     return fmt::format(
         "title: {0} of alpha-synuclein\n"
-        "chains: [{{name: asyn, count: {0}, sequence: {1}, model: calvados2, conformation: self_avoiding, velocities: thermal}}]\n"
+        "chains: [{{name: asyn, count: {0}, sequence: {1}, model: calvados2, conformation: "
+        "self_avoiding, velocities: thermal}}]\n"
         "box: {2}\n"
         "forces: {{openmm: {{builder: calvados2, temperature: 300, ionic_strength: 0.15}}}}\n"
-        "dynamics: {{integrator: g-baoab, step: 0.01, temperature: 300, friction: 0.01, seed: 1}}\n",
+        "dynamics: {{integrator: g-baoab, step: 0.01, temperature: 300, friction: 0.01, seed: "
+        "1}}\n",
         chains, alpha_synuclein, box);
 }
 
-std::int64_t chains_for(std::int64_t beads) { return std::max<std::int64_t>(1, (beads + beads_of_chain / 2) / beads_of_chain); }
+std::int64_t chains_for(std::int64_t beads) {
+    return std::max<std::int64_t>(1, (beads + beads_of_chain / 2) / beads_of_chain);
+}
 
 }  // namespace
 
@@ -102,7 +115,8 @@ std::int64_t beads_of_condensate(std::int64_t beads) { return beads_of_chain * c
 Scene condensate_scene(std::int64_t beads, std::vector<std::string> const& overrides) {
     std::int64_t const chains = chains_for(beads);
     // As inputs/condensate.yaml, but no smaller than the cutoff of 4 nm allows.
-    double const edge = chains == 1 ? 60.0 : std::max(8.1, 19.38 * std::cbrt(static_cast<double>(chains) / 100));
+    double const edge =
+        chains == 1 ? 60.0 : std::max(8.1, 19.38 * std::cbrt(static_cast<double>(chains) / 100));
     return parse_scene(alpha_synucleins(chains, fmt::format("{{periodic: [{0}, {0}, {0}]}}", edge)),
                        fmt::format("condensate-{}", beads_of_chain * chains), overrides);
 }

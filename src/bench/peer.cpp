@@ -25,15 +25,16 @@ namespace {
 
 constexpr std::size_t longest_answer = 1 << 16;
 
-PeerProgram python_peer(std::string const& name, std::string const& module, std::string const& package,
-                        std::vector<std::string> const& options) {
+PeerProgram python_peer(std::string const& name, std::string const& module,
+                        std::string const& package, std::vector<std::string> const& options) {
     std::string const path = "tests/bench/peers/peer_" + module + ".py";
     PeerProgram program{name, {}, options, ""};
     auto const script = find_in_source_tree(path);
     auto const python = script ? find_python(module) : std::nullopt;
     if (!script) program.missing = path + " is not beside this program";
     if (script && !python)
-        program.missing = "no Python here imports " + module + " (PyPI: " + package + "; tests/bench/peers/README.md says where to put it)";
+        program.missing = "no Python here imports " + module + " (PyPI: " + package +
+                          "; tests/bench/peers/README.md says where to put it)";
     if (script && python) program.words = {*python, script->string()};
     return program;
 }
@@ -41,7 +42,11 @@ PeerProgram python_peer(std::string const& name, std::string const& module, std:
 PeerProgram simbody() {
     auto const program = find_in_build_tree("tests/bench/peer-simbody");
     if (program) return {"simbody", {program->string()}, {}, ""};
-    return {"simbody", {}, {}, "tests/bench/peer-simbody was not built (Debian: libsimbody-dev, then configure and build again)"};
+    return {"simbody",
+            {},
+            {},
+            "tests/bench/peer-simbody was not built (Debian: libsimbody-dev, then configure and "
+            "build again)"};
 }
 
 std::string last_line(std::string const& file) {
@@ -55,14 +60,20 @@ std::string last_line(std::string const& file) {
 }  // namespace
 
 std::vector<PeerProgram> peer_programs() {
-    return {python_peer("pinocchio, local", "pinocchio", "pin", {"local"}), python_peer("pinocchio, world", "pinocchio", "pin", {"world"}),
-            simbody(), python_peer("mujoco", "mujoco", "mujoco", {})};
+    return {python_peer("pinocchio, local", "pinocchio", "pin", {"local"}),
+            python_peer("pinocchio, world", "pinocchio", "pin", {"world"}), simbody(),
+            python_peer("mujoco", "mujoco", "mujoco", {})};
 }
 
-Peer::Peer(PeerProgram const& program, std::string const& chain_file, std::string const& accelerations_file, Limits limits)
-    : limits_(limits), accelerations_file_(accelerations_file), errors_file_(accelerations_file + ".log") {
+Peer::Peer(PeerProgram const& program, std::string const& chain_file,
+           std::string const& accelerations_file, Limits limits)
+    : limits_(limits),
+      accelerations_file_(accelerations_file),
+      errors_file_(accelerations_file + ".log") {
     // The shell sets the limit and becomes the program.
-    std::vector<std::string> words{"/bin/sh", "-c", fmt::format("ulimit -v {}; exec \"$@\"", limits.memory_bytes / 1024), "sh"};
+    std::vector<std::string> words{
+        "/bin/sh", "-c", fmt::format("ulimit -v {}; exec \"$@\"", limits.memory_bytes / 1024),
+        "sh"};
     words.insert(words.end(), program.words.begin(), program.words.end());
     words.insert(words.end(), {chain_file, accelerations_file});
     words.insert(words.end(), program.options.begin(), program.options.end());
@@ -70,13 +81,16 @@ Peer::Peer(PeerProgram const& program, std::string const& chain_file, std::strin
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     int ends[2] = {-1, -1};  // sockets, because a pipe that nobody reads would end this program
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw ComputationError("no socket to talk to another program");
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        throw ComputationError("no socket to talk to another program");
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
     ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    int const started = ::posix_spawn(&child_, argv[0], &actions, DefaultSignals().get(), argv.data(), environ);
+    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors_file_.c_str(),
+                                       O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    int const started =
+        ::posix_spawn(&child_, argv[0], &actions, DefaultSignals().get(), argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     ::close(ends[1]);
     talk_ = ends[0];
@@ -95,7 +109,9 @@ bool Peer::is_ready() {
     std::string const answer = line(limits_.set_up, "building the chain and evaluating it once");
     if (!stopped_.empty()) return false;
     description_ = Json::parse(answer, nullptr, false);
-    auto const is_text = [this](char const* key) { return !description_.contains(key) || description_.at(key).is_string(); };
+    auto const is_text = [this](char const* key) {
+        return !description_.contains(key) || description_.at(key).is_string();
+    };
     if (!description_.is_object() || !is_text("stops") || !is_text("version") || !is_text("method"))
         stop("it said what cannot be read: " + answer);
     else if (description_.contains("stops"))
@@ -115,7 +131,8 @@ double Peer::time(int evaluations) {
     std::string const answer = line(evaluations * limits_.evaluation, "evaluating");
     char* end = nullptr;
     double const seconds = std::strtod(answer.c_str(), &end);
-    if (stopped_.empty() && (end == answer.c_str() || !(seconds >= 0))) stop("it said what is no time: " + answer);
+    if (stopped_.empty() && (end == answer.c_str() || !(seconds >= 0)))
+        stop("it said what is no time: " + answer);
     return stopped_.empty() ? seconds : -1;
 }
 
@@ -123,7 +140,8 @@ std::vector<double> Peer::accelerations() const {
     std::ifstream in(accelerations_file_, std::ios::binary | std::ios::ate);
     std::vector<double> found(in ? static_cast<std::size_t>(in.tellg()) / sizeof(double) : 0);
     in.seekg(0);
-    in.read(reinterpret_cast<char*>(found.data()), static_cast<std::streamsize>(found.size() * sizeof(double)));
+    in.read(reinterpret_cast<char*>(found.data()),
+            static_cast<std::streamsize>(found.size() * sizeof(double)));
     return found;
 }
 
@@ -145,15 +163,19 @@ std::string Peer::line(std::chrono::duration<double> patience, std::string const
             rest_.erase(0, end + 1);
             return found;
         }
-        auto const left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()).count();
+        auto const left =
+            std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now())
+                .count();
         pollfd waiting{talk_, POLLIN, 0};
         int const ready = left > 0 ? ::poll(&waiting, 1, static_cast<int>(left)) : 0;
         if (ready < 0 && errno == EINTR) continue;
         char some[4096];
         ssize_t const count = ready > 0 ? ::read(talk_, some, sizeof(some)) : 0;
         if (count > 0) rest_.append(some, static_cast<std::size_t>(count));
-        if (rest_.size() > longest_answer) stop("it does not end its line: " + rest_.substr(0, 100));
-        if (ready == 0) stop(fmt::format("{} takes more than {}", doing, duration_text(patience.count())));
+        if (rest_.size() > longest_answer)
+            stop("it does not end its line: " + rest_.substr(0, 100));
+        if (ready == 0)
+            stop(fmt::format("{} takes more than {}", doing, duration_text(patience.count())));
         if (ready > 0 && count <= 0) stop(how_it_ended());
     }
     return "";
@@ -168,8 +190,10 @@ std::string Peer::how_it_ended() {
     }
     child_ = -1;
     std::string const said = last_line(errors_file_);
-    std::string const how = WIFSIGNALED(status) ? fmt::format("ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)))
-                                                : fmt::format("ended with status {}", WEXITSTATUS(status));
+    std::string const how = WIFSIGNALED(status)
+                                ? fmt::format("ended by signal {} ({})", WTERMSIG(status),
+                                              ::strsignal(WTERMSIG(status)))
+                                : fmt::format("ended with status {}", WEXITSTATUS(status));
     return said.empty() ? how : how + ": " + said;
 }
 

@@ -1,4 +1,5 @@
-// Another program for multibody dynamics, in a process of its own that answers questions (tests/bench/peers/peer.py).
+// Another program for multibody dynamics, in a process of its own that answers questions
+// (tests/bench/peers/peer.py).
 #pragma once
 
 #include <sys/types.h>
@@ -28,7 +29,8 @@ class Peer {
         std::int64_t memory_bytes;  // of its address space
     };
     /// Starts the program on a chain's table; its accelerations go to `accelerations_file`.
-    Peer(PeerProgram const&, std::string const& chain_file, std::string const& accelerations_file, Limits);
+    Peer(PeerProgram const&, std::string const& chain_file, std::string const& accelerations_file,
+         Limits);
     ~Peer();
     Peer(Peer const&) = delete;
     Peer& operator=(Peer const&) = delete;

@@ -1,4 +1,5 @@
-// Chains of the stability suite, solved by other programs that eliminate body by body, as articulated bodies do.
+// Chains of the stability suite, solved by other programs that eliminate body by body, as
+// articulated bodies do.
 #pragma once
 
 #include <map>
@@ -8,12 +9,14 @@
 
 namespace catena::command {
 
-/// Simbody and Pinocchio. MuJoCo factors the joint-space inertia, whose condition is another question.
+/// Simbody and Pinocchio. MuJoCo factors the joint-space inertia, whose condition is another
+/// question.
 std::vector<PeerProgram> peers_of_suite();
 /// A suite has many chains.
 Peer::Limits limits_of_suite();
 
-/// One process a program, that takes one chain after the other; where it stops, another is started for the next case.
+/// One process a program, that takes one chain after the other; where it stops, another is started
+/// for the next case.
 class PeerAnswers {
   public:
     explicit PeerAnswers(std::vector<PeerProgram>, Peer::Limits);

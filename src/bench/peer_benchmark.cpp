@@ -10,10 +10,13 @@
 namespace catena::command {
 namespace {
 
-constexpr double rounding = 32 * 0x1p-53;  // as of a level of the tree (ChainSystem::residual_bound)
+constexpr double rounding =
+    32 * 0x1p-53;  // as of a level of the tree (ChainSystem::residual_bound)
 constexpr std::int64_t largest_quad_here = 5000, few_nudges_above = 10000;
 
-Json said(Json const& peer, char const* key) { return peer.is_object() ? peer.value(key, Json()) : Json(); }
+Json said(Json const& peer, char const* key) {
+    return peer.is_object() ? peer.value(key, Json()) : Json();
+}
 
 constexpr char const* suffix_of[] = {"", ", absolute", ", solver alone"};
 
@@ -21,7 +24,8 @@ std::vector<Way> ways_of(std::string const& joint, Backend backend, Handles hand
     if (joint != "link" && joint != "spherical") return {Way::joint};
     std::vector<Way> ways{Way::joint};
     if (joint == "spherical") ways.push_back(Way::absolute);  // beads know no other
-    bool const in_one_sweep = backend != Backend::serial && backend != Backend::cuda_levels && handles == Handles::projected;
+    bool const in_one_sweep = backend != Backend::serial && backend != Backend::cuda_levels &&
+                              handles == Handles::projected;
     if (in_one_sweep) ways.push_back(Way::solver);
     return ways;
 }
@@ -29,15 +33,18 @@ std::vector<Way> ways_of(std::string const& joint, Backend backend, Handles hand
 }  // namespace
 
 /// One backend with a scene of its own.
-class PeerContest::Own {
+class PeerBenchmark::Own {
   public:
     Own(Scene scene, Backend backend, Way way, Communicator const& communicator)
-        : scene_(with(std::move(scene), backend)), system_(scene_, way == Way::joint ? Axes::joint : Axes::world, communicator), way_(way) {
+        : scene_(with(std::move(scene), backend)),
+          system_(scene_, way == Way::joint ? Axes::joint : Axes::world, communicator),
+          way_(way) {
         system_.evaluate();
         system_.evaluate(false);
     }
     double time(int evaluations) {
-        if (way_ == Way::solver) return evaluations * system_.absolute().front()->time_at_once(evaluations, 1).front();
+        if (way_ == Way::solver)
+            return evaluations * system_.absolute().front()->time_at_once(evaluations, 1).front();
         double const start = seconds_now();
         for (int i = 0; i < evaluations; ++i) system_.evaluate(false);
         system_.wait();
@@ -53,8 +60,11 @@ class PeerContest::Own {
         Vec3 alpha = Vec3::zero(), omega = Vec3::zero();  // of the body before
         for (std::size_t k = 0; k < at.omega.size(); ++k) {
             Mat3 const r = to_matrix(at.orientation[k]);
-            Vec3 const own = r * at.omega[k], relative = transposed_times(r, a.alpha[k] - alpha + cross(own, omega));
-            std::copy_n(relative.data, 3, &found.acceleration[static_cast<std::size_t>(found.acceleration_offset[k])]);
+            Vec3 const own = r * at.omega[k],
+                       relative = transposed_times(r, a.alpha[k] - alpha + cross(own, omega));
+            std::copy_n(
+                relative.data, 3,
+                &found.acceleration[static_cast<std::size_t>(found.acceleration_offset[k])]);
             alpha = a.alpha[k];
             omega = own;
         }
@@ -71,35 +81,39 @@ class PeerContest::Own {
     Way way_;
 };
 
-PeerContest::PeerContest(Scene scene, std::string joint) : scene_(std::move(scene)), joint_(std::move(joint)) {}
-PeerContest::~PeerContest() = default;
+PeerBenchmark::PeerBenchmark(Scene scene, std::string joint)
+    : scene_(std::move(scene)), joint_(std::move(joint)) {}
+PeerBenchmark::~PeerBenchmark() = default;
 
-void PeerContest::Engine::warm_up() {
+void PeerBenchmark::Engine::warm_up() {
     double const one = time(1);
     goes_on = one >= 0;
     of_block = static_cast<int>(std::clamp(block_seconds / std::max(one, 1e-9), 1.0, 10000.0));
 }
 
-void PeerContest::Engine::block() {
+void PeerBenchmark::Engine::block() {
     double const taken = goes_on ? time(of_block) : -1;
     goes_on = taken >= 0;
     if (goes_on) seconds.push_back(taken / of_block);
 }
 
-void PeerContest::add(std::vector<Backend> const& backends, Communicator const& communicator) {
+void PeerBenchmark::add(std::vector<Backend> const& backends, Communicator const& communicator) {
     for (Backend const backend : backends)
-        for (Way const way : ways_of(joint_, backend, scene_.solver.handles)) add(backend, way, communicator);
+        for (Way const way : ways_of(joint_, backend, scene_.solver.handles))
+            add(backend, way, communicator);
 }
 
-void PeerContest::add(Backend backend, Way way, Communicator const& communicator) {
+void PeerBenchmark::add(Backend backend, Way way, Communicator const& communicator) {
     own_.push_back(std::make_unique<Own>(scene_, backend, way, communicator));
     ChainSystem& system = own_.back()->system();
     Solution const found = own_.back()->solution();
     if (own_.size() == 1) {
         layout_ = found;
-        exact_ = exact_solution(scene_, layout_, largest_quad_here, scene_.bodies() > few_nudges_above ? 1 : 3);
+        exact_ = exact_solution(scene_, layout_, largest_quad_here,
+                                scene_.bodies() > few_nudges_above ? 1 : 3);
     }
-    Engine engine{name_of(backend) + std::string(suffix_of[static_cast<int>(way)]), system.executor().threads(),
+    Engine engine{name_of(backend) + std::string(suffix_of[static_cast<int>(way)]),
+                  system.executor().threads(),
                   [own = own_.back().get()](int n) { return own->time(n); }};
     engine.whole = way != Way::solver;
     engine.bound = system.residual_bound() * exact_.growth;
@@ -109,7 +123,7 @@ void PeerContest::add(Backend backend, Way way, Communicator const& communicator
     engines_.push_back(std::move(engine));
 }
 
-void PeerContest::add(std::string const& name, std::unique_ptr<Peer> peer) {
+void PeerBenchmark::add(std::string const& name, std::unique_ptr<Peer> peer) {
     Engine engine{name, 1, [p = peer.get()](int n) { return p->time(n); }};
     engine.peer = peer->description();
     // Rounding goes through as many bodies there as through levels of a tree here.
@@ -119,35 +133,42 @@ void PeerContest::add(std::string const& name, std::unique_ptr<Peer> peer) {
     peers_.push_back(std::move(peer));
 }
 
-std::vector<PeerStop> PeerContest::take_turns(int blocks) {
+std::vector<PeerStop> PeerBenchmark::take_turns(int blocks) {
     for (Engine& engine : engines_) engine.warm_up();
     for (int b = 0; b < blocks; ++b)
         for (Engine& engine : engines_) engine.block();
     std::vector<PeerStop> stops;
     for (std::size_t i = 0; i < peers_.size(); ++i)
-        if (!peers_[i]->stopped().empty()) stops.push_back({engines_[own_.size() + i].name, joint_, peers_[i]->stopped(), scene_.bodies()});
+        if (!peers_[i]->stopped().empty())
+            stops.push_back(
+                {engines_[own_.size() + i].name, joint_, peers_[i]->stopped(), scene_.bodies()});
     std::erase_if(engines_, [](Engine const& e) { return !e.goes_on; });
     return stops;
 }
 
-std::vector<double> PeerContest::table() const { return peer_table(scene_.chains.front(), scene_.forces.gravity); }
+std::vector<double> PeerBenchmark::table() const {
+    return peer_table(scene_.chains.front(), scene_.forces.gravity);
+}
 
-double PeerContest::fastest_on_one_core() const {
+double PeerBenchmark::fastest_on_one_core() const {
     double fastest = spread_of(engines_.front().seconds).median;
     for (Engine const& e : engines_)
-        if (e.peer.is_null() && e.whole && e.threads == 1) fastest = std::min(fastest, spread_of(e.seconds).median);
+        if (e.peer.is_null() && e.whole && e.threads == 1)
+            fastest = std::min(fastest, spread_of(e.seconds).median);
     return fastest;
 }
 
-void PeerContest::conclude(Outcome& outcome, Table& table) const {
+void PeerBenchmark::conclude(Outcome& outcome, Table& table) const {
     double const fastest = fastest_on_one_core();
     for (Engine const& e : engines_) {
         outcome.valid = outcome.valid && (!e.peer.is_null() || e.valid);
         Spread const s = spread_of(e.seconds);
         double const to_ns = 1e9 / static_cast<double>(scene_.bodies());
-        table.add({joint_, std::to_string(scene_.bodies()), e.name, std::to_string(e.threads), fmt::format("{:.1f}", to_ns * s.median),
-                   fmt::format("{:.2f}", s.median / fastest), fmt::format("{:.1e}", e.error), fmt::format("{:.1e}", e.bound),
-                   e.residual ? fmt::format("{:.1e}", *e.residual) : "-", e.valid ? "VALID" : "INVALID"});
+        table.add(
+            {joint_, std::to_string(scene_.bodies()), e.name, std::to_string(e.threads),
+             fmt::format("{:.1f}", to_ns * s.median), fmt::format("{:.2f}", s.median / fastest),
+             fmt::format("{:.1e}", e.error), fmt::format("{:.1e}", e.bound),
+             e.residual ? fmt::format("{:.1e}", *e.residual) : "-", e.valid ? "VALID" : "INVALID"});
         outcome.json["results"].push_back(
             {{"joint", joint_},
              {"bodies", scene_.bodies()},
@@ -155,21 +176,24 @@ void PeerContest::conclude(Outcome& outcome, Table& table) const {
              {"threads", e.threads},
              {"repeat", s.count},
              {"evaluations_a_repeat", e.of_block},
-             {"ns_per_body", {{"evaluation", {{"median", to_ns * s.median}, {"min", to_ns * s.min}, {"max", to_ns * s.max}}}}},
+             {"ns_per_body",
+              {{"evaluation",
+                {{"median", to_ns * s.median}, {"min", to_ns * s.min}, {"max", to_ns * s.max}}}}},
              {"over_catena", s.median / fastest},
              {"reference", exact_.by},
              {"growth", exact_.growth},
              {"forward_error", e.error},
              {"forward_error_bound", e.bound},
              {"residual", e.residual ? Json(*e.residual) : Json()},
-             {"residual_bound", e.residual ? Json(own_.front()->system().residual_bound()) : Json()},
+             {"residual_bound",
+              e.residual ? Json(own_.front()->system().residual_bound()) : Json()},
              {"set_up_seconds", said(e.peer, "set_up_seconds")},
              {"memory_bytes", said(e.peer, "memory_bytes")},
              {"valid", e.valid}});
     }
 }
 
-void PeerContest::judge(Engine& engine, std::vector<double> acceleration) const {
+void PeerBenchmark::judge(Engine& engine, std::vector<double> acceleration) const {
     bool const whole = acceleration.size() == exact_.acceleration.size();
     Solution found = layout_;
     found.acceleration = std::move(acceleration);

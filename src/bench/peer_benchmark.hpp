@@ -1,4 +1,5 @@
-// One chain, evaluated in turns by Catena's backends and by other programs, and how right each of them is.
+// One chain, evaluated in turns by Catena's backends and by other programs, and how right each of
+// them is.
 #pragma once
 
 #include <functional>
@@ -7,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "console/outcome.hpp"
 #include "bench/peer.hpp"
+#include "console/outcome.hpp"
 #include "console/text.hpp"
 #include "measure/growth.hpp"
 #include "measure/solution.hpp"
@@ -22,17 +23,18 @@ struct PeerStop {
     std::int64_t bodies = 0;
 };
 
-/// How Catena evaluates: from the joints' coordinates to their accelerations, as the peers do; from poses to accelerations of bodies, as
-/// rattle and g-baoab do; of that the solver alone, loads in place, as `bench evaluation` does.
+/// How Catena evaluates: from the joints' coordinates to their accelerations, as the peers do; from
+/// poses to accelerations of bodies, as rattle and g-baoab do; of that the solver alone, loads in
+/// place, as `bench evaluation` does.
 enum class Way { joint, absolute, solver };
 
 /// Engines take turns by blocks of evaluations that last about so long.
 inline constexpr double block_seconds = 0.05;
 
-class PeerContest {
+class PeerBenchmark {
   public:
-    PeerContest(Scene, std::string joint);
-    ~PeerContest();
+    PeerBenchmark(Scene, std::string joint);
+    ~PeerBenchmark();
 
     /// Every way in which the backends evaluate such chains.
     void add(std::vector<Backend> const&, Communicator const&);
@@ -52,7 +54,8 @@ class PeerContest {
     struct Engine {
         std::string name;
         int threads = 1;
-        std::function<double(int)> time;  // seconds of so many evaluations; negative where it gave up
+        std::function<double(int)>
+            time;  // seconds of so many evaluations; negative where it gave up
         int of_block = 1;
         std::vector<double> seconds = {};
         double error = 0, bound = 0;

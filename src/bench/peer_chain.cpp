@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "math/rotation.hpp"
 #include "dynamics/body_loads.hpp"
+#include "math/rotation.hpp"
 
 namespace catena::command {
 namespace {
@@ -22,16 +22,20 @@ struct PeerBody {
     Mat3 rotation = Mat3::identity();
     Vec3 translation = Vec3::zero();
     std::array<double, 4> q{0, 0, 0, 0};
-    Vec3 qd = Vec3::zero(), torque = Vec3::zero(), wrench_torque = Vec3::zero(), wrench_force = Vec3::zero();
+    Vec3 qd = Vec3::zero(), torque = Vec3::zero(), wrench_torque = Vec3::zero(),
+         wrench_force = Vec3::zero();
 };
 constexpr std::size_t columns = 42;
 
-void append(std::vector<double>& table, Vec3 const& v) { table.insert(table.end(), v.data, v.data + 3); }
+void append(std::vector<double>& table, Vec3 const& v) {
+    table.insert(table.end(), v.data, v.data + 3);
+}
 
 void append(std::vector<double>& table, PeerBody const& b) {
     table.push_back(b.mass);
     append(table, b.com);
-    for (auto const& [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}) table.push_back(b.inertia(i, j));
+    for (auto const& [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}})
+        table.push_back(b.inertia(i, j));
     table.push_back(static_cast<double>(b.joint));
     append(table, b.axis);
     table.insert(table.end(), b.rotation.data, b.rotation.data + 9);
@@ -40,7 +44,9 @@ void append(std::vector<double>& table, PeerBody const& b) {
     for (Vec3 const& v : {b.qd, b.torque, b.wrench_torque, b.wrench_force}) append(table, v);
 }
 
-Vec3 entry(std::vector<Vec3> const& list, std::size_t k) { return list.empty() ? Vec3::zero() : list[k]; }
+Vec3 entry(std::vector<Vec3> const& list, std::size_t k) {
+    return list.empty() ? Vec3::zero() : list[k];
+}
 
 Quat quaternion(std::array<double, 4> const& q) { return {q[0], q[1], q[2], q[3]}; }
 
@@ -60,11 +66,13 @@ Vec3 torque_of(BodyArrays const& b, std::size_t k) {
 }
 
 PeerBody body_of(BodyArrays const& bodies, std::size_t k) {
-    PeerBody b{bodies.mass[k],        bodies.com[k], bodies.inertia[k], PeerJoint::ball,      bodies.axis[k], bodies.rotation[k],
-               bodies.translation[k], bodies.q[k],   bodies.qd[k],      torque_of(bodies, k), Vec3::zero(),   Vec3::zero()};
+    PeerBody b{bodies.mass[k], bodies.com[k],        bodies.inertia[k],     PeerJoint::ball,
+               bodies.axis[k], bodies.rotation[k],   bodies.translation[k], bodies.q[k],
+               bodies.qd[k],   torque_of(bodies, k), Vec3::zero(),          Vec3::zero()};
     if (bodies.joint[k] == JointType::revolute) b.joint = PeerJoint::revolute;
     if (!bodies.wrench.empty()) std::tie(b.wrench_torque, b.wrench_force) = bodies.wrench[k];
-    if (bodies.joint[k] == JointType::free) b.rotation = Mat3::identity(), b.translation = b.torque = Vec3::zero();
+    if (bodies.joint[k] == JointType::free)
+        b.rotation = Mat3::identity(), b.translation = b.torque = Vec3::zero();
     return b;
 }
 
@@ -78,7 +86,8 @@ PeerBody slide_at(Vec3 const& position, Vec3 const& velocity, double mass) {
 }
 
 void append(std::vector<double>& table, BodyArrays const& bodies) {
-    if (bodies.joint[0] == JointType::free) append(table, slide_at(bodies.free_position, bodies.free_velocity, 0));
+    if (bodies.joint[0] == JointType::free)
+        append(table, slide_at(bodies.free_position, bodies.free_velocity, 0));
     for (std::size_t k = 0; k < bodies.size(); ++k) append(table, body_of(bodies, k));
 }
 
@@ -111,7 +120,8 @@ Rod rod_of(BeadArrays const& beads, std::size_t k, Rod const& last) {
     Vec3 const link = beads.position[k] - beads.position[k - 1];
     rod.length = norm(link);
     rod.axes = axes_along((1 / rod.length) * link);
-    Vec3 const across = (1 / rod.length) * cross(rod.along(), beads.velocity[k] - beads.velocity[k - 1]);
+    Vec3 const across =
+        (1 / rod.length) * cross(rod.along(), beads.velocity[k] - beads.velocity[k - 1]);
     rod.u1 = dot(rod.x(), across - last.omega);
     rod.u2 = dot(rod.y(), across - last.omega);
     rod.omega = across + dot(rod.along(), last.omega) * rod.along();
@@ -136,55 +146,66 @@ void append(std::vector<double>& table, BeadArrays const& beads) {
 }
 
 /// Second derivatives along the rods, from the first bead on.
-std::vector<double> accelerations_of_beads(BeadArrays const& beads, std::vector<double> const& found) {
+std::vector<double> accelerations_of_beads(BeadArrays const& beads,
+                                           std::vector<double> const& found) {
     std::vector<double> list(found.begin(), found.begin() + 3);
     Vec3 acceleration{{found[0], found[1], found[2]}}, alpha = Vec3::zero();
     Rod last;
     for (std::size_t k = 1; k < beads.size(); ++k) {
         Rod const rod = rod_of(beads, k, last);
         Vec3 const relative = rod.u1 * rod.x() + rod.u2 * rod.y(), along = rod.length * rod.along();
-        alpha =
-            alpha + found[2 * k + 1] * rod.x() + found[2 * k + 2] * rod.y() + (rod.u1 * rod.u2) * rod.along() + cross(last.omega, relative);
-        acceleration = acceleration + cross(alpha, along) + cross(rod.omega, cross(rod.omega, along));
+        alpha = alpha + found[2 * k + 1] * rod.x() + found[2 * k + 2] * rod.y() +
+                (rod.u1 * rod.u2) * rod.along() + cross(last.omega, relative);
+        acceleration =
+            acceleration + cross(alpha, along) + cross(rod.omega, cross(rod.omega, along));
         append(list, acceleration);
         last = rod;
     }
     return list;
 }
 
-bool has_free_body(ChainSpec const& chain) { return !chain.is_beads() && chain.bodies.joint[0] == JointType::free; }
+bool has_free_body(ChainSpec const& chain) {
+    return !chain.is_beads() && chain.bodies.joint[0] == JointType::free;
+}
 
 std::size_t accelerations_of(ChainSpec const& chain) {
     if (chain.is_beads()) return 1 + 2 * chain.size();
     std::size_t count = 0;
-    for (JointType const joint : chain.bodies.joint) count += joint == JointType::revolute ? 1 : joint == JointType::free ? 6 : 3;
+    for (JointType const joint : chain.bodies.joint)
+        count += joint == JointType::revolute ? 1 : joint == JointType::free ? 6 : 3;
     return count;
 }
 
 bool resists(std::vector<std::array<double, 2>> const& drag) {
-    return std::any_of(drag.begin(), drag.end(), [](auto const& d) { return d[0] != 0 || d[1] != 0; });
+    return std::any_of(drag.begin(), drag.end(),
+                       [](auto const& d) { return d[0] != 0 || d[1] != 0; });
 }
 
 }  // namespace
 
 std::string not_for_peers(Scene const& scene) {
     auto const among = [](JointType joint) {
-        return joint == JointType::revolute || joint == JointType::spherical || joint == JointType::free;
+        return joint == JointType::revolute || joint == JointType::spherical ||
+               joint == JointType::free;
     };
     ForceSpec const& forces = scene.forces;
-    if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 || forces.angular_drag != 0)
+    if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 ||
+        forces.angular_drag != 0)
         return "not one chain alone without drag and OpenMM";
     ChainSpec const& chain = scene.chains.front();
     if (chain.tip != Tip::free) return "a closed chain";
     if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
     if (chain.is_beads()) return chain.base == Base::free ? "" : "beads that hang on the ground";
-    if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among)) return "joints neither revolute nor spherical";
-    return chain.bodies.driven.empty() && !resists(chain.bodies.drag) ? "" : "driven joints or drag";
+    if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among))
+        return "joints neither revolute nor spherical";
+    return chain.bodies.driven.empty() && !resists(chain.bodies.drag) ? ""
+                                                                      : "driven joints or drag";
 }
 
 std::vector<double> peer_table(ChainSpec const& chain, Vec3 const& gravity) {
     std::size_t const bodies = chain.size() + (has_free_body(chain) ? 1 : 0);
-    std::vector<double> table{static_cast<double>(columns), static_cast<double>(bodies), gravity[0], gravity[1], gravity[2]};
+    std::vector<double> table{static_cast<double>(columns), static_cast<double>(bodies), gravity[0],
+                              gravity[1], gravity[2]};
     table.reserve(columns * (bodies + 1));
     table.resize(columns, 0.0);
     if (chain.is_beads())
@@ -194,11 +215,14 @@ std::vector<double> peer_table(ChainSpec const& chain, Vec3 const& gravity) {
     return table;
 }
 
-std::vector<double> accelerations_of_peer(ChainSpec const& chain, std::vector<double> const& found) {
+std::vector<double> accelerations_of_peer(ChainSpec const& chain,
+                                          std::vector<double> const& found) {
     if (found.size() != accelerations_of(chain)) return {};
     if (chain.is_beads()) return accelerations_of_beads(chain.beads, found);
     std::vector<double> list = found;
-    if (has_free_body(chain)) std::rotate(list.begin(), list.begin() + 3, list.begin() + 6);  // the angular one comes first
+    if (has_free_body(chain))
+        std::rotate(list.begin(), list.begin() + 3,
+                    list.begin() + 6);  // the angular one comes first
     return list;
 }
 

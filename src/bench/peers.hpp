@@ -1,4 +1,5 @@
-// The other programs that this machine has, and the folder in which they find the chains that they are asked about.
+// The other programs that this machine has, and the folder in which they find the chains that they
+// are asked about.
 #pragma once
 
 #include <filesystem>

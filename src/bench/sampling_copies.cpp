@@ -9,14 +9,15 @@
 
 #include "bench/generated.hpp"
 #include "error.hpp"
-#include "scene/calvados2.hpp"
 #include "integrate/chain_system.hpp"
 #include "reader/load_scene.hpp"
+#include "scene/calvados2.hpp"
 
 namespace catena::command {
 namespace {
 
-constexpr double clear_of_chance = 4;  // times the root-mean-square way: five standard deviations of two chains' distance along an axis
+constexpr double clear_of_chance = 4;  // times the root-mean-square way: five standard deviations
+                                       // of two chains' distance along an axis
 
 Scene copies_of(BenchRequest const& request) {
     std::vector<std::string> overrides = overrides_of(request);
@@ -28,16 +29,23 @@ Scene copies_of(BenchRequest const& request) {
 
 /// Nothing else, as OpenMM's own integrators would not know of it.
 void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
-    auto const refuse = [&](std::string const& what, std::string const& remedy) { throw InputError(what, scene.file, remedy); };
-    if (std::ssize(scene.chains) != copies) refuse("bench sampling takes a scene of one chain", "leave the others out");
+    auto const refuse = [&](std::string const& what, std::string const& remedy) {
+        throw InputError(what, scene.file, remedy);
+    };
+    if (std::ssize(scene.chains) != copies)
+        refuse("bench sampling takes a scene of one chain", "leave the others out");
     ChainSpec const& chain = scene.chains.front();
     if (!chain.is_beads() || chain.base != Base::free || chain.tip != Tip::free || chain.size() < 4)
-        refuse("bench sampling takes a free chain of 4 beads or more", "name a scene such as inputs/alpha-synuclein.yaml");
+        refuse("bench sampling takes a free chain of 4 beads or more",
+               "name a scene such as inputs/alpha-synuclein.yaml");
     if (!scene.forces.openmm || scene.forces.openmm->builder != "calvados2")
-        refuse("bench sampling takes forces of CALVADOS 2, whose bonds OpenMM then has", "add forces: {openmm: {builder: calvados2}}");
+        refuse("bench sampling takes forces of CALVADOS 2, whose bonds OpenMM then has",
+               "add forces: {openmm: {builder: calvados2}}");
     if (norm(scene.forces.gravity) > 0 || scene.forces.linear_drag != 0)
         refuse("gravity or drag, which OpenMM's own integrators would not have", "leave them out");
-    if (!scene.dynamics.given) refuse("the scene has no dynamics section", "add dynamics: {integrator: g-baoab, step: 0.01}");
+    if (!scene.dynamics.given)
+        refuse("the scene has no dynamics section",
+               "add dynamics: {integrator: g-baoab, step: 0.01}");
 }
 
 /// Free Langevin motion of a mass: root of the mean square way within t.
@@ -53,16 +61,20 @@ double sum_of(std::vector<double> const& values, std::size_t first = 0) {
 
 }  // namespace
 
-double SamplingCopies::cutoff() { return std::max(calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff); }
+double SamplingCopies::cutoff() {
+    return std::max(calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff);
+}
 
-SamplingCopies::SamplingCopies(BenchRequest const& request, Communicator const& communicator, Backend backend)
+SamplingCopies::SamplingCopies(BenchRequest const& request, Communicator const& communicator,
+                               Backend backend)
     : scene_(copies_of(request)) {
     require_one_plain_chain(scene_, request.sampling.copies);
     scene_.dynamics.integrator = Integrator::g_baoab;
     scene_.dynamics.fixman = false;
     for (ChainSpec& chain : scene_.chains) chain.velocities = StartVelocities::thermal;
     std::vector<Vec3> start;
-    for (ChainSpec const& chain : scene_.chains) start.insert(start.end(), chain.beads.position.begin(), chain.beads.position.end());
+    for (ChainSpec const& chain : scene_.chains)
+        start.insert(start.end(), chain.beads.position.begin(), chain.beads.position.end());
 
     Scene described = scene_;  // for its list of beads
     described.solver.backend = Backend::segments;
@@ -76,7 +88,8 @@ SamplingCopies::SamplingCopies(BenchRequest const& request, Communicator const& 
     start_from(start);
 }
 
-std::span<Vec3 const> SamplingCopies::of_copy(std::vector<Vec3> const& all, std::int64_t copy) const {
+std::span<Vec3 const> SamplingCopies::of_copy(std::vector<Vec3> const& all,
+                                              std::int64_t copy) const {
     auto const n = static_cast<std::size_t>(beads_of_copy());
     return std::span(all).subspan(static_cast<std::size_t>(copy) * n, n);
 }
@@ -85,7 +98,8 @@ SamplingCopies::Ball SamplingCopies::ball(std::span<Vec3 const> x) const {
     std::vector<double> const& mass = scene_.chains.front().beads.mass;
     double const all = sum_of(mass);
     Ball found;
-    for (std::size_t k = 0; k < x.size(); ++k) found.centre = plus_scaled(found.centre, mass[k] / all, x[k]);
+    for (std::size_t k = 0; k < x.size(); ++k)
+        found.centre = plus_scaled(found.centre, mass[k] / all, x[k]);
     for (Vec3 const& each : x) found.reach = larger(found.reach, norm(each - found.centre));
     return found;
 }
@@ -120,7 +134,8 @@ void SamplingCopies::start_from(std::vector<Vec3> const& positions) {
 double SamplingCopies::spacing(double time) const {
     BeadArrays const& chain = scene_.chains.front().beads;
     double const kt = scene_.boltzmann() * scene_.dynamics.temperature;
-    return sum_of(chain.length, 1) + cutoff() + clear_of_chance * way(kt, sum_of(chain.mass), scene_.dynamics.friction, time);
+    return sum_of(chain.length, 1) + cutoff() +
+           clear_of_chance * way(kt, sum_of(chain.mass), scene_.dynamics.friction, time);
 }
 
 double SamplingCopies::extent(double time) const {
@@ -134,7 +149,8 @@ Scene SamplingCopies::scene(double step, double time) {
     scene.dynamics.step = step;
     scene.dynamics.seed += runs_++;
     std::vector<Vec3> all;
-    for (ChainSpec const& chain : scene_.chains) all.insert(all.end(), chain.beads.position.begin(), chain.beads.position.end());
+    for (ChainSpec const& chain : scene_.chains)
+        all.insert(all.end(), chain.beads.position.begin(), chain.beads.position.end());
     all = placed(std::move(all), spacing(time));
     for (std::int64_t c = 0; c < copies(); ++c) {
         auto const x = of_copy(all, c);
@@ -145,7 +161,8 @@ Scene SamplingCopies::scene(double step, double time) {
 
 std::vector<Vec3> SamplingCopies::forces(std::vector<Vec3> const& positions) {
     double reach = 0;
-    for (std::int64_t c = 0; c < copies(); ++c) reach = larger(reach, ball(of_copy(positions, c)).reach);
+    for (std::int64_t c = 0; c < copies(); ++c)
+        reach = larger(reach, ball(of_copy(positions, c)).reach);
     std::vector<Vec3> const near = placed(positions, 2 * reach + cutoff() + 1);
     Field<3> x(beads_.size()), force(beads_.size());
     for (std::int64_t k = 0; k < x.size(); ++k) x.set(k, near[static_cast<std::size_t>(k)]);
@@ -156,12 +173,14 @@ std::vector<Vec3> SamplingCopies::forces(std::vector<Vec3> const& positions) {
     return found;
 }
 
-std::vector<ChainSample> SamplingCopies::sample(std::vector<Vec3> const& positions, BondMeasure measure) {
+std::vector<ChainSample> SamplingCopies::sample(std::vector<Vec3> const& positions,
+                                                BondMeasure measure) {
     std::vector<Vec3> const force = forces(positions);
     std::vector<ChainSample> samples;
     for (std::int64_t c = 0; c < copies(); ++c)
-        samples.push_back(
-            sample_chain(of_copy(positions, c), of_copy(force, c), scene_.chains[static_cast<std::size_t>(c)].beads.mass, measure));
+        samples.push_back(sample_chain(of_copy(positions, c), of_copy(force, c),
+                                       scene_.chains[static_cast<std::size_t>(c)].beads.mass,
+                                       measure));
     return samples;
 }
 
@@ -171,7 +190,8 @@ double SamplingCopies::nearest(std::vector<Vec3> const& positions) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::int64_t a = 0; a < copies(); ++a)
         for (std::int64_t b = a + 1; b < copies(); ++b) {
-            Ball const &one = balls[static_cast<std::size_t>(a)], &other = balls[static_cast<std::size_t>(b)];
+            Ball const &one = balls[static_cast<std::size_t>(a)],
+                       &other = balls[static_cast<std::size_t>(b)];
             double gap = norm(one.centre - other.centre) - one.reach - other.reach;
             if (std::isnan(gap)) return gap;
             if (gap <= cutoff()) {

@@ -1,4 +1,5 @@
-// Copies of one chain that are sampled side by side and never meet, with one evaluator of their forces for whatever moves them.
+// Copies of one chain that are sampled side by side and never meet, with one evaluator of their
+// forces for whatever moves them.
 #pragma once
 
 #include <memory>
@@ -7,21 +8,23 @@
 
 #include "console/requests.hpp"
 #include "force/openmm_force.hpp"
-#include "mpi/communicator.hpp"
 #include "measure/chain_sample.hpp"
+#include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::command {
 
 class SamplingCopies {
   public:
-    /// The scene's one chain of beads with CALVADOS 2, as many times as asked for, without a box. InputError where the scene has anything
-    /// else, and "built without OpenMM".
+    /// The scene's one chain of beads with CALVADOS 2, as many times as asked for, without a box.
+    /// InputError where the scene has anything else, and "built without OpenMM".
     SamplingCopies(BenchRequest const&, Communicator const&, Backend backend);
 
-    /// As they stand for `time` ps of motion that starts now: on a cubic grid around the origin. Their distance is a chain's contour
-    /// length, the longest cutoff and four times the root-mean-square way of a chain's centre, so that two meet once in a million.
-    /// Every call has a seed of its own: velocities and noise that come again would push a chain the way it went before.
+    /// As they stand for `time` ps of motion that starts now: on a cubic grid around the origin.
+    /// Their distance is a chain's contour length, the longest cutoff and four times the
+    /// root-mean-square way of a chain's centre, so that two meet once in a million. Every call has
+    /// a seed of its own: velocities and noise that come again would push a chain the way it went
+    /// before.
     Scene scene(double step, double time);
     double spacing(double time) const;
     /// The largest coordinate there, nm.
@@ -29,19 +32,21 @@ class SamplingCopies {
     /// Where all start from now on, wherever they are: in the order of beads(), nm.
     void start_from(std::vector<Vec3> const& positions);
 
-    /// OpenMM's forces on all beads but those of bonds, kJ/mol/nm. Copies are brought near each other before, which changes no force and
-    /// keeps the digits of single precision.
+    /// OpenMM's forces on all beads but those of bonds, kJ/mol/nm. Copies are brought near each
+    /// other before, which changes no force and keeps the digits of single precision.
     std::vector<Vec3> forces(std::vector<Vec3> const& positions);
     /// One a copy.
     std::vector<ChainSample> sample(std::vector<Vec3> const& positions, BondMeasure);
-    /// A distance that no two beads of different copies are below, nm; the least distance itself where it is within the cutoff. Infinite
-    /// for one copy, NaN where positions are not finite.
+    /// A distance that no two beads of different copies are below, nm; the least distance itself
+    /// where it is within the cutoff. Infinite for one copy, NaN where positions are not finite.
     double nearest(std::vector<Vec3> const& positions) const;
     static double cutoff();
 
     BeadSystem const& beads() const { return beads_; }
     std::int64_t copies() const { return std::ssize(scene_.chains); }
-    std::int64_t beads_of_copy() const { return static_cast<std::int64_t>(scene_.chains.front().size()); }
+    std::int64_t beads_of_copy() const {
+        return static_cast<std::int64_t>(scene_.chains.front().size());
+    }
     Scene const& model() const { return scene_; }
     std::string platform() const { return evaluator_->platform(); }
 

@@ -15,16 +15,19 @@ namespace {
 constexpr double longest_step = 10, longest_time = 1e9;  // ps
 constexpr double most_steps = 1e9;                       // between samples
 
-double number_between(std::string const& option, std::string const& text, double least, double most) {
+double number_between(std::string const& option, std::string const& text, double least,
+                      double most) {
     double value = 0;
     if (scene::parse_number(text, value) != scene::NumberFault::none)
-        throw InputError(fmt::format("`{}` is not a number", text), option, fmt::format("give one from {} to {}", least, most));
+        throw InputError(fmt::format("`{}` is not a number", text), option,
+                         fmt::format("give one from {} to {}", least, most));
     if (!(value >= least && value <= most))
-        throw InputError(fmt::format("{} is not from {} to {}", text, least, most), option, "give a number between these");
+        throw InputError(fmt::format("{} is not from {} to {}", text, least, most), option,
+                         "give a number between these");
     return value;
 }
 
-void refuse_for(SamplingWords const& words, std::string const& name) {
+void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
     for (auto const& [option, given] : {std::pair{"SCENE", words.scene},
                                         {"--copies", words.copies},
                                         {"--methods", words.methods},
@@ -36,31 +39,38 @@ void refuse_for(SamplingWords const& words, std::string const& name) {
                                         {"--seconds", words.seconds}})
         if (!given.empty())
             throw InputError(
-                fmt::format("{} is nothing to catena bench {}", option == std::string("SCENE") ? "`" + given + "`" : option, name),
+                fmt::format("{} is nothing to catena bench {}",
+                            option == std::string("SCENE") ? "`" + given + "`" : option, name),
                 "command line", "leave it out");
 }
 
 }  // namespace
 
-void add_sampling(CLI::App& bench, SamplingWords& words) {
-    auto const add = [&](char const* option, std::string& word, char const* type, char const* what) {
+void add_sampling(CLI::App& bench, SamplingOptionTexts& words) {
+    auto const add = [&](char const* option, std::string& word, char const* type,
+                         char const* what) {
         bench.add_option(option, word, std::string("of sampling: ") + what)->type_name(type);
     };
-    add("SCENE", words.scene, "", "a scene of one chain with CALVADOS 2 (default: alpha-synuclein)");
+    add("SCENE", words.scene, "",
+        "a scene of one chain with CALVADOS 2 (default: alpha-synuclein)");
     add("--copies", words.copies, "N", "chains side by side that never meet (default 71)");
     add("--methods", words.methods, "M,...",
-        "rigid, rigid-fixman, bonds, constraints: links of Catena, without and with the Fixman potential, of OpenMM's harmonic bonds and "
+        "rigid, rigid-fixman, bonds, constraints: links of Catena, without and with the Fixman "
+        "potential, of OpenMM's harmonic bonds and "
         "of its constraints (default: all but rigid-fixman)");
     add("--steps", words.steps, "H,...", "ps (default 0.01)");
     add("--duration", words.duration, "T", "ps sampled of each copy (default 1000)");
     add("--discard", words.discard, "T", "ps of each row before that (default 200)");
     add("--every", words.every, "T", "ps between samples (default 1)");
     add("--equilibrate", words.equilibration, "T",
-        "ps on rigid links from the scene's start to where all rows start (default: five times --discard)");
-    add("--seconds", words.seconds, "S", "a row ends after so long, with what it has sampled (default: none does)");
+        "ps on rigid links from the scene's start to where all rows start (default: five times "
+        "--discard)");
+    add("--seconds", words.seconds, "S",
+        "a row ends after so long, with what it has sampled (default: none does)");
 }
 
-SamplingOptions sampling_options(SamplingWords const& words, std::string const& name, std::string const& json) {
+SamplingOptions sampling_options(SamplingOptionTexts const& words, std::string const& name,
+                                 std::string const& json) {
     SamplingOptions options;
     if (name != "sampling") {
         refuse_for(words, name);
@@ -76,18 +86,21 @@ SamplingOptions sampling_options(SamplingWords const& words, std::string const& 
         for (std::string const& step : comma_list("--steps", words.steps))
             options.steps.push_back(number_between("--steps", step, 1e-6, longest_step));
     }
-    auto const take = [](std::string const& option, std::string const& word, double least, double& value) {
+    auto const take = [](std::string const& option, std::string const& word, double least,
+                         double& value) {
         if (!word.empty()) value = number_between(option, word, least, longest_time);
     };
     take("--duration", words.duration, 1e-6, options.duration);
     take("--discard", words.discard, 0, options.discard);
     take("--every", words.every, 1e-6, options.every);
     if (options.every > options.duration)
-        throw InputError(fmt::format("{} ps between samples are more than the {} ps sampled", options.every, options.duration), "--every",
-                         "give less, or a longer --duration");
+        throw InputError(fmt::format("{} ps between samples are more than the {} ps sampled",
+                                     options.every, options.duration),
+                         "--every", "give less, or a longer --duration");
     for (double const step : options.steps)
         if (options.every > most_steps * step || (!words.every.empty() && options.every < step))
-            throw InputError(fmt::format("{} ps between samples are {} steps of {} ps", options.every, options.every / step, step),
+            throw InputError(fmt::format("{} ps between samples are {} steps of {} ps",
+                                         options.every, options.every / step, step),
                              "--every", fmt::format("give from one to {:.0e} steps", most_steps));
     options.equilibration = 5 * options.discard;
     take("--equilibrate", words.equilibration, 0, options.equilibration);

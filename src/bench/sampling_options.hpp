@@ -12,14 +12,15 @@ class App;
 namespace catena::command {
 
 /// As they stand there; empty: not given.
-struct SamplingWords {
+struct SamplingOptionTexts {
     std::string scene, copies, methods, steps, duration, discard, every, equilibration, seconds;
 };
 
-void add_sampling(CLI::App& bench, SamplingWords&);
+void add_sampling(CLI::App& bench, SamplingOptionTexts&);
 
-/// InputError for what is no number, out of bounds or unknown, for an option that benchmark `name` has not, and where the file `json` is
-/// the scene.
-SamplingOptions sampling_options(SamplingWords const&, std::string const& name, std::string const& json);
+/// InputError for what is no number, out of bounds or unknown, for an option that benchmark `name`
+/// has not, and where the file `json` is the scene.
+SamplingOptions sampling_options(SamplingOptionTexts const&, std::string const& name,
+                                 std::string const& json);
 
 }  // namespace catena::command

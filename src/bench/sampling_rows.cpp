@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <random>
 
-#include "clock.hpp"
 #include "bench/step_makers.hpp"
+#include "clock.hpp"
 #include "console/option_values.hpp"
 #include "error.hpp"
-#include "scene/calvados2.hpp"
-#include "observe/observables.hpp"
 #include "io/output.hpp"
+#include "observe/observables.hpp"
+#include "scene/calvados2.hpp"
 
 namespace catena::command {
 namespace {
@@ -41,7 +41,8 @@ class Mover {
 
 class CatenaMover final : public Mover {
   public:
-    CatenaMover(Scene scene, Communicator const& communicator) : catena_(std::move(scene), communicator) {}
+    CatenaMover(Scene scene, Communicator const& communicator)
+        : catena_(std::move(scene), communicator) {}
     void step(int count) override {
         catena_.step(count);
         catena_.adapt();
@@ -63,7 +64,8 @@ class CatenaMover final : public Mover {
     CatenaSteps catena_;
 };
 
-/// Bonds' lengths as they are at the temperature: friction of 0.01/ps would take hundreds of ps to bring them there.
+/// Bonds' lengths as they are at the temperature: friction of 0.01/ps would take hundreds of ps to
+/// bring them there.
 void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
     std::normal_distribution<double> longer(0, std::sqrt(kt / calvados2::bond_stiffness));
     std::vector<Vec3>& x = chain.beads.position;
@@ -77,15 +79,18 @@ void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
 
 class OpenMmMover final : public Mover {
   public:
-    OpenMmMover(Scene scene, BeadSystem const& beads, Communicator const& communicator, OwnLinks links, Backend backend)
+    OpenMmMover(Scene scene, BeadSystem const& beads, Communicator const& communicator,
+                OwnLinks links, Backend backend)
         : links_(links), beads_(beads) {
         std::mt19937_64 draw(scene.dynamics.seed);
         std::vector<Vec3> x;
         for (ChainSpec& chain : scene.chains) {
-            if (links == OwnLinks::bonds) warm_bonds(chain, scene.boltzmann() * scene.dynamics.temperature, draw);
+            if (links == OwnLinks::bonds)
+                warm_bonds(chain, scene.boltzmann() * scene.dynamics.temperature, draw);
             x.insert(x.end(), chain.beads.position.begin(), chain.beads.position.end());
         }
-        own_ = make_openmm_own(*scene.forces.openmm, beads, communicator, links, own_run(scene, backend), x);
+        own_ = make_openmm_integrator(*scene.forces.openmm, beads, communicator, links,
+                                      own_run(scene, backend), x);
     }
     void step(int count) override { own_->step(count); }
     Moment now() override {
@@ -94,7 +99,9 @@ class OpenMmMover final : public Mover {
         return now;
     }
     double link_error() override { return own_->link_error(); }
-    double tolerance() const override { return links_ == OwnLinks::bonds ? torn : tolerance_of_constraints; }
+    double tolerance() const override {
+        return links_ == OwnLinks::bonds ? torn : tolerance_of_constraints;
+    }
     void describe(SamplingRow& row) override {
         row.backend = "OpenMM";
         row.platform = own_->platform();
@@ -103,18 +110,21 @@ class OpenMmMover final : public Mover {
   private:
     OwnLinks links_;
     BeadSystem const& beads_;
-    std::unique_ptr<OpenMmOwn> own_;
+    std::unique_ptr<OpenMmIntegrator> own_;
 };
 
-std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& communicator, Backend backend, SamplingMethod method,
-                                  double step, double time) {
+std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& communicator,
+                                  Backend backend, SamplingMethod method, double step,
+                                  double time) {
     Scene scene = copies.scene(step, time);
     scene.solver.backend = backend;
     if (method == SamplingMethod::bonds || method == SamplingMethod::constraints)
-        return std::make_unique<OpenMmMover>(scene, copies.beads(), communicator,
-                                             method == SamplingMethod::bonds ? OwnLinks::bonds : OwnLinks::constraints, backend);
+        return std::make_unique<OpenMmMover>(
+            scene, copies.beads(), communicator,
+            method == SamplingMethod::bonds ? OwnLinks::bonds : OwnLinks::constraints, backend);
     scene.dynamics.fixman = method == SamplingMethod::rigid_fixman;
-    if (scene.dynamics.fixman && uses_gpu(backend)) {  // that force is computed on the host; OpenMM stays where it is
+    if (scene.dynamics.fixman &&
+        uses_gpu(backend)) {  // that force is computed on the host; OpenMM stays where it is
         scene.solver.backend = Backend::segments;
         if (scene.forces.openmm->platform.empty()) scene.forces.openmm->platform = "CUDA";
     }
@@ -126,7 +136,8 @@ struct Found {
     CopySeries gyration, end_to_end, cosine, virial, divergence, kinetic;
 
     explicit Found(std::int64_t copies) : kinetic(1) {
-        for (CopySeries* each : {&gyration, &end_to_end, &cosine, &virial, &divergence}) each->resize(static_cast<std::size_t>(copies));
+        for (CopySeries* each : {&gyration, &end_to_end, &cosine, &virial, &divergence})
+            each->resize(static_cast<std::size_t>(copies));
     }
     void add(std::vector<ChainSample> const& samples) {
         for (std::size_t c = 0; c < samples.size(); ++c) {
@@ -143,13 +154,19 @@ struct Found {
 class RowRun {
   public:
     RowRun(SamplingCopies& copies, BenchRequest const& request, SamplingRow& row)
-        : copies_(copies), options_(request.sampling), quiet_(request.quiet), row_(row), found_(copies.copies()) {
+        : copies_(copies),
+          options_(request.sampling),
+          quiet_(request.quiet),
+          row_(row),
+          found_(copies.copies()) {
         of_block_ = std::max<std::int64_t>(1, std::llround(options_.every / row.step));
         double const block = row.every = static_cast<double>(of_block_) * row.step;
         discarded_ = std::llround(std::ceil(options_.discard / block - 1e-9));
         wanted_ = std::max<std::int64_t>(1, std::llround(options_.duration / block));
     }
-    double time() const { return static_cast<double>((discarded_ + wanted_) * of_block_) * row_.step; }
+    double time() const {
+        return static_cast<double>((discarded_ + wanted_) * of_block_) * row_.step;
+    }
 
     void run(Mover& mover) {
         Progress progress(quiet_, 0, (discarded_ + wanted_) * of_block_, row_.step, false);
@@ -167,9 +184,11 @@ class RowRun {
                 sample(mover);
                 row_.sampling += seconds_now() - after;
             }
-            if (!(row_.link_error <= std::max(torn, mover.tolerance()))) throw ComputationError("links are torn");
+            if (!(row_.link_error <= std::max(torn, mover.tolerance())))
+                throw ComputationError("links are torn");
             progress.update((block + 1) * of_block_);
-            row_.cut = options_.seconds > 0 && seconds_now() - start > options_.seconds && block + 1 < discarded_ + wanted_;
+            row_.cut = options_.seconds > 0 && seconds_now() - start > options_.seconds &&
+                       block + 1 < discarded_ + wanted_;
         }
         progress.finish();
     }
@@ -189,7 +208,8 @@ class RowRun {
         row_.temperature.error /= model.boltzmann();
         std::int64_t dof = 3 * copies_.beads().size();
         if (method != SamplingMethod::bonds) dof -= std::ssize(copies_.beads().links);
-        for (double& kinetic : found_.kinetic.front()) kinetic *= 2 / (model.boltzmann() * static_cast<double>(dof));
+        for (double& kinetic : found_.kinetic.front())
+            kinetic *= 2 / (model.boltzmann() * static_cast<double>(dof));
         row_.kinetic = blocked_mean(found_.kinetic);
     }
 
@@ -200,7 +220,8 @@ class RowRun {
         double const nearest = copies_.nearest(now.position);
         if (std::isnan(nearest)) throw ComputationError("positions are not finite");
         row_.nearest = std::min(row_.nearest, nearest);
-        std::vector<ChainSample> const samples = copies_.sample(now.position, measure_of(row_.method));
+        std::vector<ChainSample> const samples =
+            copies_.sample(now.position, measure_of(row_.method));
         for (ChainSample const& each : samples)
             if (!std::isfinite(each.radius_of_gyration + each.virial + each.divergence))
                 throw ComputationError("positions or forces are not finite");
@@ -223,10 +244,13 @@ void judge(SamplingRow& row, double tolerance) {
         row.state = "too short";
         row.why = "no sample within --seconds: the time went into what is discarded";
     } else if (!(row.link_error <= tolerance)) {
-        row.why = fmt::format("links are off by {:.1e} of their length, allowed are {:.0e}", row.link_error, tolerance);
+        row.why = fmt::format("links are off by {:.1e} of their length, allowed are {:.0e}",
+                              row.link_error, tolerance);
     } else if (!(row.nearest > SamplingCopies::cutoff())) {
-        row.why = fmt::format("two copies came as near as {:.3g} nm, forces reach {} nm", row.nearest, SamplingCopies::cutoff());
-    } else if (!std::isfinite(row.gyration.mean + row.end_to_end.mean + row.cosine.mean + row.temperature.mean)) {
+        row.why = fmt::format("two copies came as near as {:.3g} nm, forces reach {} nm",
+                              row.nearest, SamplingCopies::cutoff());
+    } else if (!std::isfinite(row.gyration.mean + row.end_to_end.mean + row.cosine.mean +
+                              row.temperature.mean)) {
         row.why = "a mean is not finite";
     } else {
         row.state = "VALID";
@@ -240,18 +264,25 @@ double rounding_at(double coordinate) {
 
 }  // namespace
 
-char const* name_of(SamplingMethod method) { return method_names[static_cast<std::size_t>(method)].data(); }
+char const* name_of(SamplingMethod method) {
+    return method_names[static_cast<std::size_t>(method)].data();
+}
 
 SamplingMethod sampling_method_named(std::string const& option, std::string const& name) {
     known_value(option, name, method_names);
-    return static_cast<SamplingMethod>(std::find(std::begin(method_names), std::end(method_names), name) - std::begin(method_names));
+    return static_cast<SamplingMethod>(
+        std::find(std::begin(method_names), std::end(method_names), name) -
+        std::begin(method_names));
 }
 
 BondMeasure measure_of(SamplingMethod method) {
-    return method == SamplingMethod::rigid || method == SamplingMethod::constraints ? BondMeasure::rigid : BondMeasure::flexible;
+    return method == SamplingMethod::rigid || method == SamplingMethod::constraints
+               ? BondMeasure::rigid
+               : BondMeasure::flexible;
 }
 
-SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request, Communicator const& communicator, Backend backend,
+SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request,
+                             Communicator const& communicator, Backend backend,
                              SamplingMethod method, double step) {
     SamplingRow row;
     row.method = method;
@@ -279,15 +310,18 @@ SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request
     return row;
 }
 
-void equilibrate(SamplingCopies& copies, BenchRequest const& request, Communicator const& communicator, Backend backend, double time) {
+void equilibrate(SamplingCopies& copies, BenchRequest const& request,
+                 Communicator const& communicator, Backend backend, double time) {
     int constexpr of_block = 100;
     double const step = copies.model().dynamics.step;
     std::int64_t const blocks = std::llround(std::ceil(time / (step * of_block)));
     if (blocks == 0) return;
-    std::unique_ptr<Mover> const mover = make_mover(copies, communicator, backend, SamplingMethod::rigid, step, time);
+    std::unique_ptr<Mover> const mover =
+        make_mover(copies, communicator, backend, SamplingMethod::rigid, step, time);
     Progress progress(request.quiet, 0, blocks * of_block, step, false);
     auto const fail = [step](std::string const& why) {
-        throw ComputationError(fmt::format("before the rows, on rigid links with dynamics.step {} ps: {}", step, why));
+        throw ComputationError(
+            fmt::format("before the rows, on rigid links with dynamics.step {} ps: {}", step, why));
     };
     try {
         for (std::int64_t block = 0; block < blocks; ++block) {
@@ -299,7 +333,8 @@ void equilibrate(SamplingCopies& copies, BenchRequest const& request, Communicat
     }
     progress.finish();
     Moment const now = mover->now();
-    if (!(now.link_error <= mover->tolerance())) fail(fmt::format("links are off by {:.1e} of their length", now.link_error));
+    if (!(now.link_error <= mover->tolerance()))
+        fail(fmt::format("links are off by {:.1e} of their length", now.link_error));
     if (!(copies.nearest(now.position) > SamplingCopies::cutoff())) fail("copies have met");
     copies.start_from(now.position);
 }

@@ -17,7 +17,8 @@ SamplingBias bias_of(SamplingRow const& row, SamplingRow const& smallest, double
         bias.gyration = bias.gyration_error = 0;
     } else if (smallest.valid()) {
         bias.gyration = 100 * (row.gyration.mean / smallest.gyration.mean - 1);
-        bias.gyration_error = 100 * std::hypot(row.gyration.error, smallest.gyration.error) / smallest.gyration.mean;
+        bias.gyration_error =
+            100 * std::hypot(row.gyration.error, smallest.gyration.error) / smallest.gyration.mean;
         bias.errors_known = bias.errors_known && row.gyration.plateau && smallest.gyration.plateau;
     }
     bias.temperature = 100 * (row.temperature.mean / temperature - 1);
@@ -25,13 +26,16 @@ SamplingBias bias_of(SamplingRow const& row, SamplingRow const& smallest, double
     return bias;
 }
 
-Difference difference(Blocked const& of, Blocked const& less) { return {of.mean - less.mean, std::hypot(of.error, less.error)}; }
+Difference difference(Blocked const& of, Blocked const& less) {
+    return {of.mean - less.mean, std::hypot(of.error, less.error)};
+}
 
 }  // namespace
 
 bool SamplingBias::allowed() const {
     bool const can_tell = gyration_error < allowed_percent && temperature_error < allowed_percent;
-    return can_tell && std::abs(gyration) < allowed_percent && std::abs(temperature) < allowed_percent;
+    return can_tell && std::abs(gyration) < allowed_percent &&
+           std::abs(temperature) < allowed_percent;
 }
 
 bool SamplingBias::shown() const {
@@ -40,8 +44,8 @@ bool SamplingBias::shown() const {
 }
 
 bool SamplingBias::refuted() const {
-    return errors_known &&
-           (std::abs(gyration) - 2 * gyration_error >= allowed_percent || std::abs(temperature) - 2 * temperature_error >= allowed_percent);
+    return errors_known && (std::abs(gyration) - 2 * gyration_error >= allowed_percent ||
+                            std::abs(temperature) - 2 * temperature_error >= allowed_percent);
 }
 
 char const* SamplingBias::word() const {
@@ -51,17 +55,23 @@ char const* SamplingBias::word() const {
     return shown() ? "shown" : allowed() ? "not contradicted" : "errors too large to tell";
 }
 
-std::vector<SamplingMethodVerdict> verdicts_of(std::vector<SamplingRow> const& rows, double temperature) {
+std::vector<SamplingMethodVerdict> verdicts_of(std::vector<SamplingRow> const& rows,
+                                               double temperature) {
     std::vector<SamplingMethodVerdict> all;
     for (SamplingRow const& row : rows) {
-        auto const same = [&](SamplingMethodVerdict const& each) { return each.method == row.method; };
+        auto const same = [&](SamplingMethodVerdict const& each) {
+            return each.method == row.method;
+        };
         auto found = std::find_if(all.begin(), all.end(), same);
-        if (found == all.end()) found = all.insert(all.end(), {.method = row.method, .rows = {}, .bias = {}});
+        if (found == all.end())
+            found = all.insert(all.end(), {.method = row.method, .rows = {}, .bias = {}});
         found->rows.push_back(&row);
     }
     for (SamplingMethodVerdict& each : all) {
-        std::stable_sort(each.rows.begin(), each.rows.end(), [](auto const* a, auto const* b) { return a->step < b->step; });
-        for (SamplingRow const* row : each.rows) each.bias.push_back(bias_of(*row, *each.rows.front(), temperature));
+        std::stable_sort(each.rows.begin(), each.rows.end(),
+                         [](auto const* a, auto const* b) { return a->step < b->step; });
+        for (SamplingRow const* row : each.rows)
+            each.bias.push_back(bias_of(*row, *each.rows.front(), temperature));
         bool all_allowed = true, all_shown = true;
         for (std::size_t i = 0; i < each.rows.size(); ++i) {
             all_allowed = all_allowed && each.bias[i].allowed();
@@ -87,8 +97,9 @@ std::vector<SamplingDifference> differences_of(std::vector<SamplingMethodVerdict
                                    {SamplingMethod::constraints, SamplingMethod::rigid}}) {
         SamplingRow const *a = row_of(of), *b = row_of(less);
         if (a && b)
-            found.push_back(
-                {a, b, difference(a->gyration, b->gyration), difference(a->end_to_end, b->end_to_end), difference(a->cosine, b->cosine)});
+            found.push_back({a, b, difference(a->gyration, b->gyration),
+                             difference(a->end_to_end, b->end_to_end),
+                             difference(a->cosine, b->cosine)});
     }
     return found;
 }

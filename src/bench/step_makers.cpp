@@ -9,7 +9,9 @@
 
 namespace catena::command {
 CatenaSteps::CatenaSteps(Scene scene, Communicator const& communicator)
-    : scene_(std::move(scene)), system_(scene_, Axes::world, communicator), stepper_(make_stepper(system_, scene_.dynamics)) {}
+    : scene_(std::move(scene)),
+      system_(scene_, Axes::world, communicator),
+      stepper_(make_stepper(system_, scene_.dynamics)) {}
 
 void CatenaSteps::advance(StepTimeline* timeline) {
     stepper_->prepare(timeline);
@@ -67,7 +69,8 @@ OwnRun own_run(Scene const& scene, Backend backend) {
 
 void need_one_rank(Communicator const& communicator, char const* name) {
     if (communicator.size() > 1)
-        throw InputError("this benchmark is for one rank", fmt::format("catena bench {}", name), "run it without mpirun");
+        throw InputError("this benchmark is for one rank", fmt::format("catena bench {}", name),
+                         "run it without mpirun");
 }
 
 }  // namespace catena::command

@@ -20,7 +20,8 @@ class CatenaSteps {
     void step(int count);
     /// Some more, with their phases.
     std::vector<StepTimeline> timelines(int count);
-    /// Another projection sweep from now on where the joints have come near to their tolerance, as `catena run` does.
+    /// Another projection sweep from now on where the joints have come near to their tolerance, as
+    /// `catena run` does.
     void adapt();
     /// Bodies in scene order with the velocities of now.
     ChainSystem::Snapshot observe();
@@ -47,7 +48,8 @@ class CatenaSteps {
 /// The backend of a benchmark that takes one: the GPU's where there is one.
 Backend backend_of(BenchRequest const& request);
 
-/// The scene's dynamics as OpenMM's own integrator takes it, on the first GPU where the chains are on one.
+/// The scene's dynamics as OpenMM's own integrator takes it, on the first GPU where the chains are
+/// on one.
 OwnRun own_run(Scene const& scene, Backend backend);
 
 /// InputError where there are more: "this benchmark is for one rank".

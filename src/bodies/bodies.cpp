@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "bodies/carried_beads.hpp"
-#include "scene/fields.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
+#include "scene/fields.hpp"
 
 namespace catena::scene {
 
@@ -26,9 +26,11 @@ JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     if (entry.type == JointType::free && !first)
         fail(node, "a free joint inside a chain", "use it for body 1 of a chain with `base: free`");
     if (entry.type == JointType::free && base == Base::fixed)
-        fail(node, "a free joint on a fixed base", "write `base: free`, or give joint 1 another type");
+        fail(node, "a free joint on a fixed base",
+             "write `base: free`, or give joint 1 another type");
     if (entry.type != JointType::free && first && base == Base::free)
-        fail(node, fmt::format("a {} joint 1 on a free base, which has no joint 1", name_of(entry.type)),
+        fail(node,
+             fmt::format("a {} joint 1 on a free base, which has no joint 1", name_of(entry.type)),
              "write `base: fixed`, or `joint: {type: free}` for body 1");
     return entry;
 }
@@ -59,7 +61,8 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
 
 /// Which of the arrays that may stay empty are needed.
 struct Needed {
-    bool torque = false, spring = false, damping = false, wrench = false, drag = false, first_axis = false, pitch = false;
+    bool torque = false, spring = false, damping = false, wrench = false, drag = false,
+         first_axis = false, pitch = false;
 
     void take(JointEntry const& joint) {
         torque = torque || joint.loaded;
@@ -96,7 +99,8 @@ Node const* type_of(Node const& body) {
 }  // namespace
 
 BodyList kind_of_list(Node const& bodies) {
-    if (list(bodies).items.empty()) fail(bodies, "the list of bodies is empty", "give at least one body");
+    if (list(bodies).items.empty())
+        fail(bodies, "the list of bodies is empty", "give at least one body");
     Node const* other = nullptr;
     bool links = false, rigid = false;
     for (Node const& body : bodies.items) {
@@ -108,11 +112,14 @@ BodyList kind_of_list(Node const& bodies) {
     }
     if (links && other) {
         Node const* const type = other->find("type");
-        fail(*other, fmt::format("a joint {}in a chain of links", type ? fmt::format("of type `{}` ", shown(type->text)) : ""),
+        fail(*other,
+             fmt::format("a joint {}in a chain of links",
+                         type ? fmt::format("of type `{}` ", shown(type->text)) : ""),
              "make it a link, or give every joint another type");
     }
     Node const& first = bodies.items[0];
-    bool const lone_bead = bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");  // an ion
+    bool const lone_bead = bodies.items.size() == 1 && !rigid && !first.find("joint") &&
+                           first.find("position");  // an ion
     if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
     return rigid ? BodyList::linked : BodyList::beads;
 }
@@ -130,11 +137,13 @@ ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> co
     Needed needed;
     CarriedList carried;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
-        Fields const body(node.items[k], {"mass", "com", "inertia", "joint", "wrench", "drag", "beads"});
+        Fields const body(node.items[k],
+                          {"mass", "com", "inertia", "joint", "wrench", "drag", "beads"});
         bodies.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         Node const* const com = body.find("com");
         bodies.com.push_back(com ? vector3(*com) : Vec3::zero());
-        bodies.inertia.push_back(inertia(body.need("inertia", "inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]")));
+        bodies.inertia.push_back(
+            inertia(body.need("inertia", "inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]")));
         JointEntry const entry = joint_of(body, k, base);
         append(bodies, entry);
         if (entry.planar && !made.planar) made.planar = body.find("joint");
@@ -158,7 +167,8 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         Node const& item = node.items[k];
         for (char const* const key : {"com", "inertia", "wrench", "drag", "beads"})
             if (Node const* const extra = item.find(key))
-                fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key), "leave it out or change `joint`");
+                fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key),
+                     "leave it out or change `joint`");
         Fields const body(item, {"mass", "position", "velocity", "residue", "joint"});
         made.beads.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         made.beads.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
@@ -168,12 +178,14 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         Node const* const residue = body.find("residue");
         made.beads.residue.push_back(residue ? text(*residue) : "UNK");
         double length = std::numeric_limits<double>::quiet_NaN();
-        Node const* const joint_node = k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
+        Node const* const joint_node =
+            k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
         if (joint_node) {
             Fields const joint(*joint_node, {"type", "length"});
             Node const* const given = joint.find("length");
             if (given && k == 0 && base == Base::free)
-                fail(*given, "a link length for bead 1 of a free base, which has no link", "leave it out or write `base: fixed`");
+                fail(*given, "a link length for bead 1 of a free base, which has no link",
+                     "leave it out or write `base: fixed`");
             if (given) length = positive(*given);
         }
         made.beads.length.push_back(length);

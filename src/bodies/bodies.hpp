@@ -6,7 +6,8 @@
 
 namespace catena::scene {
 
-/// What the list describes. beads: points on links. linked: links between rigid bodies and beads. bodies: any other joints.
+/// What the list describes. beads: points on links. linked: links between rigid bodies and beads.
+/// bodies: any other joints.
 enum class BodyList { bodies, beads, linked };
 
 /// InputError for an empty list and for a mixture of links with other joints.
@@ -16,8 +17,8 @@ struct ExplicitBodies {
     BodyArrays bodies;
     Node const* planar = nullptr;  // the first joint that is written `planar`
 };
-/// Rigid bodies on any joints but links; every number checked. `scene_drag`: {linear, angular} of bodies that have none of their own.
-/// InputError names the body.
+/// Rigid bodies on any joints but links; every number checked. `scene_drag`: {linear, angular} of
+/// bodies that have none of their own. InputError names the body.
 ExplicitBodies read_bodies(Node const& bodies, Base base, std::array<double, 2> const& scene_drag);
 
 struct ExplicitBeads {

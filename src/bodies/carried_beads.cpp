@@ -24,7 +24,11 @@ void CarriedList::add(Node const* beads, Vec3 const& origin) {
             Node const* const residue = bead.find("residue");
             std::string const name = residue ? text(*residue) : "UNK";
             Calvados2Residue const* const known = find_calvados2(name);
-            append(vector3(bead.need("position", "position: [0, 0, 0]")) - origin, mass ? positive(*mass) : known ? known->mass : 1, name);
+            append(vector3(bead.need("position", "position: [0, 0, 0]")) - origin,
+                   mass    ? positive(*mass)
+                   : known ? known->mass
+                           : 1,
+                   name);
         }
     }
     close();

@@ -13,8 +13,8 @@ class CarriedList {
     void append(Vec3 const& position, double mass, std::string const& residue);
     /// The present body has all its beads.
     void close();
-    /// The whole body: its list in the scene, or null for none. Positions are moved by -`origin` (linked chains count from the centre of
-    /// mass).
+    /// The whole body: its list in the scene, or null for none. Positions are moved by -`origin`
+    /// (linked chains count from the centre of mass).
     void add(Node const* beads, Vec3 const& origin = Vec3::zero());
     CarriedBeads take();
 

@@ -13,7 +13,8 @@ namespace catena::scene {
 
 namespace {
 
-/// Below this ratio of principal moments the beads stand on a line as far as positions with a few digits can tell.
+/// Below this ratio of principal moments the beads stand on a line as far as positions with a few
+/// digits can tell.
 double constexpr least_ratio = 1e-6;
 
 struct RigidBody {
@@ -34,7 +35,8 @@ RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     for (std::size_t k = domain.first; k <= domain.last; ++k) {
         Vec3 const p = beads.position[k] - body.com;
         Eigen::Vector3d const r(p[0], p[1], p[2]);
-        inertia += beads.mass[k] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+        inertia +=
+            beads.mass[k] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
     }
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const solver(inertia);
     Eigen::Matrix3d axes = solver.eigenvectors();
@@ -48,7 +50,9 @@ RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
 
 class LinkedBuilder {
   public:
-    explicit LinkedBuilder(BeadArrays const& beads) : beads_(beads) { linked_.anchor = beads.anchor; }
+    explicit LinkedBuilder(BeadArrays const& beads) : beads_(beads) {
+        linked_.anchor = beads.anchor;
+    }
 
     void add_bead(std::size_t k) {
         add(k, beads_.mass[k], beads_.position[k], beads_.velocity[k]);
@@ -66,14 +70,18 @@ class LinkedBuilder {
             fail(node, fmt::format("the beads of {} stand on one line: a thin rod", domain.name),
                  "take in a residue beside it, or leave the domain out");
         add(domain.first, body.mass, body.com, Vec3::zero());
-        linked_.inertia.push_back(Sym3{{body.moments[0], 0, body.moments[1], 0, 0, body.moments[2]}});
+        linked_.inertia.push_back(
+            Sym3{{body.moments[0], 0, body.moments[1], 0, 0, body.moments[2]}});
         Quat const q = to_quaternion(body.axes);
         linked_.orientation.push_back({q.w, q.x, q.y, q.z});
         Mat3 const r = to_matrix(q);
-        auto const inside = [&](std::size_t k) { return transposed_times(r, beads_.position[k] - body.com); };
+        auto const inside = [&](std::size_t k) {
+            return transposed_times(r, beads_.position[k] - body.com);
+        };
         linked_.inboard.push_back(inside(domain.first));
         linked_.outboard.push_back(inside(domain.last));
-        for (std::size_t k = domain.first; k <= domain.last; ++k) carried_.append(inside(k), beads_.mass[k], beads_.residue[k]);
+        for (std::size_t k = domain.first; k <= domain.last; ++k)
+            carried_.append(inside(k), beads_.mass[k], beads_.residue[k]);
         carried_.close();
     }
 
@@ -99,20 +107,29 @@ class LinkedBuilder {
 /// What the numbers of a scene's `rigid` mean.
 class Numbering {
   public:
-    Numbering(std::size_t residues, std::vector<std::string> const& labels) : residues_(residues), labels_(labels) {
+    Numbering(std::size_t residues, std::vector<std::string> const& labels)
+        : residues_(residues), labels_(labels) {
         for (std::size_t k = 0; k < labels.size(); ++k) beads_[labels[k]].push_back(k);
     }
 
     std::string remedy() const {
-        return labels_.empty() ? fmt::format("give [first, last] with residues from 1 to {}, both included", residues_)
-                               : fmt::format("give [first, last] with the file's residue numbers, here {} to {}, both included",
-                                             labels_.front(), labels_.back());
+        return labels_.empty()
+                   ? fmt::format("give [first, last] with residues from 1 to {}, both included",
+                                 residues_)
+                   : fmt::format(
+                         "give [first, last] with the file's residue numbers, here {} to {}, both "
+                         "included",
+                         labels_.front(), labels_.back());
     }
     Domain domain(Node const& pair) const {
-        if (pair.kind != Node::Kind::list || pair.items.size() != 2) fail(pair, describe(pair) + " is not a pair of residues", remedy());
+        if (pair.kind != Node::Kind::list || pair.items.size() != 2)
+            fail(pair, describe(pair) + " is not a pair of residues", remedy());
         Domain domain{bead(pair, pair.items[0]), bead(pair, pair.items[1])};
-        std::string const span = fmt::format("residues {} to {}", shown(pair.items[0].text), shown(pair.items[1].text));
-        if (domain.last < domain.first + 2) fail(pair, span + " are no rigid body: it needs three that do not stand on one line", remedy());
+        std::string const span =
+            fmt::format("residues {} to {}", shown(pair.items[0].text), shown(pair.items[1].text));
+        if (domain.last < domain.first + 2)
+            fail(pair, span + " are no rigid body: it needs three that do not stand on one line",
+                 remedy());
         domain.name = span;
         return domain;
     }
@@ -126,16 +143,20 @@ class Numbering {
             return static_cast<std::size_t>(number - 1);
         }
         auto const found = beads_.find(label(end));
-        if (found == beads_.end()) fail(pair, fmt::format("residue {} is not in the file", shown(end.text)), remedy());
+        if (found == beads_.end())
+            fail(pair, fmt::format("residue {} is not in the file", shown(end.text)), remedy());
         if (found->second.size() > 1)
-            fail(pair, fmt::format("{} residues of the file bear the number {}", found->second.size(), shown(end.text)),
+            fail(pair,
+                 fmt::format("{} residues of the file bear the number {}", found->second.size(),
+                             shown(end.text)),
                  "give each residue its own number or insertion code");
         return found->second[0];
     }
     static std::string label(Node const& end) {
         double value = 0;
         std::string const written = text(end);
-        bool const number = parse_number(written, value) == NumberFault::none && value == std::floor(value) && std::abs(value) < 1e15;
+        bool const number = parse_number(written, value) == NumberFault::none &&
+                            value == std::floor(value) && std::abs(value) < 1e15;
         return number ? std::to_string(static_cast<std::int64_t>(value)) : written;
     }
 
@@ -146,23 +167,30 @@ class Numbering {
 
 }  // namespace
 
-std::vector<Domain> read_domains(Node const& rigid, std::size_t residues, std::vector<std::string> const& labels) {
+std::vector<Domain> read_domains(Node const& rigid, std::size_t residues,
+                                 std::vector<std::string> const& labels) {
     Numbering const numbering(residues, labels);
-    if (list(rigid).items.empty()) fail(rigid, "the list of rigid domains is empty", "leave the key out or " + numbering.remedy());
+    if (list(rigid).items.empty())
+        fail(rigid, "the list of rigid domains is empty",
+             "leave the key out or " + numbering.remedy());
     std::vector<Domain> domains;
     for (Node const& item : rigid.items) {
         Domain const domain = numbering.domain(item);
         for (Domain const& other : domains)
             if (domain.first <= other.last && other.first <= domain.last)
-                fail(item, fmt::format("{} overlap the domain{}", domain.name, other.name.substr(std::string("residues").size())),
+                fail(item,
+                     fmt::format("{} overlap the domain{}", domain.name,
+                                 other.name.substr(std::string("residues").size())),
                      "give each residue to one domain");
         domains.push_back(domain);
     }
-    std::sort(domains.begin(), domains.end(), [](Domain const& a, Domain const& b) { return a.first < b.first; });
+    std::sort(domains.begin(), domains.end(),
+              [](Domain const& a, Domain const& b) { return a.first < b.first; });
     return domains;
 }
 
-LinkedArrays with_domains(BeadArrays const& beads, std::vector<Domain> const& domains, Node const& rigid) {
+LinkedArrays with_domains(BeadArrays const& beads, std::vector<Domain> const& domains,
+                          Node const& rigid) {
     LinkedBuilder builder(beads);
     auto next = domains.begin();
     for (std::size_t k = 0; k < beads.size(); ++k) {

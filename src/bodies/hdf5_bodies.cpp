@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "error.hpp"
-#include "io/trial.hpp"
-#include "scene/fields.hpp"
 #include "bodies/hdf5_table.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
+#include "error.hpp"
+#include "io/trial.hpp"
+#include "scene/fields.hpp"
 
 namespace catena::scene {
 
@@ -18,12 +18,15 @@ namespace {
 
 /// The file's own numbers: those of the enumeration may move.
 constexpr std::pair<std::string_view, JointType> types[] = {
-    {"free", JointType::free},           {"link", JointType::link}, {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
-    {"universal", JointType::universal}, {"weld", JointType::weld}, {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
+    {"free", JointType::free},           {"link", JointType::link},
+    {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
+    {"universal", JointType::universal}, {"weld", JointType::weld},
+    {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
 
-constexpr std::string_view known[] = {"mass", "com",    "inertia",    "joint_type",    "axis",         "rotation",  "translation",
-                                      "q",    "qd",     "first_axis", "pitch",         "torque",       "stiffness", "damping",
-                                      "rest", "wrench", "drag",       "free_position", "free_velocity"};
+constexpr std::string_view known[] = {
+    "mass", "com",    "inertia",    "joint_type",    "axis",         "rotation",  "translation",
+    "q",    "qd",     "first_axis", "pitch",         "torque",       "stiffness", "damping",
+    "rest", "wrench", "drag",       "free_position", "free_velocity"};
 
 Vec3 vector_at(double const* v) { return {{v[0], v[1], v[2]}}; }
 
@@ -47,11 +50,13 @@ class Hdf5Bodies {
         for (std::string const& name : table_.names()) {
             if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
             auto const near = nearest(name, known);
-            table_.refuse(name, Hdf5Table::whole, "unknown dataset", near ? "did you mean `" + *near + "`?" : "use " + joined(known));
+            table_.refuse(name, Hdf5Table::whole, "unknown dataset",
+                          near ? "did you mean `" + *near + "`?" : "use " + joined(known));
         }
     }
     void need(char const* name, std::string const& why) const {
-        if (!table_.has(name)) table_.refuse(name, Hdf5Table::whole, "the dataset is missing", "add it: " + why);
+        if (!table_.has(name))
+            table_.refuse(name, Hdf5Table::whole, "the dataset is missing", "add it: " + why);
     }
     void refuse(char const* name, std::size_t k, std::optional<Fault> const& fault) const {
         if (fault) table_.refuse(name, k, fault->what, fault->remedy);
@@ -60,17 +65,21 @@ class Hdf5Bodies {
     void read_masses() {
         bodies_.mass.resize(table_.rows());
         table_.for_each("mass", {{}}, [&](std::size_t k, double const* v, std::size_t) {
-            if (!(v[0] > 0)) table_.refuse("mass", k, fmt::format("mass {} is not positive", v[0]), "give a number above 0");
+            if (!(v[0] > 0))
+                table_.refuse("mass", k, fmt::format("mass {} is not positive", v[0]),
+                              "give a number above 0");
             bodies_.mass[k] = v[0];
         });
         vectors("com", bodies_.com, [](std::size_t, Vec3&) {});
         need("inertia", "a tensor a body, about its centre of mass");
         bodies_.inertia.resize(table_.rows());
-        table_.for_each("inertia", {{3, 3}, {6}}, [&](std::size_t k, double const* v, std::size_t width) {
-            Mat3 const m = width == 9 ? Mat3{{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}
-                                      : Mat3{{v[0], v[1], v[3], v[1], v[2], v[4], v[3], v[4], v[5]}};
-            refuse("inertia", k, make_inertia(m, bodies_.inertia[k]));
-        });
+        table_.for_each(
+            "inertia", {{3, 3}, {6}}, [&](std::size_t k, double const* v, std::size_t width) {
+                Mat3 const m = width == 9
+                                   ? Mat3{{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}
+                                   : Mat3{{v[0], v[1], v[3], v[1], v[2], v[4], v[3], v[4], v[5]}};
+                refuse("inertia", k, make_inertia(m, bodies_.inertia[k]));
+            });
     }
 
     /// [n, 3] where it is there, else zeros; `check(k, vector)` may change it.
@@ -89,9 +98,13 @@ class Hdf5Bodies {
         bodies_.joint.resize(table_.rows());
         if (table_.is_text("joint_type")) {
             table_.for_each_text("joint_type", [&](std::size_t k, std::string const& text) {
-                auto const found = std::find_if(std::begin(types), std::end(types), [&](auto const& type) { return type.first == text; });
+                auto const found =
+                    std::find_if(std::begin(types), std::end(types),
+                                 [&](auto const& type) { return type.first == text; });
                 if (found == std::end(types))
-                    table_.refuse("joint_type", k, fmt::format("`{}` is no joint type", shown(text)), "use the names of `joint.type`");
+                    table_.refuse("joint_type", k,
+                                  fmt::format("`{}` is no joint type", shown(text)),
+                                  "use the names of `joint.type`");
                 set_joint(k, found->second);
             });
             return;
@@ -100,7 +113,8 @@ class Hdf5Bodies {
             auto const number = static_cast<std::size_t>(std::clamp(v[0], 0.0, 255.0));
             if (number >= std::size(types) || static_cast<double>(number) != v[0])
                 table_.refuse("joint_type", k, fmt::format("{} is no joint type", v[0]),
-                              "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 prismatic, 7 helical");
+                              "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 "
+                              "prismatic, 7 helical");
             set_joint(k, types[number].second);
         });
     }
@@ -108,13 +122,19 @@ class Hdf5Bodies {
     void set_joint(std::size_t k, JointType type) {
         bool const free = type == JointType::free;
         if (type == JointType::link)
-            table_.refuse("joint_type", k, "a link in a file of rigid bodies on joints", "write chains of links as a list or a generator");
-        if (free && k > 0) table_.refuse("joint_type", k, "a free joint inside a chain", "use it for body 1 of a chain with `base: free`");
+            table_.refuse("joint_type", k, "a link in a file of rigid bodies on joints",
+                          "write chains of links as a list or a generator");
+        if (free && k > 0)
+            table_.refuse("joint_type", k, "a free joint inside a chain",
+                          "use it for body 1 of a chain with `base: free`");
         if (free && base_ == Base::fixed)
-            table_.refuse("joint_type", k, "a free joint on a fixed base", "write `base: free`, or give joint 1 another type");
+            table_.refuse("joint_type", k, "a free joint on a fixed base",
+                          "write `base: free`, or give joint 1 another type");
         if (!free && k == 0 && base_ == Base::free)
-            table_.refuse("joint_type", k, fmt::format("a {} joint 1 on a free base, which has no joint 1", name_of(type)),
-                          "write `base: fixed`, or make joint 1 free");
+            table_.refuse(
+                "joint_type", k,
+                fmt::format("a {} joint 1 on a free base, which has no joint 1", name_of(type)),
+                "write `base: fixed`, or make joint 1 free");
         bodies_.joint[k] = type;
     }
 
@@ -133,12 +153,15 @@ class Hdf5Bodies {
         JointType const type = bodies_.joint[k];
         return numbers_of(type) == 1 || type == JointType::universal;
     }
-    bool any(JointType type) const { return std::find(bodies_.joint.begin(), bodies_.joint.end(), type) != bodies_.joint.end(); }
+    bool any(JointType type) const {
+        return std::find(bodies_.joint.begin(), bodies_.joint.end(), type) != bodies_.joint.end();
+    }
 
     void read_axes() {
         for (std::size_t k = 0; k < table_.rows(); ++k)
             if (has_axis(k)) {
-                need("axis", fmt::format("body {} has a {} joint", k + 1, name_of(bodies_.joint[k])));
+                need("axis",
+                     fmt::format("body {} has a {} joint", k + 1, name_of(bodies_.joint[k])));
                 break;
             }
         vectors("axis", bodies_.axis, [&](std::size_t k, Vec3& axis) {
@@ -158,7 +181,9 @@ class Hdf5Bodies {
         bodies_.pitch.assign(table_.rows(), 0);
         table_.for_each("pitch", {{}}, [&](std::size_t k, double const* v, std::size_t) {
             if (bodies_.joint[k] != JointType::helical) return;
-            if (v[0] == 0) table_.refuse("pitch", k, "a helical joint without pitch", "give its shift a radian, or use a revolute joint");
+            if (v[0] == 0)
+                table_.refuse("pitch", k, "a helical joint without pitch",
+                              "give its shift a radian, or use a revolute joint");
             bodies_.pitch[k] = v[0];
         });
     }
@@ -177,11 +202,15 @@ class Hdf5Bodies {
             }
         });
     }
-    bool turns(std::size_t k) const { return bodies_.joint[k] == JointType::spherical || bodies_.joint[k] == JointType::free; }
+    bool turns(std::size_t k) const {
+        return bodies_.joint[k] == JointType::spherical || bodies_.joint[k] == JointType::free;
+    }
 
     void read_state() {
         positions("q", bodies_.q);
-        vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) { keep(v, bodies_.joint[k] == JointType::free ? 3 : count(k)); });
+        vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
+            keep(v, bodies_.joint[k] == JointType::free ? 3 : count(k));
+        });
         table_.vector("free_position", bodies_.free_position.data);
         table_.vector("free_velocity", bodies_.free_velocity.data);
     }
@@ -195,12 +224,15 @@ class Hdf5Bodies {
         vectors(name, into, [&](std::size_t k, Vec3& v) {
             keep(v, count(k));
             for (double const x : v.data)
-                if (!(x >= 0)) table_.refuse(name, k, fmt::format("{} {} is negative", name, x), "give 0 or numbers above it");
+                if (!(x >= 0))
+                    table_.refuse(name, k, fmt::format("{} {} is negative", name, x),
+                                  "give 0 or numbers above it");
         });
     }
 
     void read_forces() {
-        if (table_.has("torque")) vectors("torque", bodies_.torque, [&](std::size_t k, Vec3& v) { keep(v, count(k)); });
+        if (table_.has("torque"))
+            vectors("torque", bodies_.torque, [&](std::size_t k, Vec3& v) { keep(v, count(k)); });
         if (table_.has("stiffness") || table_.has("rest")) {
             resistances("stiffness", bodies_.stiffness);
             positions("rest", bodies_.rest);
@@ -208,14 +240,16 @@ class Hdf5Bodies {
         if (table_.has("damping")) resistances("damping", bodies_.damping);
         if (table_.has("wrench")) {
             bodies_.wrench.resize(table_.rows());
-            table_.for_each("wrench", {{6}},
-                            [&](std::size_t k, double const* v, std::size_t) { bodies_.wrench[k] = {vector_at(v), vector_at(v + 3)}; });
+            table_.for_each("wrench", {{6}}, [&](std::size_t k, double const* v, std::size_t) {
+                bodies_.wrench[k] = {vector_at(v), vector_at(v + 3)};
+            });
         }
         if (!table_.has("drag")) return;
         bodies_.drag.resize(table_.rows());
         table_.for_each("drag", {{2}}, [&](std::size_t k, double const* v, std::size_t) {
             if (!(v[0] >= 0 && v[1] >= 0))
-                table_.refuse("drag", k, fmt::format("drag {}, {} is negative", v[0], v[1]), "give 0 or numbers above it");
+                table_.refuse("drag", k, fmt::format("drag {}, {} is negative", v[0], v[1]),
+                              "give 0 or numbers above it");
             bodies_.drag[k] = {v[0], v[1]};
         });
     }
@@ -229,7 +263,9 @@ class Hdf5Bodies {
 
 BodyArrays read_hdf5_bodies(std::string const& path, Base base) {
     std::string const end = trial([&] { Hdf5Bodies(path, base).read(); }, limits_for_file(path));
-    if (!end.empty()) throw InputError("the file is damaged, HDF5 breaks on it: " + end, shown_path(path), "write the file again");
+    if (!end.empty())
+        throw InputError("the file is damaged, HDF5 breaks on it: " + end, shown_path(path),
+                         "write the file again");
     return Hdf5Bodies(path, base).read();
 }
 

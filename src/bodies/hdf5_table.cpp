@@ -10,9 +10,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "bodies/hdf5_texts.hpp"
 #include "error.hpp"
 #include "io/memory_limit.hpp"
-#include "bodies/hdf5_texts.hpp"
 #include "scene/node.hpp"
 
 namespace catena::scene {
@@ -34,31 +34,44 @@ hdf5::Type half(H5T_order_t order) {
     return type;
 }
 
-/// Whether it is one of those that machines have. HDF5 runs over its buffers converting others, such as integers of no bits.
+/// Whether it is one of those that machines have. HDF5 runs over its buffers converting others,
+/// such as integers of no bits.
 bool is_number(hdf5::Type const& type) {
-    hid_t const known[] = {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_NATIVE_LDOUBLE, H5T_STD_I64LE, H5T_STD_I64BE,
-                           H5T_STD_U64LE,  H5T_STD_U64BE,  H5T_STD_I32LE,  H5T_STD_I32BE,  H5T_STD_U32LE,      H5T_STD_U32BE, H5T_STD_I16LE,
-                           H5T_STD_I16BE,  H5T_STD_U16LE,  H5T_STD_U16BE,  H5T_STD_I8LE,   H5T_STD_I8BE,       H5T_STD_U8LE,  H5T_STD_U8BE};
+    hid_t const known[] = {H5T_IEEE_F64LE,     H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE,
+                           H5T_NATIVE_LDOUBLE, H5T_STD_I64LE,  H5T_STD_I64BE,  H5T_STD_U64LE,
+                           H5T_STD_U64BE,      H5T_STD_I32LE,  H5T_STD_I32BE,  H5T_STD_U32LE,
+                           H5T_STD_U32BE,      H5T_STD_I16LE,  H5T_STD_I16BE,  H5T_STD_U16LE,
+                           H5T_STD_U16BE,      H5T_STD_I8LE,   H5T_STD_I8BE,   H5T_STD_U8LE,
+                           H5T_STD_U8BE};
     auto const is = [&](hid_t other) { return H5Tequal(type.get(), other) > 0; };
-    return std::any_of(std::begin(known), std::end(known), is) || is(half(H5T_ORDER_LE).get()) || is(half(H5T_ORDER_BE).get());
+    return std::any_of(std::begin(known), std::end(known), is) || is(half(H5T_ORDER_LE).get()) ||
+           is(half(H5T_ORDER_BE).get());
 }
 
-std::string shape_text(std::vector<hsize_t> const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
+std::string shape_text(std::vector<hsize_t> const& shape) {
+    return fmt::format("[{}]", fmt::join(shape, ", "));
+}
 
 }  // namespace
 
 template <class Status>
 Status Hdf5Table::sound(Status status, std::string const& name) const {
-    if (status < 0) refuse(name, whole, "the dataset cannot be read: " + shown(hdf5::cause()), "check the file");
+    if (status < 0)
+        refuse(name, whole, "the dataset cannot be read: " + shown(hdf5::cause()),
+               "check the file");
     return status;
 }
 
 Hdf5Table::Hdf5Table(std::string const& path, std::string const& counted) : path_(path) {
     file_ = hdf5::File(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    if (!file_) throw InputError("the file is not there or no HDF5 file: " + shown(hdf5::cause()), shown_path(path), "check the path");
-    if (!has(counted)) refuse(counted, whole, "the dataset is missing", "add it: its rows are the bodies");
+    if (!file_)
+        throw InputError("the file is not there or no HDF5 file: " + shown(hdf5::cause()),
+                         shown_path(path), "check the path");
+    if (!has(counted))
+        refuse(counted, whole, "the dataset is missing", "add it: its rows are the bodies");
     std::vector<hsize_t> const shape = shape_of(open(counted), counted);
-    if (shape.empty() || shape[0] == 0) refuse(counted, whole, "the dataset is empty", "give at least one body");
+    if (shape.empty() || shape[0] == 0)
+        refuse(counted, whole, "the dataset is empty", "give at least one body");
     rows_ = shape[0];
     refuse_too_large(counted);
 }
@@ -67,18 +80,24 @@ Hdf5Table::Hdf5Table(std::string const& path, std::string const& counted) : path
 void Hdf5Table::refuse_too_large(std::string const& name) const {
     hdf5::Dataset const data = open(name);
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
-    double const rows = static_cast<double>(rows_), claimed = rows * static_cast<double>(H5Tget_size(type.get()));
+    double const rows = static_cast<double>(rows_),
+                 claimed = rows * static_cast<double>(H5Tget_size(type.get()));
     if (claimed > best_compression * static_cast<double>(H5Dget_storage_size(data.get())))
-        refuse(name, whole, fmt::format("the dataset has {} rows, which the file does not hold", rows_), "write the whole of it");
+        refuse(name, whole,
+               fmt::format("the dataset has {} rows, which the file does not hold", rows_),
+               "write the whole of it");
     auto const present = static_cast<double>(memory_limit());
     if (rows * bytes_a_body > present)
         refuse(name, whole,
-               fmt::format("{} bodies need about {:.3g} GB of memory, and only {:.3g} GB are available", rows_, rows * bytes_a_body * 1e-9,
-                           present * 1e-9),
+               fmt::format(
+                   "{} bodies need about {:.3g} GB of memory, and only {:.3g} GB are available",
+                   rows_, rows * bytes_a_body * 1e-9, present * 1e-9),
                "make fewer bodies, or use a larger machine");
 }
 
-bool Hdf5Table::has(std::string const& name) const { return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0; }
+bool Hdf5Table::has(std::string const& name) const {
+    return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0;
+}
 
 std::vector<std::string> Hdf5Table::names() const {
     std::vector<std::string> names;
@@ -86,23 +105,29 @@ std::vector<std::string> Hdf5Table::names() const {
     sound(H5Gget_info(file_.get(), &info), "/");
     for (hsize_t i = 0; i < info.nlinks; ++i) {
         char name[256] = {};
-        sound(H5Lget_name_by_idx(file_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT), "/");
+        sound(H5Lget_name_by_idx(file_.get(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name,
+                                 H5P_DEFAULT),
+              "/");
         names.emplace_back(name);
     }
     return names;
 }
 
-std::size_t Hdf5Table::for_each(std::string const& name, std::vector<Shape> const& shapes, Read const& read) const {
+std::size_t Hdf5Table::for_each(std::string const& name, std::vector<Shape> const& shapes,
+                                Read const& read) const {
     hdf5::Dataset const data = open(name);
     std::vector<hsize_t> const shape = shape_of(data, name);
     Shape const row(shape.begin() + (shape.empty() ? 0 : 1), shape.end());
-    if (shape.empty() || shape[0] != rows_ || std::find(shapes.begin(), shapes.end(), row) == shapes.end()) {
+    if (shape.empty() || shape[0] != rows_ ||
+        std::find(shapes.begin(), shapes.end(), row) == shapes.end()) {
         std::string wanted;
         for (Shape one : shapes) {
             one.insert(one.begin(), rows_);
             wanted += (wanted.empty() ? "" : " or ") + shape_text(one);
         }
-        refuse(name, whole, fmt::format("the dataset has shape {}, not {}", shape_text(shape), wanted), "give one row a body");
+        refuse(name, whole,
+               fmt::format("the dataset has shape {}, not {}", shape_text(shape), wanted),
+               "give one row a body");
     }
     refuse_unless_numbers(data, name);
     std::size_t width = 1;
@@ -114,7 +139,9 @@ std::size_t Hdf5Table::for_each(std::string const& name, std::vector<Shape> cons
         for (std::size_t i = 0; i < count; ++i) {
             double const* const values = block.data() + i * width;
             for (std::size_t j = 0; j < width; ++j)
-                if (!std::isfinite(values[j])) refuse(name, first + i, fmt::format("{} is not finite", values[j]), "give finite numbers");
+                if (!std::isfinite(values[j]))
+                    refuse(name, first + i, fmt::format("{} is not finite", values[j]),
+                           "give finite numbers");
             read(first + i, values, width);
         }
     }
@@ -131,12 +158,15 @@ void Hdf5Table::for_each_text(std::string const& name, ReadText const& read) con
     hdf5::Dataset const data = open(name);
     std::vector<hsize_t> const shape = shape_of(data, name);
     if (shape != std::vector<hsize_t>{rows_})
-        refuse(name, whole, fmt::format("the dataset has shape {}, not [{}]", shape_text(shape), rows_), "give one text a body");
+        refuse(name, whole,
+               fmt::format("the dataset has shape {}, not [{}]", shape_text(shape), rows_),
+               "give one text a body");
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
     if (H5Tis_variable_str(type.get()) > 0) return for_each_variable_text(data, name, read);
     std::size_t const length = H5Tget_size(type.get());
     if (length == 0 || length > longest_text)
-        refuse(name, whole, fmt::format("the dataset holds texts of {} bytes", length), fmt::format("give {} or fewer", longest_text));
+        refuse(name, whole, fmt::format("the dataset holds texts of {} bytes", length),
+               fmt::format("give {} or fewer", longest_text));
     refuse_large_chunks(data, name);
     std::vector<char> block(std::min(rows_, rows_a_block) * length);
     for (std::size_t first = 0; first < rows_; first += rows_a_block) {
@@ -149,7 +179,8 @@ void Hdf5Table::for_each_text(std::string const& name, ReadText const& read) con
     }
 }
 
-void Hdf5Table::for_each_variable_text(hdf5::Dataset const& data, std::string const& name, ReadText const& read) const {
+void Hdf5Table::for_each_variable_text(hdf5::Dataset const& data, std::string const& name,
+                                       ReadText const& read) const {
     std::optional<VariableTexts> texts;
     for (std::size_t k = 0; k < rows_; ++k) {
         std::string text;
@@ -157,7 +188,8 @@ void Hdf5Table::for_each_variable_text(hdf5::Dataset const& data, std::string co
             if (!texts) texts.emplace(file_, data, rows_);
             text = texts->at(k);
         } catch (std::runtime_error const& error) {
-            refuse(name, k == 0 && !texts ? whole : k, error.what(), "check the file, or store numbers or texts of fixed length");
+            refuse(name, k == 0 && !texts ? whole : k, error.what(),
+                   "check the file, or store numbers or texts of fixed length");
         }
         read(k, text);
     }
@@ -168,17 +200,21 @@ bool Hdf5Table::vector(std::string const& name, double (&values)[3]) const {
     hdf5::Dataset const data = open(name);
     std::vector<hsize_t> const shape = shape_of(data, name);
     if (shape != std::vector<hsize_t>{3})
-        refuse(name, whole, fmt::format("the dataset has shape {}, not [3]", shape_text(shape)), "give three numbers");
+        refuse(name, whole, fmt::format("the dataset has shape {}, not [3]", shape_text(shape)),
+               "give three numbers");
     refuse_unless_numbers(data, name);
     sound(H5Dread(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
     for (double const value : values)
-        if (!std::isfinite(value)) refuse(name, whole, fmt::format("{} is not finite", value), "give finite numbers");
+        if (!std::isfinite(value))
+            refuse(name, whole, fmt::format("{} is not finite", value), "give finite numbers");
     return true;
 }
 
-void Hdf5Table::refuse(std::string const& name, std::size_t k, std::string const& what, std::string const& remedy) const {
+void Hdf5Table::refuse(std::string const& name, std::size_t k, std::string const& what,
+                       std::string const& remedy) const {
     std::string const body = k == whole ? "" : fmt::format(", body {}", k + 1);
-    throw InputError(what, fmt::format("{}: dataset `{}`{}", shown_path(path_), shown(name), body), remedy);
+    throw InputError(what, fmt::format("{}: dataset `{}`{}", shown_path(path_), shown(name), body),
+                     remedy);
 }
 
 hdf5::Dataset Hdf5Table::open(std::string const& name) const {
@@ -187,14 +223,16 @@ hdf5::Dataset Hdf5Table::open(std::string const& name) const {
 
 std::vector<hsize_t> Hdf5Table::shape_of(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Space const space(sound(H5Dget_space(data.get()), name));
-    std::vector<hsize_t> shape(static_cast<std::size_t>(sound(H5Sget_simple_extent_ndims(space.get()), name)));
+    std::vector<hsize_t> shape(
+        static_cast<std::size_t>(sound(H5Sget_simple_extent_ndims(space.get()), name)));
     sound(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr), name);
     return shape;
 }
 
 void Hdf5Table::refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
-    if (!is_number(type)) refuse(name, whole, "the dataset holds no numbers", "store it as float64");
+    if (!is_number(type))
+        refuse(name, whole, "the dataset holds no numbers", "store it as float64");
     refuse_large_chunks(data, name);
 }
 
@@ -207,16 +245,22 @@ void Hdf5Table::refuse_large_chunks(hdf5::Dataset const& data, std::string const
     int const rank = sound(H5Pget_chunk(how.get(), H5S_MAX_RANK, extent), name);
     for (int i = 0; i < rank && chunk <= largest_chunk; ++i) chunk *= extent[i];
     if (chunk > largest_chunk)
-        refuse(name, whole, "a chunk of the dataset is larger than a gigabyte, which is read at once", "write it in smaller chunks");
+        refuse(name, whole,
+               "a chunk of the dataset is larger than a gigabyte, which is read at once",
+               "write it in smaller chunks");
 }
 
-void Hdf5Table::read_block(hdf5::Dataset const& data, std::string const& name, std::vector<hsize_t> const& shape, std::size_t first,
-                           std::size_t count, hid_t type, void* values) const {
+void Hdf5Table::read_block(hdf5::Dataset const& data, std::string const& name,
+                           std::vector<hsize_t> const& shape, std::size_t first, std::size_t count,
+                           hid_t type, void* values) const {
     std::vector<hsize_t> start(shape.size(), 0), extent = shape;
     start[0] = first, extent[0] = count;
     hdf5::Space const file(sound(H5Dget_space(data.get()), name));
-    sound(H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr), name);
-    hdf5::Space const memory(sound(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), name));
+    sound(H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
+                              nullptr),
+          name);
+    hdf5::Space const memory(
+        sound(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), name));
     sound(H5Dread(data.get(), type, memory.get(), file.get(), H5P_DEFAULT, values), name);
 }
 

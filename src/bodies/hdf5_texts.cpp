@@ -17,23 +17,29 @@ std::uint64_t constexpr collection_head = 16;
 /// Number, references, size.
 std::uint64_t constexpr object_head = 16;
 
-[[noreturn]] void damaged(char const* what) { throw std::runtime_error(std::string("damaged text, ") + what); }
+[[noreturn]] void damaged(char const* what) {
+    throw std::runtime_error(std::string("damaged text, ") + what);
+}
 
 std::uint64_t number(std::string const& bytes, std::uint64_t at, std::uint64_t width) {
     std::uint64_t value = 0;
-    for (std::uint64_t i = 0; i < width; ++i) value |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
+    for (std::uint64_t i = 0; i < width; ++i)
+        value |= std::uint64_t{static_cast<unsigned char>(bytes[at + i])} << (8 * i);
     return value;
 }
 
-hdf5::Properties creation_of(hdf5::File const& file) { return hdf5::Properties(H5Fget_create_plist(file.get())); }
+hdf5::Properties creation_of(hdf5::File const& file) {
+    return hdf5::Properties(H5Fget_create_plist(file.get()));
+}
 
 /// Whether the elements lie in this file, one after the other, with addresses of eight bytes.
 bool is_plain(hdf5::File const& file, hdf5::Dataset const& data, std::uint64_t count) {
     hdf5::Properties const how(H5Dget_create_plist(data.get()));
     std::size_t address = 0, length = 0;
-    return how && H5Pget_layout(how.get()) == H5D_CONTIGUOUS && H5Pget_external_count(how.get()) == 0 &&
-           H5Pget_sizes(creation_of(file).get(), &address, &length) >= 0 && address == 8 && length == 8 &&
-           H5Dget_storage_size(data.get()) == count * element_size;
+    return how && H5Pget_layout(how.get()) == H5D_CONTIGUOUS &&
+           H5Pget_external_count(how.get()) == 0 &&
+           H5Pget_sizes(creation_of(file).get(), &address, &length) >= 0 && address == 8 &&
+           length == 8 && H5Dget_storage_size(data.get()) == count * element_size;
 }
 
 }  // namespace
@@ -41,7 +47,8 @@ bool is_plain(hdf5::File const& file, hdf5::Dataset const& data, std::uint64_t c
 VariableTexts::VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, std::size_t count) {
     void* descriptor = nullptr;
     hsize_t block = 0;
-    if (!is_plain(file, data, count) || H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0 ||
+    if (!is_plain(file, data, count) ||
+        H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0 ||
         H5Pget_userblock(creation_of(file).get(), &block) < 0)
         throw std::runtime_error("texts of variable length that are chunked or compressed");
     descriptor_ = *static_cast<int const*>(descriptor);
@@ -50,7 +57,8 @@ VariableTexts::VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, 
     struct stat about{};
     if (::fstat(descriptor_, &about) != 0) damaged("the file cannot be read");
     size_ = static_cast<std::uint64_t>(about.st_size);
-    if (elements_ > size_ || count > (size_ - elements_) / element_size) damaged("the dataset ends behind the file");
+    if (elements_ > size_ || count > (size_ - elements_) / element_size)
+        damaged("the dataset ends behind the file");
 }
 
 std::string VariableTexts::at(std::size_t k) {
@@ -69,7 +77,8 @@ std::string VariableTexts::bytes(std::uint64_t from, std::uint64_t count) const 
     if (from > size_ || count > size_ - from) damaged("an address lies behind the file's end");
     std::string read(count, '\0');
     for (std::uint64_t done = 0; done < count;) {
-        ssize_t const some = ::pread(descriptor_, read.data() + done, count - done, static_cast<off_t>(from + done));
+        ssize_t const some =
+            ::pread(descriptor_, read.data() + done, count - done, static_cast<off_t>(from + done));
         if (some < 0 && errno == EINTR) continue;
         if (some <= 0) damaged("the file cannot be read");
         done += static_cast<std::uint64_t>(some);
@@ -79,14 +88,17 @@ std::string VariableTexts::bytes(std::uint64_t from, std::uint64_t count) const 
 
 VariableTexts::Collection const& VariableTexts::collection(std::uint64_t address) {
     auto const found = collections_.find(address);
-    return found != collections_.end() ? found->second : collections_.emplace(address, parsed(address)).first->second;
+    return found != collections_.end()
+               ? found->second
+               : collections_.emplace(address, parsed(address)).first->second;
 }
 
 VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
     if (at > size_ || base_ > size_ - at) damaged("an address lies behind the file's end");
     std::string const head = bytes(base_ + at, collection_head);
     std::uint64_t const size = number(head, 8, 8);
-    if (!head.starts_with("GCOL") || head[4] != 1 || size < collection_head) damaged("there is no heap where the dataset says");
+    if (!head.starts_with("GCOL") || head[4] != 1 || size < collection_head)
+        damaged("there is no heap where the dataset says");
     std::string const all = bytes(base_ + at, size);
     parsed_ += size;
     if (parsed_ > size_) damaged("heaps lie over one another");
@@ -97,7 +109,8 @@ VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
         if (of == 0) break;  // free from here on
         place += object_head;
         if (length > size - place) damaged("an object ends behind its heap");
-        if (!objects.emplace(of, all.substr(place, length)).second) damaged("two objects have one number");
+        if (!objects.emplace(of, all.substr(place, length)).second)
+            damaged("two objects have one number");
         std::uint64_t const padded = (length + 7) / 8 * 8;
         if (padded > size - place) break;
         place += padded;

@@ -1,4 +1,5 @@
-// Texts of variable length in an HDF5 file, without HDF5's own reader of them: that one goes beyond its buffers where the file is damaged.
+// Texts of variable length in an HDF5 file, without HDF5's own reader of them: that one goes beyond
+// its buffers where the file is damaged.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,9 @@
 
 namespace catena::scene {
 
-/// The texts of a dataset whose elements lie in the file one after the other, as h5py and HDF5's tools write them. Members throw
-/// std::runtime_error, which says what is wrong, for another layout and for damage. The file stays open longer than this.
+/// The texts of a dataset whose elements lie in the file one after the other, as h5py and HDF5's
+/// tools write them. Members throw std::runtime_error, which says what is wrong, for another layout
+/// and for damage. The file stays open longer than this.
 class VariableTexts {
   public:
     VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, std::size_t count);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "scene/freedom.hpp"
 #include "bodies/physics.hpp"
+#include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 
 namespace catena::scene {
@@ -37,7 +37,9 @@ TypeName type_of(Node const& joint) {
 void check_keys(Node const& joint, JointType type, std::vector<std::string_view> const& allowed) {
     for (Node const& item : joint.items)
         if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end())
-            fail(item, fmt::format("key `{}` means nothing for a {} joint", item.key, name_of(type)), "leave it out or correct `type`");
+            fail(item,
+                 fmt::format("key `{}` means nothing for a {} joint", item.key, name_of(type)),
+                 "leave it out or correct `type`");
 }
 
 /// Keys that say where the joint's axes are.
@@ -53,7 +55,8 @@ std::vector<std::string_view> joint_keys(JointType type) {
     if (type == JointType::free) return {"type", "q", "qd"};
     std::vector<std::string_view> keys = geometry_keys(type);
     if (type == JointType::weld) return keys;
-    for (char const* const key : {"q", "qd", "torque", "stiffness", "damping", "rest"}) keys.emplace_back(key);
+    for (char const* const key : {"q", "qd", "torque", "stiffness", "damping", "rest"})
+        keys.emplace_back(key);
     if (type != JointType::spherical) keys.emplace_back("motion");
     return keys;
 }
@@ -65,7 +68,8 @@ Vec3 several(Node const& node, int count) {
     return v;
 }
 
-/// The joint's numbers; where it has several coordinates and `alike` is set, one number stands for all.
+/// The joint's numbers; where it has several coordinates and `alike` is set, one number stands for
+/// all.
 Vec3 components(Node const& node, JointType type, bool alike) {
     int const count = numbers_of(type);
     Vec3 v = Vec3::zero();
@@ -81,7 +85,8 @@ Vec3 resistance(Node const& node, JointType type) {
     for (double const x : v.data)
         if (!(x >= 0))
             fail(node, fmt::format("{} {} is negative", node.key, x),
-                 node.kind == Node::Kind::list ? "give 0 or numbers above it" : "give 0 or a number above it");
+                 node.kind == Node::Kind::list ? "give 0 or numbers above it"
+                                               : "give 0 or a number above it");
     return v;
 }
 
@@ -97,12 +102,14 @@ void read_free(Fields const& joint, JointEntry& entry) {
     if (Node const* const q = joint.find("q")) {
         Fields const pose(*q, {"position", "quaternion"});
         if (Node const* const position = pose.find("position")) entry.position = vector3(*position);
-        if (Node const* const quaternion = pose.find("quaternion")) entry.q = unit_quaternion(*quaternion);
+        if (Node const* const quaternion = pose.find("quaternion"))
+            entry.q = unit_quaternion(*quaternion);
     }
     if (Node const* const qd = joint.find("qd")) {
         Fields const rates(*qd, {"omega", "velocity"});
         if (Node const* const omega = rates.find("omega")) entry.qd = vector3(*omega);
-        if (Node const* const velocity = rates.find("velocity")) entry.velocity = vector3(*velocity);
+        if (Node const* const velocity = rates.find("velocity"))
+            entry.velocity = vector3(*velocity);
     }
 }
 
@@ -112,26 +119,33 @@ void read_geometry(Fields const& joint, Entry& entry) {
     if (entry.type == JointType::universal) {
         Node const& axes = joint.need("axes", "axes: [[1, 0, 0], [0, 1, 0]]");
         if (axes.kind != Node::Kind::list || axes.items.size() != 2)
-            fail(axes, describe(axes) + " is not two axes", "give the first in the joint frame, the second in the body's frame");
+            fail(axes, describe(axes) + " is not two axes",
+                 "give the first in the joint frame, the second in the body's frame");
         entry.first_axis = direction(axes.items[0]);
         entry.axis = direction(axes.items[1]);
-        if (auto const fault = check_two_axes(entry.first_axis, entry.axis)) fail(axes, fault->what, fault->remedy);
+        if (auto const fault = check_two_axes(entry.first_axis, entry.axis))
+            fail(axes, fault->what, fault->remedy);
     }
     if (numbers_of(entry.type) == 1) entry.axis = direction(joint.need("axis", "axis: [0, 0, 1]"));
     if (entry.type == JointType::helical) {
         Node const& pitch = joint.need("pitch", "pitch: 0.1");
         entry.pitch = number(pitch);
-        if (entry.pitch == 0) fail(pitch, "a helical joint without pitch", "give its shift a radian, or use a revolute joint");
+        if (entry.pitch == 0)
+            fail(pitch, "a helical joint without pitch",
+                 "give its shift a radian, or use a revolute joint");
     }
-    if (Node const* const rotation_node = joint.find("rotation")) entry.rotation = rotation(*rotation_node);
-    if (Node const* const translation = joint.find("translation")) entry.translation = vector3(*translation);
+    if (Node const* const rotation_node = joint.find("rotation"))
+        entry.rotation = rotation(*rotation_node);
+    if (Node const* const translation = joint.find("translation"))
+        entry.translation = vector3(*translation);
 }
 
-Course read_course(Node const& node) {
+PrescribedMotion read_course(Node const& node) {
     Fields const fields(node, {"offset", "rate", "amplitude", "frequency", "phase"});
     if (node.items.empty())
-        fail(node, "the motion says nothing", "add one of `offset`, `rate`, `amplitude`, `frequency`, `phase`, or use a weld");
-    Course course;
+        fail(node, "the motion says nothing",
+             "add one of `offset`, `rate`, `amplitude`, `frequency`, `phase`, or use a weld");
+    PrescribedMotion course;
     auto const take = [&](char const* key, double& value) {
         if (Node const* const given = fields.find(key)) value = number(*given);
     };
@@ -143,10 +157,12 @@ Course read_course(Node const& node) {
 void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
     for (char const* const key : {"q", "qd", "torque", "stiffness", "damping", "rest"})
         if (Node const* const other = joint.find(key))
-            fail(*other, fmt::format("key `{}` of a joint whose `motion` is prescribed", key), "keep one of them");
+            fail(*other, fmt::format("key `{}` of a joint whose `motion` is prescribed", key),
+                 "keep one of them");
     if (entry.type == JointType::universal) {
         if (motion.kind != Node::Kind::list || motion.items.size() != 2)
-            fail(motion, describe(motion) + " is not two motions", "give a list of two maps, one an axis");
+            fail(motion, describe(motion) + " is not two motions",
+                 "give a list of two maps, one an axis");
         for (Node const& item : motion.items) entry.motion.push_back(read_course(item));
     } else {
         entry.motion.push_back(read_course(motion));
@@ -163,9 +179,12 @@ void read_state(Fields const& joint, JointEntry& entry) {
     if (Node const* const q = joint.find("q")) entry.q = position(*q, type, false);
     if (Node const* const rest = joint.find("rest")) entry.rest = position(*rest, type, true);
     if (Node const* const qd = joint.find("qd")) entry.qd = components(*qd, type, false);
-    if (Node const* const torque = joint.find("torque")) entry.torque = components(*torque, type, type == JointType::universal);
-    if (Node const* const stiffness = joint.find("stiffness")) entry.stiffness = resistance(*stiffness, type);
-    if (Node const* const damping = joint.find("damping")) entry.damping = resistance(*damping, type);
+    if (Node const* const torque = joint.find("torque"))
+        entry.torque = components(*torque, type, type == JointType::universal);
+    if (Node const* const stiffness = joint.find("stiffness"))
+        entry.stiffness = resistance(*stiffness, type);
+    if (Node const* const damping = joint.find("damping"))
+        entry.damping = resistance(*damping, type);
     entry.loaded = joint.find("torque");
     entry.sprung = joint.find("stiffness") || joint.find("rest");
     entry.damped = joint.find("damping");
@@ -173,11 +192,13 @@ void read_state(Fields const& joint, JointEntry& entry) {
 
 }  // namespace
 
-int numbers_of(JointType type) { return type == JointType::free || type == JointType::link ? 0 : coordinates_of(type); }
+int numbers_of(JointType type) {
+    return type == JointType::free || type == JointType::link ? 0 : coordinates_of(type);
+}
 
 JointEntry read_joint(Node const& node) {
-    Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "qd", "torque", "stiffness", "damping",
-                              "rest", "motion", "length"});
+    Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "qd",
+                              "torque", "stiffness", "damping", "rest", "motion", "length"});
     JointEntry entry;
     auto const [type, planar] = type_of(node);
     entry.type = type;
@@ -193,7 +214,8 @@ JointEntry read_joint(Node const& node) {
 }
 
 TipEntry read_tip_joint(Node const& node, bool ring) {
-    Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "anchor", "length"});
+    Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q",
+                              "anchor", "length"});
     TipEntry entry;
     auto const [type, planar] = type_of(node);
     entry.joint.ring = ring;
@@ -201,20 +223,27 @@ TipEntry read_tip_joint(Node const& node, bool ring) {
     entry.planar = planar;
     for (char const* const key : {"anchor", "q"})
         if (Node const* const given = ring ? joint.find(key) : nullptr)
-            fail(*given, fmt::format("key `{}` means nothing for the joint that closes a ring", key), "leave it out: the bodies say it");
-    if (type == JointType::free) fail(*node.find("type"), "a free joint at the tip restricts nothing", "write `tip: free`");
+            fail(*given,
+                 fmt::format("key `{}` means nothing for the joint that closes a ring", key),
+                 "leave it out: the bodies say it");
+    if (type == JointType::free)
+        fail(*node.find("type"), "a free joint at the tip restricts nothing", "write `tip: free`");
     std::vector<std::string_view> keys =
-        type == JointType::link ? std::vector<std::string_view>{"type", "length", "translation"} : geometry_keys(type);
+        type == JointType::link ? std::vector<std::string_view>{"type", "length", "translation"}
+                                : geometry_keys(type);
     keys.emplace_back("anchor");
     if (type != JointType::link && type != JointType::weld) keys.emplace_back("q");
     check_keys(node, type, keys);
     if (type == JointType::link) {
         if (!ring) entry.joint.anchor = vector3(joint.need("anchor", "anchor: [0, 0, 1]"));
         if (Node const* const length = joint.find("length")) entry.joint.length = positive(*length);
-        if (Node const* const translation = joint.find("translation")) entry.joint.translation = vector3(*translation);
+        if (Node const* const translation = joint.find("translation"))
+            entry.joint.translation = vector3(*translation);
         return entry;
     }
-    if (ring) joint.need("translation", "translation: [1, 0, 0], where the first body's origin is in the last body");
+    if (ring)
+        joint.need("translation",
+                   "translation: [1, 0, 0], where the first body's origin is in the last body");
     read_geometry(joint, entry.joint);
     if (type == JointType::spherical) entry.joint.q = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) entry.joint.q = position(*q, type, false);

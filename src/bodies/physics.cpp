@@ -26,20 +26,24 @@ void refuse(Node const& node, std::optional<Fault> const& fault) {
 }
 
 Mat3 full_inertia(Node const& node) {
-    if (node.kind == Node::Kind::list && node.items.size() == 3 && node.items[0].kind != Node::Kind::list) {
+    if (node.kind == Node::Kind::list && node.items.size() == 3 &&
+        node.items[0].kind != Node::Kind::list) {
         Vec3 const diagonal = vector3(node);
         return {{diagonal[0], 0, 0, 0, diagonal[1], 0, 0, 0, diagonal[2]}};
     }
     return matrix3(node);
 }
 
-/// Whether the second moments of the mass, tr(J) / 2 - J, are positive definite with room: then so is J, and the triangle inequality
-/// holds. Sylvester's minors: a tenth of the time of principal moments, which decide what this does not.
+/// Whether the second moments of the mass, tr(J) / 2 - J, are positive definite with room: then so
+/// is J, and the triangle inequality holds. Sylvester's minors: a tenth of the time of principal
+/// moments, which decide what this does not.
 bool is_plainly_physical(Sym3 const& j) {
     double const half = 0.5 * (j(0, 0) + j(1, 1) + j(2, 2)), margin = 1e-9;
-    double const a = (half - j(0, 0)) / half, b = (half - j(1, 1)) / half, c = (half - j(2, 2)) / half;
+    double const a = (half - j(0, 0)) / half, b = (half - j(1, 1)) / half,
+                 c = (half - j(2, 2)) / half;
     double const d = j(1, 0) / half, e = j(2, 0) / half, f = j(2, 1) / half;
-    return half > 0 && a > margin && a * b - d * d > margin && a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > margin;
+    return half > 0 && a > margin && a * b - d * d > margin &&
+           a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > margin;
 }
 
 /// One Jacobi rotation that makes entry (p, q) zero.
@@ -82,25 +86,31 @@ std::optional<Fault> make_inertia(Mat3 const& m, Sym3& j) {
     for (int a = 0; a < 3; ++a)
         for (int b = 0; b <= a; ++b) {
             if (std::abs(m(a, b) - m(b, a)) > rounding * largest_entry(m))
-                return Fault{fmt::format("the inertia is not symmetric: entries ({},{}) and ({},{}) are {} and {}", b + 1, a + 1, a + 1,
-                                         b + 1, m(b, a), m(a, b)),
-                             "give both the same value"};
+                return Fault{
+                    fmt::format(
+                        "the inertia is not symmetric: entries ({},{}) and ({},{}) are {} and {}",
+                        b + 1, a + 1, a + 1, b + 1, m(b, a), m(a, b)),
+                    "give both the same value"};
             j(a, b) = 0.5 * m(a, b) + 0.5 * m(b, a);
         }
     if (is_plainly_physical(j)) return std::nullopt;
     auto const [a, b, c] = principal_moments(j);
     double const slack = rounding * std::max(std::abs(a), std::abs(c));
     if (a < -slack)
-        return Fault{fmt::format("the inertia is not positive definite: its smallest principal moment is {:.6g}", a),
-                     "check the signs: off-diagonal entries are minus the products of inertia"};
-    if (a <= slack)
-        return Fault{fmt::format("the inertia is singular: its principal moments are {:.6g}, {:.6g}, {:.6g}", std::max(a, 0.0),
-                                 std::max(b, 0.0), std::max(c, 0.0)),
-                     "give the point mass or thin rod a bead radius r: add 0.4 m r^2 to the diagonal"};
-    if (a + b < c - slack)
         return Fault{
-            fmt::format("no rigid body has the principal moments {:.6g}, {:.6g}, {:.6g}: they break the triangle inequality", a, b, c),
-            "the largest may not exceed the sum of the other two"};
+            fmt::format(
+                "the inertia is not positive definite: its smallest principal moment is {:.6g}", a),
+            "check the signs: off-diagonal entries are minus the products of inertia"};
+    if (a <= slack)
+        return Fault{
+            fmt::format("the inertia is singular: its principal moments are {:.6g}, {:.6g}, {:.6g}",
+                        std::max(a, 0.0), std::max(b, 0.0), std::max(c, 0.0)),
+            "give the point mass or thin rod a bead radius r: add 0.4 m r^2 to the diagonal"};
+    if (a + b < c - slack)
+        return Fault{fmt::format("no rigid body has the principal moments {:.6g}, {:.6g}, {:.6g}: "
+                                 "they break the triangle inequality",
+                                 a, b, c),
+                     "the largest may not exceed the sum of the other two"};
     return std::nullopt;
 }
 
@@ -108,16 +118,21 @@ std::optional<Fault> make_rotation(Mat3& r) {
     Mat3 const gram = transposed_times(r, r);
     double deviation = 0;
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) deviation = std::max(deviation, std::abs(gram(i, j) - (i == j ? 1 : 0)));
+        for (int j = 0; j < 3; ++j)
+            deviation = std::max(deviation, std::abs(gram(i, j) - (i == j ? 1 : 0)));
     if (!(deviation <= printed_digits))
-        return Fault{fmt::format("the rotation is not orthonormal: R^T R differs from 1 by {:.3g}", deviation),
+        return Fault{fmt::format("the rotation is not orthonormal: R^T R differs from 1 by {:.3g}",
+                                 deviation),
                      "give unit columns at right angles"};
     if (dot(r.column(0), cross(r.column(1), r.column(2))) < 0)
-        return Fault{"the rotation is left-handed: its determinant is -1", "change the sign of one column"};
-    // Newton's iteration for the nearest rotation, R (3 - R^T R) / 2: quadratic, so that two steps take 1e-6 below rounding.
+        return Fault{"the rotation is left-handed: its determinant is -1",
+                     "change the sign of one column"};
+    // Newton's iteration for the nearest rotation, R (3 - R^T R) / 2: quadratic, so that two steps
+    // take 1e-6 below rounding.
     for (int step = 0; step < 2; ++step) {
         Mat3 correction = transposed_times(r, r);
-        for (int i = 0; i < 9; ++i) correction.data[i] = 0.5 * ((i % 4 == 0 ? 3 : 0) - correction.data[i]);
+        for (int i = 0; i < 9; ++i)
+            correction.data[i] = 0.5 * ((i % 4 == 0 ? 3 : 0) - correction.data[i]);
         r = r * correction;
     }
     return std::nullopt;
@@ -126,8 +141,9 @@ std::optional<Fault> make_rotation(Mat3& r) {
 std::optional<Fault> make_unit(std::array<double, 4>& q) {
     double const length = std::sqrt(squared_norm(Quat{q[0], q[1], q[2], q[3]}));
     if (!(std::abs(length - 1) <= printed_digits))
-        return Fault{fmt::format("the quaternion is not a unit quaternion: its norm is {:.9g}", length),
-                     "normalise it: divide its four numbers by their norm"};
+        return Fault{
+            fmt::format("the quaternion is not a unit quaternion: its norm is {:.9g}", length),
+            "normalise it: divide its four numbers by their norm"};
     for (double& x : q) x /= length;
     return std::nullopt;
 }
@@ -138,13 +154,16 @@ std::optional<Fault> make_direction(Vec3& v) {
     for (double& x : v.data) x /= scale;
     double const length = norm(v);
     // A vector that is a unit vector to rounding stays as it was written.
-    v = std::abs(scale * length - 1) <= 4 * std::numeric_limits<double>::epsilon() ? scale * v : (1 / length) * v;
+    v = std::abs(scale * length - 1) <= 4 * std::numeric_limits<double>::epsilon()
+            ? scale * v
+            : (1 / length) * v;
     return std::nullopt;
 }
 
 std::optional<Fault> check_two_axes(Vec3 const& first, Vec3 const& second) {
     if (norm(cross(first, second)) > printed_digits) return std::nullopt;
-    return Fault{"the two axes are parallel", "give two directions, best at right angles, or use a revolute joint"};
+    return Fault{"the two axes are parallel",
+                 "give two directions, best at right angles, or use a revolute joint"};
 }
 
 Sym3 inertia(Node const& node) {

@@ -1,4 +1,5 @@
-// What a rigid body can be: checks of inertia, rotations and directions, each with a tolerance that says where it comes from.
+// What a rigid body can be: checks of inertia, rotations and directions, each with a tolerance that
+// says where it comes from.
 #pragma once
 
 #include <array>
@@ -16,16 +17,19 @@ struct Fault {
     std::string what, remedy;
 };
 
-/// Inertia about the centre of mass: 3x3, or the three numbers of a diagonal. Throws InputError unless it is symmetric, positive definite
-/// and its principal moments satisfy the triangle inequality, each within c eps of the largest entry, c = 64 (what a few products and sums
-/// of rounded numbers lose; eps = 2^-52). A thin rod or a point mass is refused: a leaf needs an invertible inertia.
+/// Inertia about the centre of mass: 3x3, or the three numbers of a diagonal. Throws InputError
+/// unless it is symmetric, positive definite and its principal moments satisfy the triangle
+/// inequality, each within c eps of the largest entry, c = 64 (what a few products and sums of
+/// rounded numbers lose; eps = 2^-52). A thin rod or a point mass is refused: a leaf needs an
+/// invertible inertia.
 Sym3 inertia(Node const&);
 std::optional<Fault> make_inertia(Mat3 const& given, Sym3& inertia);
 
 /// Principal moments in ascending order (cyclic Jacobi).
 std::array<double, 3> principal_moments(Sym3 const&);
 
-/// Rotation matrix: orthonormal within 1e-6 (numbers printed with seven digits) and right-handed; returned orthonormal to rounding.
+/// Rotation matrix: orthonormal within 1e-6 (numbers printed with seven digits) and right-handed;
+/// returned orthonormal to rounding.
 Mat3 rotation(Node const&);
 std::optional<Fault> make_rotation(Mat3&);
 
@@ -37,7 +41,8 @@ std::optional<Fault> make_unit(std::array<double, 4>& quaternion);
 Vec3 direction(Node const&);
 std::optional<Fault> make_direction(Vec3&);
 
-/// Axes of a universal joint, nearer to parallel than numbers printed with seven digits can tell apart.
+/// Axes of a universal joint, nearer to parallel than numbers printed with seven digits can tell
+/// apart.
 std::optional<Fault> check_two_axes(Vec3 const& first, Vec3 const& second);
 
 }  // namespace catena::scene

@@ -18,17 +18,20 @@ struct Opening {
 /// `b`: the first body against the joint frame.
 Opening opening_of(TipJoint const& joint, Pose const& b) {
     Mat3 const turn = to_matrix(b.orientation);
-    double const across = norm(cross(joint.axis, b.origin)), tilt = norm(cross(joint.axis, turn * joint.axis));
+    double const across = norm(cross(joint.axis, b.origin)),
+                 tilt = norm(cross(joint.axis, turn * joint.axis));
     switch (joint.type) {
         case JointType::universal:
-            return {norm(b.origin), std::abs(dot(joint.first_axis, turn * joint.axis) - dot(joint.first_axis, joint.axis))};
+            return {norm(b.origin), std::abs(dot(joint.first_axis, turn * joint.axis) -
+                                             dot(joint.first_axis, joint.axis))};
         case JointType::revolute:
             return {norm(b.origin), tilt};
         case JointType::prismatic:
             return {across, norm(rotation_vector(b.orientation))};
         case JointType::helical: {
             double const a_turn = 2 * std::acos(-1.0) * std::abs(joint.pitch);
-            double const along = dot(joint.axis, b.origin) - joint.pitch * dot(joint.axis, rotation_vector(b.orientation));
+            double const along = dot(joint.axis, b.origin) -
+                                 joint.pitch * dot(joint.axis, rotation_vector(b.orientation));
             return {std::hypot(across, std::remainder(along, a_turn)), tilt};
         }
         case JointType::weld:
@@ -51,10 +54,12 @@ Reach reach_of(BodyArrays const& bodies) {
 }
 
 void check_ring(ChainSpec const& chain, Node const& node) {
-    if (chain.base != Base::free) fail(node, "a ring on a fixed base", "write `base: free`, or join the tip to the ground");
+    if (chain.base != Base::free)
+        fail(node, "a ring on a fixed base", "write `base: free`, or join the tip to the ground");
     std::size_t const least = chain.is_beads() || chain.is_linked() ? 3 : 2;
     if (chain.size() < least)
-        fail(node, fmt::format("{} bodies do not make a ring", chain.size()), fmt::format("give it {} or more", least));
+        fail(node, fmt::format("{} bodies do not make a ring", chain.size()),
+             fmt::format("give it {} or more", least));
 }
 
 void close_ring(ChainSpec& chain, Node const& node, Scene& scene) {
@@ -64,19 +69,22 @@ void close_ring(ChainSpec& chain, Node const& node, Scene& scene) {
     Quat const to_last = conjugate(end.orientation);
     if (!node.find("rotation")) joint.rotation = to_matrix(to_last * first.orientation);
     Vec3 const apart = to_matrix(to_last) * (first.origin - end.origin) - joint.translation;
-    Pose const b{conjugate(to_quaternion(joint.rotation)) * (to_last * first.orientation), transposed_times(joint.rotation, apart)};
+    Pose const b{conjugate(to_quaternion(joint.rotation)) * (to_last * first.orientation),
+                 transposed_times(joint.rotation, apart)};
     Opening const open = opening_of(joint, b);
     double const around = reach.length + norm(joint.translation), length = around > 0 ? around : 1;
     if (open.distance <= closure_tolerance * length && open.angle <= closure_tolerance) return;
     std::string const what = fmt::format(
-        "the ring is open at the start: the first body is {:.3g} and {:.3g} rad from where the last body's "
+        "the ring is open at the start: the first body is {:.3g} and {:.3g} rad from where the "
+        "last body's "
         "joint holds it",
         open.distance, open.angle);
     if (open.distance <= closable * length && open.angle <= closable)
         return scene.note(what + ", which is closed by the least change of the joints");
     fail(node, what,
-         fmt::format("bring the bodies within {:.3g} and {:.3g} rad of it, or correct `translation` and `rotation`", closable * length,
-                     closable));
+         fmt::format("bring the bodies within {:.3g} and {:.3g} rad of it, or correct "
+                     "`translation` and `rotation`",
+                     closable * length, closable));
 }
 
 }  // namespace catena::scene

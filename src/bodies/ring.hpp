@@ -6,7 +6,8 @@
 
 namespace catena::scene {
 
-/// Largest error of a joint that is to be closed at the start, relative to the length it is measured by; of angles.
+/// Largest error of a joint that is to be closed at the start, relative to the length it is
+/// measured by; of angles.
 inline constexpr double closure_tolerance = 1e-9;
 /// The same of a joint that projections close: two Newton steps bring it to rounding.
 inline constexpr double closable = 1e-4;
@@ -20,8 +21,8 @@ Reach reach_of(BodyArrays const& bodies);
 /// InputError for what cannot be a ring, whatever its joints.
 void check_ring(ChainSpec const& chain, Node const& joint);
 
-/// Of rigid bodies. Where no rotation is written the joint frame stands as the first body does. A ring that is open within `closable` is
-/// noted in the scene, InputError beyond.
+/// Of rigid bodies. Where no rotation is written the joint frame stands as the first body does. A
+/// ring that is open within `closable` is noted in the scene, InputError beyond.
 void close_ring(ChainSpec& chain, Node const& joint, Scene& scene);
 
 }  // namespace catena::scene

@@ -21,12 +21,16 @@ Mat3 columns(Eigen::Vector3d const& p, Eigen::Vector3d const& q, Vec3 const& axi
     return m;
 }
 
-/// Columns (p, q, axis), right-handed; the identity where the joint has no axis. Universal: p is normal to both axes.
+/// Columns (p, q, axis), right-handed; the identity where the joint has no axis. Universal: p is
+/// normal to both axes.
 Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
-    if (type == JointType::free || type == JointType::link || type == JointType::spherical || type == JointType::weld)
+    if (type == JointType::free || type == JointType::link || type == JointType::spherical ||
+        type == JointType::weld)
         return Mat3::identity();
     Eigen::Vector3d const z = as_eigen(axis);
-    Eigen::Vector3d const p = type == JointType::universal ? as_eigen(first_axis).cross(z).normalized() : z.unitOrthogonal();
+    Eigen::Vector3d const p = type == JointType::universal
+                                  ? as_eigen(first_axis).cross(z).normalized()
+                                  : z.unitOrthogonal();
     return columns(p, z.cross(p).normalized(), axis);
 }
 
@@ -62,24 +66,28 @@ Vector<double, 6> inverse(Sym3 const& inertia) {
     for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) j(a, b) = inertia(a, b);
     Eigen::Matrix3d const i = j.llt().solve(Eigen::Matrix3d::Identity());
-    return {{i(0, 0), 0.5 * (i(1, 0) + i(0, 1)), i(1, 1), 0.5 * (i(2, 0) + i(0, 2)), 0.5 * (i(2, 1) + i(1, 2)), i(2, 2)}};
+    return {{i(0, 0), 0.5 * (i(1, 0) + i(0, 1)), i(1, 1), 0.5 * (i(2, 0) + i(0, 2)),
+             0.5 * (i(2, 1) + i(1, 2)), i(2, 2)}};
 }
 
 /// Of joint `body` (from 0); the number of bodies stands for the tip's.
 JointType joint_type(ChainSpec const& spec, std::int64_t body) {
-    if (body == static_cast<std::int64_t>(spec.size())) return spec.tip == Tip::jointed ? spec.tip_joint.type : JointType::free;
+    if (body == static_cast<std::int64_t>(spec.size()))
+        return spec.tip == Tip::jointed ? spec.tip_joint.type : JointType::free;
     if (spec.bodies.size() > 0) return spec.bodies.joint[body];
     return body == 0 && spec.base == Base::free ? JointType::free : JointType::link;
 }
 bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
     auto const& driven = spec.bodies.driven;
     auto const found =
-        std::lower_bound(driven.begin(), driven.end(), body, [](DrivenJoint const& d, std::int64_t k) { return d.body < k; });
+        std::lower_bound(driven.begin(), driven.end(), body,
+                         [](DrivenJoint const& d, std::int64_t k) { return d.body < k; });
     return found != driven.end() && found->body == body;
 }
 /// Of joints in joint coordinates with springs or dampers.
 bool has_implicit_joint(ChainSpec const& spec, std::int64_t body) {
-    return body < static_cast<std::int64_t>(spec.bodies.size()) && scene::resists(spec.bodies, static_cast<std::size_t>(body)) &&
+    return body < static_cast<std::int64_t>(spec.bodies.size()) &&
+           scene::resists(spec.bodies, static_cast<std::size_t>(body)) &&
            !is_driven_joint(spec, body);
 }
 /// In a ring the first body's joint is the one that closes it.
@@ -90,7 +98,9 @@ int restricted_at(ChainSpec const& spec, std::int64_t body, bool implicit) {
 }
 
 /// Directions that hold every joint of the chain.
-int smallest_directions(ChainSpec const& spec) { return scene::directions_of(scene::handle_kind(spec)); }
+int smallest_directions(ChainSpec const& spec) {
+    return scene::directions_of(scene::handle_kind(spec));
+}
 
 void fill_bead(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     group.mass.set(k, {{spec.beads.mass[body]}});
@@ -122,7 +132,8 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     if (group.planar) keep_axis_alone(group, b.inertia[body], b.axis[body], k);
     auto const axes = [&](std::int64_t joint) {
         bool const universal = b.joint[joint] == JointType::universal;
-        return joint_axes(b.joint[joint], b.axis[joint], universal ? b.first_axis[joint] : Vec3::zero());
+        return joint_axes(b.joint[joint], b.axis[joint],
+                          universal ? b.first_axis[joint] : Vec3::zero());
     };
     group.r1.set(k, -b.com[body]);
     group.axes1.set(k, kept_axes(axes(body)));
@@ -132,23 +143,29 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     // Of the last body, whose tip nobody holds, as of the one before: alike bodies then are alike.
     std::int64_t const inboard = body + 1 < static_cast<std::int64_t>(b.size()) ? body : body - 1;
     group.r2.set(k, inboard < 0 ? Vec3::zero() : b.translation[inboard + 1] - b.com[inboard]);
-    // As JointsView::meeting() finds them where it looks again: the same bits where they do not move.
-    auto const meeting = [&](std::int64_t joint) { return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint))); };
+    // As JointsView::meeting() finds them where it looks again: the same bits where they do not
+    // move.
+    auto const meeting = [&](std::int64_t joint) {
+        return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint)));
+    };
     group.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
-    if (group.has_universal && b.joint[body] == JointType::universal) group.first_axis.set(k, b.first_axis[body]);
+    if (group.has_universal && b.joint[body] == JointType::universal)
+        group.first_axis.set(k, b.first_axis[body]);
     if (!group.has_screws) return;
     bool const closing = body == 0 && spec.is_ring();  // a ring's first body has no other joint
     if (closing)
         group.screw.set(k, screw_of(spec.tip_joint.type, spec.tip_joint.pitch));
     else
-        group.screw.set(k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
+        group.screw.set(
+            k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
 }
 
 void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     LinkedArrays const& b = spec.linked;
     group.mass.set(k, {{b.mass[body]}});
     group.inverse_mass.set(k, {{1.0 / b.mass[body]}});
-    if (!b.is_bead(static_cast<std::size_t>(body))) fill_inertia(group, b.inertia[body], k);  // a bead: zero
+    if (!b.is_bead(static_cast<std::size_t>(body)))
+        fill_inertia(group, b.inertia[body], k);  // a bead: zero
     group.r1.set(k, b.inboard[body]);
     group.r2.set(k, b.outboard[body]);
     group.length.set(k, {{b.length[body]}});
@@ -156,19 +173,24 @@ void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, st
 
 /// Beads that bodies carry, where any chain of the group has some.
 void fill_carried(ChainGroup& group, Scene const& scene) {
-    auto const carried_of = [&](int chain) -> CarriedBeads const& { return scene.chains[group.chain[chain]].carried(); };
+    auto const carried_of = [&](int chain) -> CarriedBeads const& {
+        return scene.chains[group.chain[chain]].carried();
+    };
     bool any = false;
-    for (std::size_t chain = 0; chain < group.chain.size(); ++chain) any = any || carried_of(static_cast<int>(chain)).size() > 0;
+    for (std::size_t chain = 0; chain < group.chain.size(); ++chain)
+        any = any || carried_of(static_cast<int>(chain)).size() > 0;
     if (!any) return;
     group.carried_in_scene = true;
     group.bead_offset.push_back(0);
     for (dca::Piece const& piece : group.pieces) {
         CarriedBeads const& carried = carried_of(piece.chain);
         for (std::int64_t body = piece.body; body < piece.body + piece.count; ++body) {
-            for (std::int64_t i = carried.size() > 0 ? carried.offset[body] : 0; carried.size() > 0 && i < carried.offset[body + 1]; ++i) {
+            for (std::int64_t i = carried.size() > 0 ? carried.offset[body] : 0;
+                 carried.size() > 0 && i < carried.offset[body + 1]; ++i) {
                 Vec3 const place = carried.position[static_cast<std::size_t>(i)];
                 // Joint chains say it from the origin, their inboard joint.
-                group.bead_place.push_back(group.linked ? place : place + group.r1[piece.local + body - piece.body]);
+                group.bead_place.push_back(
+                    group.linked ? place : place + group.r1[piece.local + body - piece.body]);
             }
             group.bead_offset.push_back(static_cast<std::int64_t>(group.bead_place.size()));
         }
@@ -221,22 +243,28 @@ void fill(ChainGroup& group, Scene const& scene, Executor const& executor) {
         group.joint[k] = joint_type(spec, body);
         group.is_first[k] = body == 0;
         group.is_last[k] = body + 1 == static_cast<std::int64_t>(spec.size());
-        group.beads ? fill_bead(group, spec, body, k) : group.linked ? fill_linked(group, spec, body, k) : fill_body(group, spec, body, k);
+        group.beads    ? fill_bead(group, spec, body, k)
+        : group.linked ? fill_linked(group, spec, body, k)
+                       : fill_body(group, spec, body, k);
     });
     for (dca::Piece const& piece : group.pieces) {
         ChainSpec const& spec = scene.chains[group.chain[piece.chain]];
         for (DrivenJoint const& driven : spec.bodies.driven)
             if (driven.body >= piece.body && driven.body < piece.body + piece.count)
-                group.drives.push_back({piece.local + driven.body - piece.body, driven.course[0], driven.course[1]});
-        if (piece.ends && spec.tip == Tip::jointed) add_tip(group, spec, piece.local + piece.count - 1);
+                group.drives.push_back(
+                    {piece.local + driven.body - piece.body, driven.course[0], driven.course[1]});
+        if (piece.ends && spec.tip == Tip::jointed)
+            add_tip(group, spec, piece.local + piece.count - 1);
     }
 }
 
-/// Also of the joints at the boundaries of shared units, the halo's among them, which are eliminated at the top.
+/// Also of the joints at the boundaries of shared units, the halo's among them, which are
+/// eliminated at the top.
 void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
     dca::Schedule const& s = group.schedule;
     auto const restricted = [&](int chain, std::int64_t body) {
-        return static_cast<std::uint8_t>(std::min(group.directions, restricted_at(scene.chains[group.chain[chain]], body, implicit)));
+        return static_cast<std::uint8_t>(std::min(
+            group.directions, restricted_at(scene.chains[group.chain[chain]], body, implicit)));
     };
     group.restricted_of_joint.assign(static_cast<std::size_t>(s.joints), 0);
     if (implicit) group.implicit_joint.assign(static_cast<std::size_t>(group.size), 0);
@@ -244,7 +272,8 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
         for (std::int64_t i = 0; i < piece.count; ++i) {
             group.restricted_of_joint[piece.local + i] = restricted(piece.chain, piece.body + i);
             if (implicit)
-                group.implicit_joint[piece.local + i] = has_implicit_joint(scene.chains[group.chain[piece.chain]], piece.body + i);
+                group.implicit_joint[piece.local + i] =
+                    has_implicit_joint(scene.chains[group.chain[piece.chain]], piece.body + i);
         }
     if (!group.pieces.empty() && !group.pieces.back().ends) {
         dca::Piece const& last = group.pieces.back();
@@ -270,10 +299,12 @@ void find_rings(ChainGroup& group, int rank) {
     dca::Partition const& p = group.partition;
     for (int chain = 0; chain < p.chains(); ++chain) {
         if (p.tip[chain] != dca::TipTo::first_body) continue;
-        std::int64_t const first = p.first_of_chain[chain], last = p.first_of_chain[chain + 1] - 1, begin = p.first_of_rank[rank];
+        std::int64_t const first = p.first_of_chain[chain], last = p.first_of_chain[chain + 1] - 1,
+                           begin = p.first_of_rank[rank];
         int const owner = p.owner(first), other = p.owner(last);
         if (rank != owner && rank != other) continue;
-        group.rings.push_back({chain, rank == owner ? first - begin : -1, rank == other ? last - begin : -1,
+        group.rings.push_back({chain, rank == owner ? first - begin : -1,
+                               rank == other ? last - begin : -1,
                                owner == other  ? -1
                                : rank == owner ? other
                                                : owner});
@@ -296,15 +327,17 @@ void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     group.smallest_directions = std::max(group.smallest_directions, smallest_directions(spec));
 }
 
-/// Whether it has nothing but hinges beyond its first joint.
-bool is_hinged(ChainSpec const& spec) {
+/// Whether it has nothing but revolute joints beyond its first joint.
+bool is_revolute(ChainSpec const& spec) {
     std::vector<JointType> const& joint = spec.bodies.joint;
     return spec.tip == Tip::free &&
-           std::all_of(joint.begin() + (joint.empty() ? 0 : 1), joint.end(), [](JointType type) { return type == JointType::revolute; });
+           std::all_of(joint.begin() + (joint.empty() ? 0 : 1), joint.end(),
+                       [](JointType type) { return type == JointType::revolute; });
 }
 
-ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes, Handles handles, bool pairwise,
-                      Communicator const& communicator, GroupOptions const& options) {
+ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes,
+                      Handles handles, bool pairwise, Communicator const& communicator,
+                      GroupOptions const& options) {
     ChainGroup group;
     ChainSpec const& any = scene.chains[chains.front()];
     group.beads = any.is_beads();
@@ -316,7 +349,8 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     std::vector<std::int64_t> lengths;
     std::vector<dca::TipTo> tips;
     std::vector<std::int64_t> first_in_scene{0};
-    for (ChainSpec const& spec : scene.chains) first_in_scene.push_back(first_in_scene.back() + static_cast<std::int64_t>(spec.size()));
+    for (ChainSpec const& spec : scene.chains)
+        first_in_scene.push_back(first_in_scene.back() + static_cast<std::int64_t>(spec.size()));
     for (int const chain : chains) {
         ChainSpec const& spec = scene.chains[chain];
         lengths.push_back(static_cast<std::int64_t>(spec.size()));
@@ -329,13 +363,16 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
-    if (!options.shares.empty()) dca::cut_by_shares(group.partition, communicator.size(), options.shares);
+    if (!options.shares.empty())
+        dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
-    group.hinged = !group.beads && !group.linked && group.directions == 5 && !group.has_screws &&
-                   std::all_of(chains.begin(), chains.end(), [&](int chain) { return is_hinged(scene.chains[chain]); });
-    group.tips_in_scene = std::any_of(tips.begin(), tips.end(), [](dca::TipTo t) { return t != dca::TipTo::nothing; });
+    group.revolute = !group.beads && !group.linked && group.directions == 5 && !group.has_screws &&
+                     std::all_of(chains.begin(), chains.end(),
+                                 [&](int chain) { return is_revolute(scene.chains[chain]); });
+    group.tips_in_scene = std::any_of(tips.begin(), tips.end(),
+                                      [](dca::TipTo t) { return t != dca::TipTo::nothing; });
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
     fill(group, scene, options.executor);
@@ -358,34 +395,46 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
 }  // namespace
 
 int ChainGroup::restricted(std::int64_t k) const {
-    return std::min(directions,
-                    is_implicit(k) || (!drives.empty() && is_driven(k)) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
+    return std::min(directions, is_implicit(k) || (!drives.empty() && is_driven(k))
+                                    ? 6
+                                    : restricted_directions(joint[static_cast<std::size_t>(k)]));
 }
 
 LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t last) {
     TipJoint const& tip = spec.tip_joint;
-    LocalTip local{last, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
+    LocalTip local{last, tip, joint_axes(tip.type, tip.axis, tip.first_axis),
+                   screw_of(tip.type, tip.pitch),
                    std::min(group.directions, restricted_directions(tip.type))};
-    if (group.planar) local.axes = joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()), Vec3::zero());
+    if (group.planar)
+        local.axes =
+            joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()),
+                       Vec3::zero());
     return local;
 }
 
-std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,
-                                                     Communicator const& communicator, GroupOptions const& options) {
+std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles,
+                                                     bool pairwise,
+                                                     Communicator const& communicator,
+                                                     GroupOptions const& options) {
     std::map<int, std::vector<int>> chains;
     for (std::size_t i = 0; i < scene.chains.size(); ++i)
-        chains[group_of(scene.chains[i], axes, handles, options.implicit)].push_back(static_cast<int>(i));
-    // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the order.
+        chains[group_of(scene.chains[i], axes, handles, options.implicit)].push_back(
+            static_cast<int>(i));
+    // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the
+    // order.
     bool const together = scene.forces.openmm && communicator.size() > 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (auto& [kind, members] : chains) {
         ChainSpec const& any = scene.chains[members.front()];
         if (together && (any.is_beads() || any.is_linked()))
-            members = compact_order(placed_chains(scene, members), communicator.size(), options.shares);
+            members =
+                compact_order(placed_chains(scene, members), communicator.size(), options.shares);
         bool const of_resisting =
-            options.implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
-        groups.push_back(std::make_unique<ChainGroup>(make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise,
-                                                                 communicator, {of_resisting, options.shares, options.executor})));
+            options.implicit && std::any_of(members.begin(), members.end(),
+                                            [&](int c) { return scene::resists(scene.chains[c]); });
+        groups.push_back(std::make_unique<ChainGroup>(
+            make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise,
+                       communicator, {of_resisting, options.shares, options.executor})));
     }
     return groups;
 }

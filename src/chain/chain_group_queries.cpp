@@ -6,11 +6,14 @@
 
 namespace catena {
 
-char const* ChainGroup::kind() const { return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1)); }
+char const* ChainGroup::kind() const {
+    return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1));
+}
 
 bool ChainGroup::is_driven(std::int64_t k) const {
     auto const found =
-        std::lower_bound(drives.begin(), drives.end(), k, [](LocalDrive const& d, std::int64_t body) { return d.body < body; });
+        std::lower_bound(drives.begin(), drives.end(), k,
+                         [](LocalDrive const& d, std::int64_t body) { return d.body < body; });
     return found != drives.end() && found->body == k;
 }
 
@@ -22,7 +25,8 @@ std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const& tips) {
 
 std::size_t ChainGroup::index_of_piece(std::int64_t k) const {
     auto const after =
-        std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; });
+        std::upper_bound(pieces.begin(), pieces.end(), k,
+                         [](std::int64_t body, dca::Piece const& p) { return body < p.local; });
     return static_cast<std::size_t>(after - pieces.begin()) - 1;
 }
 
@@ -67,7 +71,8 @@ std::vector<LocalUnit> local_units(ChainGroup const& group) {
         dca::Piece const& piece = group.pieces[p];
         dca::ChainTree const& tree = group.partition.trees[piece.chain];
         for (std::int64_t unit = piece.first_unit; unit < piece.first_unit + piece.units; ++unit) {
-            std::int64_t const begin = tree.first_body_of_unit(unit), end = tree.first_body_of_unit(unit + 1);
+            std::int64_t const begin = tree.first_body_of_unit(unit),
+                               end = tree.first_body_of_unit(unit + 1);
             units.push_back({p, piece.local + begin - piece.body, end - begin, unit});
         }
     }

@@ -24,7 +24,8 @@ int longest_side(std::span<PlacedChain const> chains) {
     return static_cast<int>(std::max_element(side.data, side.data + 3) - side.data);
 }
 
-/// Cuts where dca::cut_by_shares() does: a chain goes to the rank within whose share of all bodies its middle lies.
+/// Cuts where dca::cut_by_shares() does: a chain goes to the rank within whose share of all bodies
+/// its middle lies.
 class Halving {
   public:
     Halving(std::span<PlacedChain> chains, int ranks, dca::Shares const& shares)
@@ -35,15 +36,19 @@ class Halving {
   private:
     /// `chains` are those of ranks [first, last), after those of others with `before` bodies.
     void order(std::span<PlacedChain> chains, int first, int last, std::int64_t before) const {
-        std::sort(chains.begin(), chains.end(), [](PlacedChain const& a, PlacedChain const& b) { return a.chain < b.chain; });
+        std::sort(chains.begin(), chains.end(),
+                  [](PlacedChain const& a, PlacedChain const& b) { return a.chain < b.chain; });
         if (last - first == 1 || chains.size() < 2) return;
         int const axis = longest_side(chains), middle = first + (last - first) / 2;
         std::stable_sort(chains.begin(), chains.end(),
-                         [axis](PlacedChain const& a, PlacedChain const& b) { return a.middle[axis] < b.middle[axis]; });
+                         [axis](PlacedChain const& a, PlacedChain const& b) {
+                             return a.middle[axis] < b.middle[axis];
+                         });
         std::size_t cut = 0;
         std::int64_t begin = before;
         std::int64_t const part = begins_[static_cast<std::size_t>(middle)], parts = begins_.back();
-        while (cut < chains.size() && (2 * begin + chains[cut].bodies) * parts < 2 * all_ * part) begin += chains[cut++].bodies;
+        while (cut < chains.size() && (2 * begin + chains[cut].bodies) * parts < 2 * all_ * part)
+            begin += chains[cut++].bodies;
         order(chains.first(cut), first, middle, before);
         order(chains.subspan(cut), middle, last, begin);
     }
@@ -54,7 +59,8 @@ class Halving {
 
 }  // namespace
 
-std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks, dca::Shares const& shares) {
+std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks,
+                               dca::Shares const& shares) {
     Halving const halving(chains, ranks, shares);  // orders them
     std::vector<int> in_order;
     for (PlacedChain const& chain : chains) in_order.push_back(chain.chain);
@@ -65,11 +71,14 @@ std::vector<PlacedChain> placed_chains(Scene const& scene, std::vector<int> cons
     std::vector<PlacedChain> placed;
     for (int const chain : chains) {
         ChainSpec const& spec = scene.chains[static_cast<std::size_t>(chain)];
-        std::vector<Vec3> const& points = spec.is_beads() ? spec.beads.position : spec.linked.position;
+        std::vector<Vec3> const& points =
+            spec.is_beads() ? spec.beads.position : spec.linked.position;
         PlacedChain p{chain, Vec3::zero(), static_cast<std::int64_t>(spec.size())};
-        for (Vec3 const& x : points) p.middle = p.middle + (1.0 / static_cast<double>(points.size())) * x;
+        for (Vec3 const& x : points)
+            p.middle = p.middle + (1.0 / static_cast<double>(points.size())) * x;
         if (scene.box)
-            for (int i = 0; i < 3; ++i) p.middle[i] -= (*scene.box)[i] * std::floor(p.middle[i] / (*scene.box)[i]);
+            for (int i = 0; i < 3; ++i)
+                p.middle[i] -= (*scene.box)[i] * std::floor(p.middle[i] / (*scene.box)[i]);
         placed.push_back(p);
     }
     return placed;

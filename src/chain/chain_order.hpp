@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "math/linear.hpp"
-#include "tree/load_balance.hpp"
 #include "scene/scene.hpp"
+#include "tree/load_balance.hpp"
 
 namespace catena {
 
@@ -17,9 +17,11 @@ struct PlacedChain {
     std::int64_t bodies = 0;
 };
 
-/// The chains rank by rank: space is cut across its longest side into two parts with the bodies of half the ranks each, and so on; a
-/// rank's own chains ascend. `shares`: as dca::cut_by_shares() has them.
-std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks, dca::Shares const& shares = {});
+/// The chains rank by rank: space is cut across its longest side into two parts with the bodies of
+/// half the ranks each, and so on; a rank's own chains ascend. `shares`: as dca::cut_by_shares()
+/// has them.
+std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks,
+                               dca::Shares const& shares = {});
 
 /// Where the chains of a scene stand at its start; for those of points in W.
 std::vector<PlacedChain> placed_chains(Scene const&, std::vector<int> const& chains);

@@ -5,7 +5,9 @@
 
 namespace catena {
 
-SceneWindows::SceneWindows(Communicator const& communicator, std::vector<std::unique_ptr<ChainGroup>> const& groups, std::int64_t bytes)
+SceneWindows::SceneWindows(Communicator const& communicator,
+                           std::vector<std::unique_ptr<ChainGroup>> const& groups,
+                           std::int64_t bytes)
     : communicator_(communicator), bytes_(bytes) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
         dca::Partition const& partition = groups[g]->partition;
@@ -13,17 +15,20 @@ SceneWindows::SceneWindows(Communicator const& communicator, std::vector<std::un
         own_size_.push_back(groups[g]->size);
         int rank = 0;
         for (int chain = 0; chain < partition.chains(); ++chain) {
-            std::int64_t const begin = partition.first_of_chain[chain], end = partition.first_of_chain[chain + 1];
+            std::int64_t const begin = partition.first_of_chain[chain],
+                               end = partition.first_of_chain[chain + 1];
             for (std::int64_t body = begin; body < end;) {
                 while (partition.first_of_rank[rank + 1] <= body) ++rank;
                 std::int64_t const next = std::min(end, partition.first_of_rank[rank + 1]);
                 std::int64_t const first = groups[g]->first_in_scene[chain] + body - begin;
-                parts_.push_back({first, next - body, g, rank, body - partition.first_of_rank[rank]});
+                parts_.push_back(
+                    {first, next - body, g, rank, body - partition.first_of_rank[rank]});
                 body = next;
             }
         }
     }
-    std::sort(parts_.begin(), parts_.end(), [](Part const& a, Part const& b) { return a.first < b.first; });
+    std::sort(parts_.begin(), parts_.end(),
+              [](Part const& a, Part const& b) { return a.first < b.first; });
 }
 
 /// action(part, begin, end): what of a part, counted from its first body, lies in the window.
@@ -34,7 +39,8 @@ void SceneWindows::for_each_part_in(Window const& window, Action const& action) 
                std::min(window.end - parts_[p].first, parts_[p].count));
 }
 
-void SceneWindows::send(Window const& window, int width, std::vector<std::vector<double>> const& own) const {
+void SceneWindows::send(Window const& window, int width,
+                        std::vector<std::vector<double>> const& own) const {
     std::vector<double> packed;
     for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
         if (part.rank != communicator_.rank()) return;
@@ -45,7 +51,8 @@ void SceneWindows::send(Window const& window, int width, std::vector<std::vector
 }
 
 /// One message from each rank that has something of the window, then everything to its place.
-std::vector<double> SceneWindows::receive(Window const& window, int width, std::vector<std::vector<double>> const& own) const {
+std::vector<double> SceneWindows::receive(Window const& window, int width,
+                                          std::vector<std::vector<double>> const& own) const {
     std::vector<std::int64_t> at(static_cast<std::size_t>(communicator_.size()) + 1, 0);
     for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
         if (part.rank != 0) at[static_cast<std::size_t>(part.rank) + 1] += (end - begin) * width;
@@ -55,14 +62,17 @@ std::vector<double> SceneWindows::receive(Window const& window, int width, std::
         values(static_cast<std::size_t>((window.end - window.first) * width));
     for (int rank = 1; rank < communicator_.size(); ++rank) {
         auto const r = static_cast<std::size_t>(rank);
-        std::span<double> const from_rank(received.data() + at[r], static_cast<std::size_t>(at[r + 1] - at[r]));
-        if (!from_rank.empty()) communicator_.exchange({}, -1, std::as_writable_bytes(from_rank), rank);
+        std::span<double> const from_rank(received.data() + at[r],
+                                          static_cast<std::size_t>(at[r + 1] - at[r]));
+        if (!from_rank.empty())
+            communicator_.exchange({}, -1, std::as_writable_bytes(from_rank), rank);
     }
     for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
         std::int64_t const numbers = (end - begin) * width;
         std::int64_t& next = at[static_cast<std::size_t>(part.rank)];
-        double const* const from =
-            part.rank == 0 ? own[part.group].data() + (part.local + begin) * width : received.data() + std::exchange(next, next + numbers);
+        double const* const from = part.rank == 0
+                                       ? own[part.group].data() + (part.local + begin) * width
+                                       : received.data() + std::exchange(next, next + numbers);
         std::copy_n(from, numbers, values.data() + (part.first + begin - window.first) * width);
     });
     return values;
@@ -70,7 +80,8 @@ std::vector<double> SceneWindows::receive(Window const& window, int width, std::
 
 template <class Action>
 void SceneWindows::for_each_window(int width, Action const& action) const {
-    std::int64_t const length = std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
+    std::int64_t const length =
+        std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
     std::size_t first_part = 0;
     for (std::int64_t first = 0; first < bodies_; first += length) {
         while (parts_[first_part].first + parts_[first_part].count <= first) ++first_part;
@@ -78,7 +89,8 @@ void SceneWindows::for_each_window(int width, Action const& action) const {
     }
 }
 
-void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const {
+void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own,
+                        Take const& take) const {
     for_each_window(width, [&](Window const& window) {
         if (communicator_.rank() == 0)
             take(window.first, receive(window, width, own));
@@ -87,12 +99,15 @@ void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own, 
     });
 }
 
-std::vector<std::vector<double>> SceneWindows::hand_out(int width, std::span<double const> in_scene_order) const {
+std::vector<std::vector<double>> SceneWindows::hand_out(
+    int width, std::span<double const> in_scene_order) const {
     std::vector<std::vector<double>> own;
-    for (std::int64_t const size : own_size_) own.emplace_back(static_cast<std::size_t>(size * width));
+    for (std::int64_t const size : own_size_)
+        own.emplace_back(static_cast<std::size_t>(size * width));
     int const rank = communicator_.rank();
     for_each_window(width, [&](Window const& window) {
-        std::vector<std::vector<double>> of_rank(static_cast<std::size_t>(communicator_.size()));  // on rank 0; elsewhere its own
+        std::vector<std::vector<double>> of_rank(
+            static_cast<std::size_t>(communicator_.size()));  // on rank 0; elsewhere its own
         for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
             std::vector<double>& numbers = of_rank[static_cast<std::size_t>(part.rank)];
             if (rank == 0) {
@@ -114,7 +129,8 @@ std::vector<std::vector<double>> SceneWindows::hand_out(int width, std::span<dou
         for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
             if (part.rank != rank) return;
             std::int64_t const numbers = (end - begin) * width;
-            std::copy_n(std::exchange(next, next + numbers), numbers, own[part.group].begin() + (part.local + begin) * width);
+            std::copy_n(std::exchange(next, next + numbers), numbers,
+                        own[part.group].begin() + (part.local + begin) * width);
         });
     });
     return own;
@@ -125,7 +141,8 @@ std::vector<SceneWindows::Part> SceneWindows::own_parts() const {
     std::vector<Part> own;
     for (Part const& part : parts_) {
         if (part.rank != communicator_.rank()) continue;
-        if (!own.empty() && own.back().group == part.group && own.back().first + own.back().count == part.first &&
+        if (!own.empty() && own.back().group == part.group &&
+            own.back().first + own.back().count == part.first &&
             own.back().local + own.back().count == part.local)
             own.back().count += part.count;
         else
@@ -142,7 +159,8 @@ std::vector<SceneWindows::Run> SceneWindows::own_runs() const {
 
 void SceneWindows::pass_own(int width, std::vector<std::vector<double>> const& own,
                             std::function<void(std::vector<Own> const&)> const& take) const {
-    std::int64_t const length = std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
+    std::int64_t const length =
+        std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
     std::vector<std::vector<Own>> rounds;
     std::int64_t room = 0;  // bodies, in the last one
     for (Part const& part : own_parts())
@@ -153,7 +171,8 @@ void SceneWindows::pass_own(int width, std::vector<std::vector<double>> const& o
             }
             std::int64_t const count = std::min(part.count - at, room);
             double const* const values = own[part.group].data() + (part.local + at) * width;
-            rounds.back().push_back({part.first + at, std::span(values, static_cast<std::size_t>(count * width))});
+            rounds.back().push_back(
+                {part.first + at, std::span(values, static_cast<std::size_t>(count * width))});
             at += count;
             room -= count;
         }

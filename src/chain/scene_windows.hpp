@@ -1,4 +1,5 @@
-// Numbers of bodies on their way to rank 0 and back, in the order of the scene, a window of bounded size at a time.
+// Numbers of bodies on their way to rank 0 and back, in the order of the scene, a window of bounded
+// size at a time.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +17,19 @@ class SceneWindows {
     static constexpr std::int64_t usual_bytes = 4 << 20;
 
     /// `groups`: those that hold the scene's bodies between them.
-    SceneWindows(Communicator const&, std::vector<std::unique_ptr<ChainGroup>> const& groups, std::int64_t bytes = usual_bytes);
+    SceneWindows(Communicator const&, std::vector<std::unique_ptr<ChainGroup>> const& groups,
+                 std::int64_t bytes = usual_bytes);
 
     /// Bodies [first, first + values.size() / width) of the scene.
     using Take = std::function<void(std::int64_t first, std::span<double const> values)>;
-    /// `own[g]`: `width` numbers for each of this rank's bodies of group g. Rank 0 takes window after window. What `take` throws leaves the
-    /// other ranks waiting: it is for failures that end the program. Collective.
+    /// `own[g]`: `width` numbers for each of this rank's bodies of group g. Rank 0 takes window
+    /// after window. What `take` throws leaves the other ranks waiting: it is for failures that end
+    /// the program. Collective.
     void pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const;
-    /// The reverse: what rank 0 has of all bodies (others give nothing) to the ranks that they are of, as `own`. Collective.
-    std::vector<std::vector<double>> hand_out(int width, std::span<double const> in_scene_order) const;
+    /// The reverse: what rank 0 has of all bodies (others give nothing) to the ranks that they are
+    /// of, as `own`. Collective.
+    std::vector<std::vector<double>> hand_out(int width,
+                                              std::span<double const> in_scene_order) const;
 
     /// Neighbours in the scene.
     struct Run {
@@ -37,9 +42,10 @@ class SceneWindows {
         std::int64_t first;
         std::span<double const> values;
     };
-    /// `own` without a message, in the order of the scene, in rounds of bounded size: as many on every rank, the last ones empty where a
-    /// rank has less. Collective.
-    void pass_own(int width, std::vector<std::vector<double>> const& own, std::function<void(std::vector<Own> const&)> const& take) const;
+    /// `own` without a message, in the order of the scene, in rounds of bounded size: as many on
+    /// every rank, the last ones empty where a rank has less. Collective.
+    void pass_own(int width, std::vector<std::vector<double>> const& own,
+                  std::function<void(std::vector<Own> const&)> const& take) const;
 
   private:
     static constexpr std::size_t most_runs = 256;  // in a round
@@ -60,7 +66,8 @@ class SceneWindows {
     void for_each_part_in(Window const&, Action const& action) const;
     std::vector<Part> own_parts() const;
     void send(Window const&, int width, std::vector<std::vector<double>> const& own) const;
-    std::vector<double> receive(Window const&, int width, std::vector<std::vector<double>> const& own) const;
+    std::vector<double> receive(Window const&, int width,
+                                std::vector<std::vector<double>> const& own) const;
 
     Communicator const& communicator_;
     std::int64_t bytes_, bodies_ = 0;

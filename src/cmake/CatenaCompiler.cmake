@@ -100,7 +100,7 @@ function(catena_add_simd_sources target)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         list(APPEND flags -Wno-uninitialized -Wno-maybe-uninitialized)  # false alarms, in gcc's own headers too (GCC bug 105593)
         # Segments and joints are numbers to the compiler, not memory, however many they are: stores set the pace.
-        # And what is computed before it is wanted (PRE) waits in memory: 3 % of a chain on hinges.
+        # And what is computed before it is wanted (PRE) waits in memory: 3 % of a chain on revolute joints.
         list(APPEND flags --param=sra-max-scalarization-size-Ospeed=4096 -fno-tree-slp-vectorize -fno-tree-pre)
     endif()
     set_source_files_properties(avx2.cpp TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v3")

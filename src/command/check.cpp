@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "command/commands.hpp"
-#include "plan/describe.hpp"
 #include "console/terminal.hpp"
 #include "integrate/chain_system.hpp"
 #include "observe/observables.hpp"
+#include "plan/describe.hpp"
 #include "start/start_relaxation.hpp"
 #include "start/start_report.hpp"
 
@@ -18,7 +18,8 @@ struct Found {
 };
 
 Found find(Scene const& scene, Communicator const& communicator) {
-    std::optional<RelaxedScene> relaxed = relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
+    std::optional<RelaxedScene> relaxed =
+        relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
     Found found;
     found.start.change = scene.start;
     if (relaxed) found.start.relaxation = relaxed->relaxation;
@@ -34,8 +35,14 @@ Found find(Scene const& scene, Communicator const& communicator) {
 Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
     ForcesOnJoints const found = forces_on_joints(scene);
     Vec3 const& g = scene.forces.gravity;
-    return {{"gravity", {g[0], g[1], g[2]}}, {"springs", found.springs},   {"dampers", found.dampers}, {"torques", found.torques},
-            {"motions", found.motions},      {"wrenches", found.wrenches}, {"drag", found.drag},       {"openmm", openmm}};
+    return {{"gravity", {g[0], g[1], g[2]}},
+            {"springs", found.springs},
+            {"dampers", found.dampers},
+            {"torques", found.torques},
+            {"motions", found.motions},
+            {"wrenches", found.wrenches},
+            {"drag", found.drag},
+            {"openmm", openmm}};
 }
 
 Json dynamics_json(Scene const& scene, std::optional<StepLimit> const& limit) {
@@ -60,7 +67,8 @@ Json handles_json(Scene const& scene) {
     return handles;
 }
 
-Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks, std::optional<StepLimit> const& limit) {
+Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks,
+             std::optional<StepLimit> const& limit) {
     std::vector<std::string> const& openmm = found.openmm;
     Directions const d = directions_of(scene);
     Text text;
@@ -76,7 +84,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.heading("solver");
     text.entry("backend", name_of(scene.solver.backend));
     if (d.beads > 0) text.entry("blocks of links", block_text(true, d.beads, scene.solver.handles));
-    if (d.bodies > 0) text.entry("blocks of bodies", block_text(false, d.bodies, scene.solver.handles));
+    if (d.bodies > 0)
+        text.entry("blocks of bodies", block_text(false, d.bodies, scene.solver.handles));
     text.heading("forces");
     text.entry("gravity", vector_text(scene.forces.gravity));
     text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
@@ -85,9 +94,11 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("integrator", dynamics_text(scene));
     if (limit) text.entry("longest stable step", catena::text_of(*limit, scene));
     text.heading("memory");
-    text.entry(ranks == 1 ? "estimate" : "estimate, each rank",
-               fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene),
-                           bytes_text(memory.state), bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
+    text.entry(
+        ranks == 1 ? "estimate" : "estimate, each rank",
+        fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()),
+                    bytes_text(memory.scene), bytes_text(memory.state), bytes_text(memory.solver),
+                    openmm.empty() ? "" : "; OpenMM not counted"));
     for (std::string const& note : notes_on(scene, limit)) text.note(note);
     text.heading("The scene is valid.");
     return text;
@@ -103,23 +114,25 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator, bool j
     Outcome outcome;
     outcome.text = text_of(scene, found, memory, communicator.size(), limit).str();
     if (!json) return outcome;
-    outcome.json = {{"scene", scene.file},
-                    {"title", scene.title},
-                    {"units", scene.si ? "si" : "md"},
-                    {"chains", chains_json(scene)},
-                    {"bodies", scene.bodies()},
-                    {"dof", degrees_of_freedom(scene)},
-                    {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},
-                    {"backend", name_of(scene.solver.backend)},
-                    {"handles", handles_json(scene)},
-                    {"start", json_of(found.start)},
-                    {"forces", forces_json(scene, found.openmm)},
-                    {"dynamics", dynamics_json(scene, limit)},
-                    {"memory_bytes_per_rank", {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
-                    {"scene_hash", scene.hash},
-                    {"ranks", communicator.size()},
-                    {"notes", notes_on(scene, limit)},
-                    {"valid", true}};
+    outcome.json = {
+        {"scene", scene.file},
+        {"title", scene.title},
+        {"units", scene.si ? "si" : "md"},
+        {"chains", chains_json(scene)},
+        {"bodies", scene.bodies()},
+        {"dof", degrees_of_freedom(scene)},
+        {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},
+        {"backend", name_of(scene.solver.backend)},
+        {"handles", handles_json(scene)},
+        {"start", json_of(found.start)},
+        {"forces", forces_json(scene, found.openmm)},
+        {"dynamics", dynamics_json(scene, limit)},
+        {"memory_bytes_per_rank",
+         {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
+        {"scene_hash", scene.hash},
+        {"ranks", communicator.size()},
+        {"notes", notes_on(scene, limit)},
+        {"valid", true}};
     return outcome;
 }
 

@@ -5,23 +5,25 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "report/figures.hpp"
 #include "bench/sampling_options.hpp"
 #include "console/option_values.hpp"
-#include "report/version.hpp"
 #include "error.hpp"
+#include "report/figures.hpp"
+#include "report/version.hpp"
 
 namespace catena::command {
 namespace {
 
 constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "error", "off"};
 constexpr std::string_view handle_names[] = {"projected", "full", "articulated"};
-constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
-                                            "prismatic", "helical", "weld",      "mixed"};
+constexpr std::string_view joint_names[] = {"link",      "planar",   "spherical",
+                                            "universal", "revolute", "prismatic",
+                                            "helical",   "weld",     "mixed"};
 constexpr std::string_view load_names[] = {"none", "torques", "wrenches"};
 constexpr std::string_view suite_names[] = {"stability"};
-constexpr std::string_view bench_names[] = {"list",     "evaluation", "solve",   "peers",   "openmm",
-                                            "sampling", "overlap",    "figures", "network", "plan"};
+constexpr std::string_view bench_names[] = {"list",    "evaluation", "solve",   "peers",
+                                            "openmm",  "sampling",   "overlap", "figures",
+                                            "network", "plan"};
 
 /// For later versions.
 constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
@@ -29,58 +31,79 @@ constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, loads, backends, figures, ranks, hosts, network,
-        latency, bandwidth, suite, cases;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, loads,
+        backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases;
     std::vector<std::string> scenes;
-    SamplingWords sampling;
-    bool quick = false, overwrite = false, branch = false, explain = false, measure = false, calibrate = false, alike = false;
+    SamplingOptionTexts sampling;
+    bool quick = false, overwrite = false, branch = false, explain = false, measure = false,
+         calibrate = false, alike = false;
 };
 
 void add_common(CLI::App& command, Words& words) {
     CommonOptions& c = words.common;
-    command.add_option("--set", c.set, "override a key of the scene, as in --set chains[0].count=10 (may be repeated)")
+    command
+        .add_option("--set", c.set,
+                    "override a key of the scene, as in --set chains[0].count=10 (may be repeated)")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
     command
         .add_option("--handles", c.handles,
-                    "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3) | articulated (open chains on "
+                    "directions that the solver's blocks carry: projected (default) | full (6x6, "
+                    "beads 3x3) | articulated (open chains on "
                     "joints: keeps the digits of badly conditioned ones)")
         ->type_name("KIND");
     command
-        .add_option("--threads", c.threads, "threads a rank of openmp, and of what GPUs leave to the host (0: its cores over its ranks)")
+        .add_option("--threads", c.threads,
+                    "threads a rank of openmp, and of what GPUs leave to the host (0: its cores "
+                    "over its ranks)")
         ->type_name("N");
     command
         .add_option("--simd", c.simd,
-                    "runs of bodies side by side in the processor's vectors: auto (default: the widest) | avx512 | avx2 | off")
+                    "runs of bodies side by side in the processor's vectors: auto (default: the "
+                    "widest) | avx512 | avx2 | off")
         ->type_name("LEVEL");
     command
-        .add_option(
-            "--gpu-levels", c.gpu_levels,
-            "of cuda-levels: how many of the tree's lowest levels the GPU assembles and disassembles, 0 to all: K, or UP,DOWN; from 1 "
-            "on bodies too (auto: as predicted)")
+        .add_option("--gpu-levels", c.gpu_levels,
+                    "of cuda-levels: how many of the tree's lowest levels the GPU assembles and "
+                    "disassembles, 0 to all: K, or UP,DOWN; from 1 "
+                    "on bodies too (auto: as predicted)")
         ->type_name("UP[,DOWN]");
-    command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")
+    command
+        .add_option("--json", c.json,
+                    "also write what is printed as JSON; - writes it to standard output in the "
+                    "place of the text")
         ->type_name("FILE");
     command.add_flag("--quiet", c.quiet, "print nothing but errors");
-    command.add_option("--log-level", c.log_level, "log lines on standard error: trace | debug | info | warn (default) | error | off")
+    command
+        .add_option(
+            "--log-level", c.log_level,
+            "log lines on standard error: trace | debug | info | warn (default) | error | off")
         ->type_name("LEVEL");
 }
 void add_backend(CLI::App& command, Words& words) {
     command
         .add_option("--backend", words.common.backend,
-                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (GPU and CPU together, see --gpu-levels)")
+                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (GPU and CPU "
+                    "together, see --gpu-levels)")
         ->type_name("NAME");
 }
-void add_scene(CLI::App& command, Words& words) { command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name(""); }
+void add_scene(CLI::App& command, Words& words) {
+    command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name("");
+}
 void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
-    command.add_option("--repeat", words.repeat, std::string("timed evaluations of each kind (default ") + otherwise + ")")->type_name("R");
+    command
+        .add_option("--repeat", words.repeat,
+                    std::string("timed evaluations of each kind (default ") + otherwise + ")")
+        ->type_name("R");
 }
 
 void add_refine(CLI::App& command, Words& words) {
     command
         .add_option("--refine", words.common.refine,
-                    "steps of iterative refinement of solutions in joint coordinates (default: the scene's solver.refine, 0): 1 or 2 bring "
-                    "back what nearly parallel revolute joints, light bodies between heavy ones and thin bodies lose")
+                    "steps of iterative refinement of solutions in joint coordinates (default: the "
+                    "scene's solver.refine, 0): 1 or 2 bring "
+                    "back what nearly parallel revolute joints, light bodies between heavy ones "
+                    "and thin bodies lose")
         ->type_name("K");
 }
 
@@ -88,78 +111,118 @@ void add_commands(CLI::App& app, Words& words) {
     CLI::App* command = app.add_subcommand("check", "validate a scene and print what it is");
     add_scene(*command, words);
     command->footer(
-        "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
+        "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml "
+        "--set chains[0].count=10 --json -");
 
-    command = app.add_subcommand("plan", "print what will run, what an evaluation takes, what is left out, and why");
+    command = app.add_subcommand(
+        "plan", "print what will run, what an evaluation takes, what is left out, and why");
     add_scene(*command, words);
     command->add_flag("--explain", words.explain, "also measure what is saved by what is left out");
-    command->add_flag("--measure", words.measure, "also measure an evaluation, beside what was predicted");
+    command->add_flag("--measure", words.measure,
+                      "also measure an evaluation, beside what was predicted");
     command->add_flag("--calibrate", words.calibrate,
-                      "measure every kind of chain on this machine, for all later predictions (a scene may be left out)");
-    command->add_option("--ranks", words.ranks, "predict the time of a step, computing and messages, on up to so many ranks")
+                      "measure every kind of chain on this machine, for all later predictions (a "
+                      "scene may be left out)");
+    command
+        ->add_option("--ranks", words.ranks,
+                     "predict the time of a step, computing and messages, on up to so many ranks")
         ->type_name("P");
-    command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
-    command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
+    command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")
+        ->type_name("H");
+    command
+        ->add_option("--network", words.network,
+                     "what mpirun ... catena bench network --json FILE measured, for --ranks")
         ->type_name("FILE");
-    command->add_option("--latency", words.latency, "latency of a message between hosts, instead of the file's (s, ms, us, ns)")
+    command
+        ->add_option("--latency", words.latency,
+                     "latency of a message between hosts, instead of the file's (s, ms, us, ns)")
         ->type_name("T");
-    command->add_option("--bandwidth", words.bandwidth, "bandwidth between hosts, instead of the file's (B/s to GB/s, Mbit/s, Gbit/s)")
+    command
+        ->add_option("--bandwidth", words.bandwidth,
+                     "bandwidth between hosts, instead of the file's (B/s to GB/s, Mbit/s, Gbit/s)")
         ->type_name("B");
     command->footer(
-        "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n"
+        "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan "
+        "--calibrate\n"
         "  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
-        "  catena plan inputs/spherical-chain.yaml --ranks 4096 --hosts 512 --network network.json");
+        "  catena plan inputs/spherical-chain.yaml --ranks 4096 --hosts 512 --network "
+        "network.json");
 
-    command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
+    command = app.add_subcommand(
+        "solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
     add_repeat(*command, words, "11");
     add_refine(*command, words);
     command
-        ->add_option("--accelerations", words.accelerations,
-                     "write accelerations and forces of joints and tips, of any number of bodies (HDF5)")
+        ->add_option(
+            "--accelerations", words.accelerations,
+            "write accelerations and forces of joints and tips, of any number of bodies (HDF5)")
         ->type_name("FILE");
     command->footer(
         "Examples:\n  catena solve inputs/arm.yaml --json arm.json\n"
-        "  catena solve inputs/random-revolute.yaml --set chains[0].generator.random.bodies=100000 --backend openmp --accelerations a.h5");
+        "  catena solve inputs/random-revolute.yaml --set chains[0].generator.random.bodies=100000 "
+        "--backend openmp --accelerations a.h5");
 
     command = app.add_subcommand("run", "simulate and write a folder of results");
     add_scene(*command, words);
-    command->add_option("--steps", words.steps, "last step, counted from the scene's start, in the place of dynamics.steps")
+    command
+        ->add_option("--steps", words.steps,
+                     "last step, counted from the scene's start, in the place of dynamics.steps")
         ->type_name("N");
-    command->add_option("--output", words.output, "folder (default: the scene's name with -run; with --restart the checkpoint's)")
+    command
+        ->add_option(
+            "--output", words.output,
+            "folder (default: the scene's name with -run; with --restart the checkpoint's)")
         ->type_name("DIR");
     command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
-    command->add_flag(
-        "--branch", words.branch,
-        "with --restart and --output: start a new run from the checkpoint, with another temperature, friction, seed, step, box, forces "
-        "or integrator (in the same coordinates); without --steps for dynamics.steps further steps");
+    command->add_flag("--branch", words.branch,
+                      "with --restart and --output: start a new run from the checkpoint, with "
+                      "another temperature, friction, seed, step, box, forces "
+                      "or integrator (in the same coordinates); without --steps for dynamics.steps "
+                      "further steps");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     add_refine(*command, words);
     command->footer(
         "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
         "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
-        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --branch --set dynamics.temperature=310 --output warm\n"
-        "SIGINT, SIGTERM, SIGUSR1, SIGHUP or SIGXCPU on any rank: all finish their step, write a checkpoint and end with status 3.");
+        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --branch --set "
+        "dynamics.temperature=310 --output warm\n"
+        "SIGINT, SIGTERM, SIGUSR1, SIGHUP or SIGXCPU on any rank: all finish their step, write a "
+        "checkpoint and end with status 3.");
 
-    command = app.add_subcommand("report", "error against run time of solver, integrators and forces, as page, tables, JSON and pictures");
+    command = app.add_subcommand("report",
+                                 "error against run time of solver, integrators and forces, as "
+                                 "page, tables, JSON and pictures");
     command
         ->add_option("SCENE", words.scenes,
-                     "scene files (default: generated chains); integrators are compared where a scene has `dynamics` without OpenMM, "
+                     "scene files (default: generated chains); integrators are compared where a "
+                     "scene has `dynamics` without OpenMM, "
                      "forces where it has OpenMM")
         ->type_name("");
     command
         ->add_option("--suite", words.suite,
-                     "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth of roundings, errors, bounds, verdicts; "
-                     "without --quick beside Simbody and Pinocchio where they are here (tests/bench/peers/README.md)")
+                     "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth "
+                     "of roundings, errors, bounds, verdicts; "
+                     "without --quick beside Simbody and Pinocchio where they are here "
+                     "(tests/bench/peers/README.md)")
         ->type_name("NAME");
-    command->add_option("--sizes", words.sizes, "of the suite: coils and dills of so many bodies alone")->type_name("N,...");
-    command->add_option("--cases", words.cases, "of the suite: those whose family's name holds one of these")->type_name("WORD,...");
+    command
+        ->add_option("--sizes", words.sizes,
+                     "of the suite: coils and dills of so many bodies alone")
+        ->type_name("N,...");
+    command
+        ->add_option("--cases", words.cases,
+                     "of the suite: those whose family's name holds one of these")
+        ->type_name("WORD,...");
     command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
-    command->add_option("--output", words.output, "folder for report.html, report.json and pictures (default catena-report)")
+    command
+        ->add_option("--output", words.output,
+                     "folder for report.html, report.json and pictures (default catena-report)")
         ->type_name("DIR");
     add_repeat(*command, words, "11, with --quick 3");
     command->footer(
-        "Examples:\n  catena report --quick\n  catena report inputs/arm.yaml inputs/random-link.yaml --repeat 51 --output errors\n"
+        "Examples:\n  catena report --quick\n  catena report inputs/arm.yaml "
+        "inputs/random-link.yaml --repeat 51 --output errors\n"
         "  catena report --suite stability --output stability");
 
     command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
@@ -167,36 +230,50 @@ void add_commands(CLI::App& app, Words& words) {
     add_sampling(*command, words.sampling);
     command
         ->add_option("--sizes", words.sizes,
-                     "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out above 1e6; peers: 100,200,500,1e3,1e4,1e5; "
+                     "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out "
+                     "above 1e6; peers: 100,200,500,1e3,1e4,1e5; "
                      "openmm: 140,9940,99960,1000020, "
-                     "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to 2048; plan: 16,32 to 1048576)")
+                     "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to "
+                     "2048; plan: 16,32 to 1048576)")
         ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,
-                     "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute; "
+                     "link, planar, spherical, universal, revolute, prismatic, helical, weld, "
+                     "mixed (default: link,spherical,revolute; "
                      "evaluation: link,spherical; peers takes these and planar)")
         ->type_name("J,...");
     command
         ->add_option("--loads", words.loads,
-                     "of solve, evaluation and peers, beside gravity: none | torques of joints | wrenches (default), in ground axes on "
+                     "of solve, evaluation and peers, beside gravity: none | torques of joints | "
+                     "wrenches (default), in ground axes on "
                      "every body, too")
         ->type_name("LOADS");
     command->add_flag("--alike", words.alike,
-                      "of solve and evaluation: bodies that have the same mass, inertia and joints (default: random ones)");
+                      "of solve and evaluation: bodies that have the same mass, inertia and joints "
+                      "(default: random ones)");
     add_repeat(*command, words, "21");
     command
         ->add_option("--backend", words.backends,
-                     "serial, segments, openmp, cuda, cuda-levels (default: those of the processor in this build; openmm, overlap and "
+                     "serial, segments, openmp, cuda, cuda-levels (default: those of the processor "
+                     "in this build; openmm, overlap and "
                      "sampling take one, cuda where there is a GPU)")
         ->type_name("B,...");
-    command->add_option("--figure", words.figures, "of figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
+    command
+        ->add_option(
+            "--figure", words.figures,
+            "of figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
         ->type_name("F,...");
-    command->add_option("--output", words.output, "folder for figures.json and pictures (default catena-figures); of overlap for pictures")
+    command
+        ->add_option("--output", words.output,
+                     "folder for figures.json and pictures (default catena-figures); of overlap "
+                     "for pictures")
         ->type_name("DIR");
     command->footer(
-        "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json\n"
+        "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link "
+        "--backend segments,openmp --json bench.json\n"
         "  catena bench figures --figure 2.5,2.6 --output figures\n"
-        "  catena bench sampling --methods rigid,bonds --steps 0.01,0.02,0.04 --duration 2000 --json sampling.json");
+        "  catena bench sampling --methods rigid,bonds --steps 0.01,0.02,0.04 --duration 2000 "
+        "--json sampling.json");
 
     for (CLI::App* each : app.get_subcommands({})) {
         if (each->get_name() != "bench") add_backend(*each, words);
@@ -204,12 +281,15 @@ void add_commands(CLI::App& app, Words& words) {
     }
 }
 
-std::vector<std::string_view> views(std::vector<std::string> const& texts) { return {texts.begin(), texts.end()}; }
+std::vector<std::string_view> views(std::vector<std::string> const& texts) {
+    return {texts.begin(), texts.end()};
+}
 
 [[noreturn]] void refuse_command(CLI::App const& app, std::string const& word) {
     std::vector<std::string> names;
     for (CLI::App const* command : app.get_subcommands({})) names.push_back(command->get_name());
-    throw InputError("`" + word + "` is not a command", "command line", remedy_for(word, views(names)));
+    throw InputError("`" + word + "` is not a command", "command line",
+                     remedy_for(word, views(names)));
 }
 
 [[noreturn]] void refuse_option(CLI::App const& command, std::string const& word) {
@@ -217,26 +297,34 @@ std::vector<std::string_view> views(std::vector<std::string> const& texts) { ret
     std::vector<std::string> known;
     for (CLI::Option const* each : command.get_options())
         for (std::string const& name : each->get_lnames()) known.push_back("--" + name);
-    if (option == later_option) throw not_in_this_version(option + " of catena " + command.get_name());
-    std::string const see = "catena " + (command.get_parent() ? command.get_name() + " " : "") + "--help lists the options";
+    if (option == later_option)
+        throw not_in_this_version(option + " of catena " + command.get_name());
+    std::string const see = "catena " + (command.get_parent() ? command.get_name() + " " : "") +
+                            "--help lists the options";
     std::string const remedy = remedy_for(option, views(known));
-    throw InputError("`" + option + "` is not an option", "command line", remedy.starts_with("did") ? remedy : see);
+    throw InputError("`" + option + "` is not an option", "command line",
+                     remedy.starts_with("did") ? remedy : see);
 }
 
 /// What CLI11 could not place.
 void refuse_extras(CLI::App const& app, CLI::App const* command) {
     std::vector<std::string> const left = app.remaining(true);
     if (left.empty()) return;
-    auto const option = std::find_if(left.begin(), left.end(), [](std::string const& word) { return word.size() > 1 && word[0] == '-'; });
+    auto const option = std::find_if(left.begin(), left.end(), [](std::string const& word) {
+        return word.size() > 1 && word[0] == '-';
+    });
     if (option != left.end()) refuse_option(command ? *command : app, *option);
     if (!command) refuse_command(app, left.front());
-    throw InputError("`" + left.front() + "` is one argument too many", "command line", "see catena " + command->get_name() + " --help");
+    throw InputError("`" + left.front() + "` is one argument too many", "command line",
+                     "see catena " + command->get_name() + " --help");
 }
 
 void refuse_empty(CLI::App const& command) {
     for (CLI::Option const* option : command.get_options())
         for (std::string const& value : option->results())
-            if (value.empty()) throw InputError(option->get_name() + " is empty", "command line", "give a value, or leave it out");
+            if (value.empty())
+                throw InputError(option->get_name() + " is empty", "command line",
+                                 "give a value, or leave it out");
 }
 
 std::string one_line(std::string text) {
@@ -248,19 +336,23 @@ std::string one_line(std::string text) {
 CommonOptions checked(CommonOptions c) {
     if (!c.backend.empty()) backend_named("--backend", c.backend);
     if (!c.handles.empty()) known_value("--handles", c.handles, handle_names);
-    if (!c.threads.empty()) c.threads = std::to_string(whole_number("--threads", c.threads, 0, 4096));
+    if (!c.threads.empty())
+        c.threads = std::to_string(whole_number("--threads", c.threads, 0, 4096));
     if (!c.refine.empty()) c.refine = std::to_string(whole_number("--refine", c.refine, 0, 10));
     known_value("--log-level", c.log_level, log_levels);
     return c;
 }
 
 int repeat_of(Words const& words, int otherwise) {
-    return words.repeat.empty() ? otherwise : static_cast<int>(whole_number("--repeat", words.repeat, 1, 1000000));
+    return words.repeat.empty()
+               ? otherwise
+               : static_cast<int>(whole_number("--repeat", words.repeat, 1, 1000000));
 }
 
 template <class R>
 R scene_request(Words const& words, std::string const& command) {
-    if (words.scene.empty()) throw InputError("no scene is named", "command line", "write catena " + command + " SCENE");
+    if (words.scene.empty())
+        throw InputError("no scene is named", "command line", "write catena " + command + " SCENE");
     R request;
     static_cast<CommonOptions&>(request) = checked(words.common);
     request.scene = words.scene;
@@ -270,9 +362,11 @@ R scene_request(Words const& words, std::string const& command) {
 
 void read_link(Words const& words, PlanRequest& request) {
     static constexpr Unit seconds[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
-    static constexpr Unit bytes[] = {{"B/s", 1}, {"kB/s", 1e3}, {"MB/s", 1e6}, {"GB/s", 1e9}, {"Mbit/s", 1.25e5}, {"Gbit/s", 1.25e8}};
+    static constexpr Unit bytes[] = {{"B/s", 1},    {"kB/s", 1e3},      {"MB/s", 1e6},
+                                     {"GB/s", 1e9}, {"Mbit/s", 1.25e5}, {"Gbit/s", 1.25e8}};
     if (words.latency.empty() != words.bandwidth.empty())
-        throw InputError("--latency and --bandwidth go together", "command line", "give both, as in --latency 1.5us --bandwidth 12.5GB/s");
+        throw InputError("--latency and --bandwidth go together", "command line",
+                         "give both, as in --latency 1.5us --bandwidth 12.5GB/s");
     if (words.latency.empty()) return;
     request.latency = number_with_unit("--latency", words.latency, seconds);
     request.seconds_a_byte = 1 / number_with_unit("--bandwidth", words.bandwidth, bytes);
@@ -292,12 +386,14 @@ PlanRequest plan_request(Words const& words) {
     request.network = words.network;
     read_link(words, request);
     if (request.ranks == 0 && (!words.hosts.empty() || !words.network.empty() || request.latency))
-        throw InputError("--hosts, --network or --latency without --ranks", "command line", "say for how many ranks: --ranks P");
+        throw InputError("--hosts, --network or --latency without --ranks", "command line",
+                         "say for how many ranks: --ranks P");
     if (request.ranks > 0 && request.hosts > request.ranks)
         throw InputError("more hosts than ranks", "command line", "give each host a rank at least");
     if (request.ranks > 0 && request.network.empty() && !request.latency)
         throw InputError("--ranks without --network", "command line",
-                         "measure it by mpirun -np 2 catena bench network --json network.json, then add --network network.json; or give "
+                         "measure it by mpirun -np 2 catena bench network --json network.json, "
+                         "then add --network network.json; or give "
                          "--latency and --bandwidth");
     return request;
 }
@@ -310,10 +406,12 @@ RunRequest run_request(Words const& words) {
     request.overwrite = words.overwrite;
     request.branch = words.branch;
     if (request.branch && (request.restart.empty() || request.output.empty()))
-        throw InputError("--branch without --restart or --output", "command line",
-                         "name the checkpoint with --restart and a folder of the branch's own with --output");
+        throw InputError(
+            "--branch without --restart or --output", "command line",
+            "name the checkpoint with --restart and a folder of the branch's own with --output");
     if (request.overwrite && !request.restart.empty())
-        throw InputError("both --overwrite and --restart", "command line", "a restart goes on with what is there: leave --overwrite out");
+        throw InputError("both --overwrite and --restart", "command line",
+                         "a restart goes on with what is there: leave --overwrite out");
     return request;
 }
 
@@ -325,13 +423,15 @@ void refuse_with_suite(Words const& words) {
                                         {"--gpu-levels", !words.common.gpu_levels.empty()}})
         if (given)
             throw InputError("both --suite and " + std::string(option), "command line",
-                             "the suite has chains of its own, and its errors hang neither on threads nor on repetition: leave it out");
+                             "the suite has chains of its own, and its errors hang neither on "
+                             "threads nor on repetition: leave it out");
 }
 
 std::vector<std::int64_t> sizes_of(Words const& words) {
     std::vector<std::int64_t> sizes;
     if (!words.sizes.empty())
-        for (std::string const& size : comma_list("--sizes", words.sizes)) sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
+        for (std::string const& size : comma_list("--sizes", words.sizes))
+            sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
     return sizes;
 }
 
@@ -342,11 +442,14 @@ ReportRequest report_request(Words const& words) {
     request.quick = words.quick;
     if (!words.suite.empty()) request.suite = known_value("--suite", words.suite, suite_names);
     if (!request.suite.empty() && !request.scenes.empty())
-        throw InputError("both --suite and a scene", "command line", "the suite has chains of its own: leave the scene out");
+        throw InputError("both --suite and a scene", "command line",
+                         "the suite has chains of its own: leave the scene out");
     if (!request.suite.empty()) refuse_with_suite(words);
-    for (auto const& [option, given] : {std::pair{"--sizes", words.sizes}, {"--cases", words.cases}})
+    for (auto const& [option, given] :
+         {std::pair{"--sizes", words.sizes}, {"--cases", words.cases}})
         if (request.suite.empty() && !given.empty())
-            throw InputError(option + std::string(" without --suite"), "command line", "write --suite stability, or leave it out");
+            throw InputError(option + std::string(" without --suite"), "command line",
+                             "write --suite stability, or leave it out");
     if (!words.cases.empty()) request.cases = comma_list("--cases", words.cases);
     request.sizes = sizes_of(words);
     if (!words.output.empty()) request.output = words.output;
@@ -357,24 +460,29 @@ ReportRequest report_request(Words const& words) {
 BenchRequest bench_request(Words const& words) {
     BenchRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
-    if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list");
+    if (words.name.empty())
+        throw InputError("no benchmark is named", "command line", "write catena bench list");
     if (words.name == later_bench) throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
     using Given = std::pair<char const*, std::string const&>;
     std::string const alike = words.alike ? "yes" : "";
     for (auto const& [option, given] :
-         {Given{"--figure", words.figures}, Given{"--output", words.output}, Given{"--joints", words.joints}, Given{"--sizes", words.sizes},
+         {Given{"--figure", words.figures}, Given{"--output", words.output},
+          Given{"--joints", words.joints}, Given{"--sizes", words.sizes},
           Given{"--repeat", words.repeat}, Given{"--loads", words.loads}, Given{"--alike", alike}})
         if (!given.empty() && !bench_takes(request.name, option))
-            throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name), "command line", "leave it out");
+            throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name),
+                             "command line", "leave it out");
     request.sizes = bench_sizes(request.name);
     if (request.name == "evaluation") request.joints = {"link", "spherical"};
-    if (request.name == "plan") request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
+    if (request.name == "plan")
+        request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
     if (!words.sizes.empty()) request.sizes = sizes_of(words);
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
     for (std::string const& joint : request.joints) {
         known_value("--joints", joint, joint_names);
-        if (words.alike && joint == "mixed") throw InputError("mixed joints are not alike", "--alike", "leave it out, or mixed");
+        if (words.alike && joint == "mixed")
+            throw InputError("mixed joints are not alike", "--alike", "leave it out, or mixed");
     }
     if (!words.loads.empty()) request.loads = words.loads;
     request.alike = words.alike;
@@ -414,12 +522,15 @@ Answer answer(std::string text) {
 Request parse_command_line(int argc, char const* const* argv) {
     CLI::App app{"Catena: motion of very long articulated chains by divide and conquer.", "catena"};
     Words words;
-    for (int i = 0; i < argc; ++i) words.common.command_line += (i == 0 ? "" : " ") + std::string(argv[i]);
+    for (int i = 0; i < argc; ++i)
+        words.common.command_line += (i == 0 ? "" : " ") + std::string(argv[i]);
     bool version_asked = false;
     app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
     app.footer(
-        "catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation "
-        "failed or is INVALID; 2 the input is wrong; 3 a run was stopped by a signal and can go on.");
+        "catena COMMAND --help explains a command. mpirun -np P catena ... works for every "
+        "one.\nExit status: 0 good; 1 the computation "
+        "failed or is INVALID; 2 the input is wrong; 3 a run was stopped by a signal and can go "
+        "on.");
     add_commands(app, words);
     app.require_subcommand(0, 1);  // so that "catena bench solve" is no second command
     app.allow_extras();
@@ -435,7 +546,8 @@ Request parse_command_line(int argc, char const* const* argv) {
     refuse_extras(app, chosen.empty() ? nullptr : chosen.front());
     if (!chosen.empty()) refuse_empty(*chosen.front());
     if (version_asked) return answer(version_text());
-    if (chosen.empty()) throw InputError("no command is named", "command line", "see catena --help");
+    if (chosen.empty())
+        throw InputError("no command is named", "command line", "see catena --help");
     return request_of(chosen.front()->get_name(), words);
 }
 

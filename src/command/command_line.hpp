@@ -5,7 +5,8 @@
 
 namespace catena::command {
 
-/// Throws InputError with one line for whatever is not understood; `not in this version` for what the contract promises later.
+/// Throws InputError with one line for whatever is not understood; `not in this version` for what
+/// the contract promises later.
 Request parse_command_line(int argc, char const* const* argv);
 
 }  // namespace catena::command

@@ -3,21 +3,22 @@
 #include <algorithm>
 
 #include "command/commands.hpp"
-#include "plan/describe.hpp"
-#include "plan/savings.hpp"
-#include "plan/plan_messages.hpp"
-#include "plan/plan_steps.hpp"
-#include "plan/predictions.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "plan/cache.hpp"
+#include "plan/describe.hpp"
+#include "plan/plan_messages.hpp"
+#include "plan/plan_steps.hpp"
+#include "plan/predictions.hpp"
+#include "plan/savings.hpp"
 
 namespace catena::command {
 namespace {
 
 Axes axes_for(Scene const& scene) {
-    return scene.dynamics.given && !uses_joint_coordinates(scene.dynamics.integrator) ? Axes::world : Axes::joint;
+    return scene.dynamics.given && !uses_joint_coordinates(scene.dynamics.integrator) ? Axes::world
+                                                                                      : Axes::joint;
 }
 
 /// What one evaluation of a group costs in messages.
@@ -27,7 +28,8 @@ struct Rounds {
 };
 Rounds rounds_of(ChainGroup const& group) {
     Rounds r;
-    for (int chain = 0; chain < group.partition.chains(); ++chain) r.shared = r.shared || group.partition.is_split(chain);
+    for (int chain = 0; chain < group.partition.chains(); ++chain)
+        r.shared = r.shared || group.partition.is_split(chain);
     r.matrices = r.biases = r.shared ? 1 : 0;
     r.kinematics = r.shared && !group.beads && group.axes == Axes::joint ? 1 : 0;
     return r;
@@ -58,15 +60,22 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
     text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"),
                              group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
-    text.entry("tree", fmt::format("{} bodies: runs of {}, {} of them, then {} levels of merges; depth {}; table version {}", tree.bodies,
-                                   tree.run_length, tree.runs, tree.levels(), tree.depth(), dca::tree_table_version));
-    text.entry("units", fmt::format("{} (whole ones go to ranks; the tree above them is every rank's own)", tree.units));
+    text.entry("tree", fmt::format("{} bodies: runs of {}, {} of them, then {} levels of merges; "
+                                   "depth {}; table version {}",
+                                   tree.bodies, tree.run_length, tree.runs, tree.levels(),
+                                   tree.depth(), dca::tree_table_version));
+    text.entry("units",
+               fmt::format("{} (whole ones go to ranks; the tree above them is every rank's own)",
+                           tree.units));
     text.entry("bodies of the ranks", shares_text(shares));
-    text.entry("collectives", rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}", rounds.matrices,
-                                                          rounds.biases, rounds.kinematics > 0 ? "1" : "none") +
-                                                  (report.direct_exchange ? "; from GPU to GPU" : "")
-                                            : "none: no chain is shared by ranks");
-    text.entry("solver's memory", bytes_text(static_cast<double>(report.memory_bytes)) + " on this rank");
+    text.entry("collectives",
+               rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}",
+                                           rounds.matrices, rounds.biases,
+                                           rounds.kinematics > 0 ? "1" : "none") +
+                                   (report.direct_exchange ? "; from GPU to GPU" : "")
+                             : "none: no chain is shared by ranks");
+    text.entry("solver's memory",
+               bytes_text(static_cast<double>(report.memory_bytes)) + " on this rank");
     list.push_back({{"kind", group.kind()},
                     {"chains", group.partition.chains()},
                     {"bodies", group.partition.bodies()},
@@ -77,7 +86,10 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"depth", tree.depth()},
                     {"units", tree.units},
                     {"bodies_of_ranks", shares},
-                    {"collectives", {{"matrices", rounds.matrices}, {"biases", rounds.biases}, {"kinematics", rounds.kinematics}}},
+                    {"collectives",
+                     {{"matrices", rounds.matrices},
+                      {"biases", rounds.biases},
+                      {"kinematics", rounds.kinematics}}},
                     {"direct_exchange", report.direct_exchange},
                     {"solver_memory_bytes", report.memory_bytes}});
 }
@@ -90,41 +102,57 @@ StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     bool const tips = has_jointed_tips(scene);
     int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
-    std::string const chosen = fmt::format("s is the fewest at the start that close the joints to {:g}, later one more where they do not",
-                                           ConstrainedIntegrator::early * d.constraint_tolerance);
+    std::string const chosen = fmt::format(
+        "s is the fewest at the start that close the joints to {:g}, later one more where they do "
+        "not",
+        ConstrainedIntegrator::early * d.constraint_tolerance);
     switch (d.integrator) {
         case Integrator::staggered:
         case Integrator::baoab:
         case Integrator::implicit_baoab: {
             SweepsAStep const sweeps = sweeps_a_step(d, tips);
-            std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias sweeps (2 of the kick, thermostat)"
+            std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias "
+                                                      "sweeps (2 of the kick, thermostat)"
                                                     : "1 matrix sweep; 2 bias sweeps of the kick";
-            if (is_implicit(d.integrator)) text += "; joints with springs or dampers are implicit: their chains have full handles";
-            if (tips) text += fmt::format("; {} corrections that close jointed tips, a matrix sweep and a bias sweep each", corrections);
+            if (is_implicit(d.integrator))
+                text +=
+                    "; joints with springs or dampers are implicit: their chains have full handles";
+            if (tips)
+                text += fmt::format(
+                    "; {} corrections that close jointed tips, a matrix sweep and a bias sweep "
+                    "each",
+                    corrections);
             return {sweeps.matrices + corrections, sweeps.biases + corrections, 0, text};
         }
         case Integrator::rk4:
         case Integrator::dormand_prince:
         case Integrator::velocity_verlet: {
             int const evaluations = sweeps_a_step(d, tips).matrices;
-            std::string const inner =
-                d.tolerance > 0 ? fmt::format(" for each inner step, of which there are as many as tolerance {:g} asks for", d.tolerance)
-                                : "";
+            std::string const inner = d.tolerance > 0
+                                          ? fmt::format(
+                                                " for each inner step, of which there are as many "
+                                                "as tolerance {:g} asks for",
+                                                d.tolerance)
+                                          : "";
             return {evaluations + corrections, evaluations + corrections, 0,
-                    fmt::format("{}{}: a matrix sweep and a bias sweep each; {}", counted(evaluations, "evaluation", "evaluations"), inner,
-                                tips ? fmt::format("{} corrections that close jointed tips, again a matrix sweep and a bias sweep each",
+                    fmt::format("{}{}: a matrix sweep and a bias sweep each; {}",
+                                counted(evaluations, "evaluation", "evaluations"), inner,
+                                tips ? fmt::format("{} corrections that close jointed tips, again "
+                                                   "a matrix sweep and a bias sweep each",
                                                    corrections)
                                      : "joint coordinates need no projection")};
         }
         case Integrator::rattle:
-            return {
-                1, 1, 1,
-                "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half kicks in one), s of the drift; " + chosen};
+            return {1, 1, 1,
+                    "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half "
+                    "kicks in one), s of the drift; " +
+                        chosen};
         case Integrator::g_baoab:
         case Integrator::implicit_g_baoab:
-            return {
-                2, 2, 2,
-                "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the thermostat, s for either half drift; " + chosen};
+            return {2, 2, 2,
+                    "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the "
+                    "thermostat, s for either half drift; " +
+                        chosen};
     }
     return {};
 }
@@ -136,48 +164,59 @@ void add_dynamics(Text& text, Json& json, Scene const& scene) {
     if (!scene.dynamics.given) return;
     StepPlan const step = step_of(scene);
     text.entry("a step", step.text);
-    json["dynamics"] = {{"integrator", name_of(scene.dynamics.integrator)},
-                        {"matrix_sweeps_a_step", step.matrix_sweeps},
-                        {"bias_sweeps_a_step", {{"fixed", step.bias_sweeps}, {"each_drift_sweep", step.bias_sweeps_a_drift_sweep}}}};
+    json["dynamics"] = {
+        {"integrator", name_of(scene.dynamics.integrator)},
+        {"matrix_sweeps_a_step", step.matrix_sweeps},
+        {"bias_sweeps_a_step",
+         {{"fixed", step.bias_sweeps}, {"each_drift_sweep", step.bias_sweeps_a_drift_sweep}}}};
 }
 
 void add_output(Text& text, Json& json, Scene const& scene) {
     if (!scene.dynamics.given) return;
     OutputSpec const& o = scene.output;
-    bool const bodies = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return !c.is_beads(); });
+    bool const bodies = std::any_of(scene.chains.begin(), scene.chains.end(),
+                                    [](ChainSpec const& c) { return !c.is_beads(); });
     std::int64_t const frames = scene.dynamics.steps / o.every + 1;
     double const numbers = 3 + (o.velocities ? 3 : 0) + (bodies ? 4 : 0) + (o.joint_forces ? 6 : 0);
-    double const size = 8.0 * numbers * static_cast<double>(scene.bodies()) * static_cast<double>(frames);
+    double const size =
+        8.0 * numbers * static_cast<double>(scene.bodies()) * static_cast<double>(frames);
     text.heading("output");
-    text.entry("every", fmt::format("{} steps: {} frames, trajectory about {}", o.every, frames, bytes_text(size)));
-    text.entry("checkpoints", o.checkpoint_every > 0 ? fmt::format("every {} steps and at the end", o.checkpoint_every) : "at the end");
-    json["output"] = {{"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
+    text.entry("every", fmt::format("{} steps: {} frames, trajectory about {}", o.every, frames,
+                                    bytes_text(size)));
+    text.entry("checkpoints", o.checkpoint_every > 0
+                                  ? fmt::format("every {} steps and at the end", o.checkpoint_every)
+                                  : "at the end");
+    json["output"] = {
+        {"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
 }
 
-void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& predictions, int ranks) {
+void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& predictions,
+                int ranks) {
     Memory const memory = memory_of(scene, ranks);
     text.heading("memory, each rank");
     text.entry("host", bytes_text(memory.sum()));
-    text.entry("GPU",
-               bytes_text(predictions.gpu_memory) + " with backend cuda" + (predictions.no_gpu.empty() ? "" : ", if there were one"));
+    text.entry("GPU", bytes_text(predictions.gpu_memory) + " with backend cuda" +
+                          (predictions.no_gpu.empty() ? "" : ", if there were one"));
     json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
 }
 
 double implicit_step_of(Scene const& scene) {
-    return scene.dynamics.given && is_implicit(scene.dynamics.integrator) ? scene.dynamics.step : 0.0;
+    return scene.dynamics.given && is_implicit(scene.dynamics.integrator) ? scene.dynamics.step
+                                                                          : 0.0;
 }
 
 /// Of the chains themselves: OpenMM is left out.
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
     if (scene.dynamics.given && scene.dynamics.integrator == Integrator::implicit_g_baoab)
-        throw InputError("implicit-g-baoab has no evaluation outside a step that could be measured", "--measure",
-                         "leave it out, and see what a run's steps take");
+        throw InputError("implicit-g-baoab has no evaluation outside a step that could be measured",
+                         "--measure", "leave it out, and see what a run's steps take");
     scene.forces.openmm.reset();
     ChainSystem system(scene, axes, communicator, implicit_step_of(scene));
     return plan::measure_phases(system, {5, 200, 0.5});
 }
 
-Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator, PlanRequest const& request, Predictions predictions) {
+Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator,
+                    PlanRequest const& request, Predictions predictions) {
     ChainSystem const system(scene, axes, communicator, implicit_step_of(scene));
     predictions.choice.arrangement = {system.backend(), system.executor().threads()};
     std::vector<SolverReport> const reports = system.solver_reports();
@@ -201,15 +240,18 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     text.entry("backend", fmt::format("{} ({})", name_of(system.backend()), reason));
     if (!json["gpu_levels"].is_null())
         text.entry("levels on the GPU",
-                   json["gpu_levels"].get<std::string>() + " of the lowest (up,down); the others on the host's threads");
+                   json["gpu_levels"].get<std::string>() +
+                       " of the lowest (up,down); the others on the host's threads");
     text.entry("ranks", std::to_string(communicator.size()));
     if (communicator.size() > 1) text.entry("gathers", way.text());
     if (scene.solver.balance)
         text.entry("balance", communicator.size() == 1
                                   ? "nothing to do on one rank"
-                                  : "`run` measures the ranks and cuts the chains by their speeds; below they are equal");
+                                  : "`run` measures the ranks and cuts the chains by their speeds; "
+                                    "below they are equal");
     text.entry("threads a rank", std::to_string(system.executor().threads()));
-    for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        add_group(text, json["groups"], *system.groups()[i], reports[i]);
     add_memory(text, json, scene, predictions, communicator.size());
     text.heading("forces");
     text.entry("gravity", vector_text(scene.forces.gravity));
@@ -217,15 +259,18 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     json["openmm"] = nullptr;
     if (system.openmm()) {
         json["openmm"] = system.openmm()->description();
-        for (std::size_t i = 0; i < json["openmm"].size(); ++i) text.entry(i == 0 ? "OpenMM" : "", json["openmm"][i].get<std::string>());
-        text.entry("", "on path host the matrix sweep runs while it computes: matrices do not wait for forces");
+        for (std::size_t i = 0; i < json["openmm"].size(); ++i)
+            text.entry(i == 0 ? "OpenMM" : "", json["openmm"][i].get<std::string>());
+        text.entry("",
+                   "on path host the matrix sweep runs while it computes: matrices do not wait for "
+                   "forces");
     }
     add_dynamics(text, json, scene);
     add_messages(text, json, system, request, predictions);
     add_output(text, json, scene);
     text.heading("left out");
     json["left_out"] = Json::array();
-    for (LeftOut const& each : left_out(scene, system)) {
+    for (Savings const& each : left_out(scene, system)) {
         json["left_out"].push_back(each.text);
         if (!request.explain) text.note(each.text);
     }
@@ -249,27 +294,35 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
 Outcome calibrate(Communicator const& communicator, PlanRequest const& request) {
     Outcome outcome;
     int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
-    plan::with_planner(communicator, threads, plan::largest_at_start, "", [&](plan::Planner& planner) {
-        double const start = seconds_now();
-        planner.measure_everything();
-        std::string const file = plan::cache_file(planner.machine());
-        outcome.text =
-            fmt::format("{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
-                        counted(static_cast<long long>(planner.calibration().points()), "point", "points"), seconds_now() - start,
-                        file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME" : "kept in " + file);
-        outcome.json = {{"machine", planner.machine().identity}, {"points", planner.calibration().points()}, {"file", file}};
-    });
+    plan::with_planner(
+        communicator, threads, plan::largest_at_start, "", [&](plan::Planner& planner) {
+            double const start = seconds_now();
+            planner.measure_everything();
+            std::string const file = plan::cache_file(planner.machine());
+            outcome.text = fmt::format(
+                "{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
+                counted(static_cast<long long>(planner.calibration().points()), "point", "points"),
+                seconds_now() - start,
+                file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME"
+                             : "kept in " + file);
+            outcome.json = {{"machine", planner.machine().identity},
+                            {"points", planner.calibration().points()},
+                            {"file", file}};
+        });
     return outcome;
 }
 
-Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanRequest const& request) {
+Outcome plan_scene(Scene const& given, Communicator const& communicator,
+                   PlanRequest const& request) {
     Axes const axes = axes_for(given);
     Predictions predictions;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
-        plan::with_planner(communicator, scene.solver.threads, largest_sample, no_gpu, [&](plan::Planner& planner) {
-            predictions = predict(planner, scene, axes, communicator.size());
-            if (request.ranks > 0 && scene.dynamics.given) predict_steps(predictions, planner, scene, axes, request.ranks);
-        });
+        plan::with_planner(communicator, scene.solver.threads, largest_sample, no_gpu,
+                           [&](plan::Planner& planner) {
+                               predictions = predict(planner, scene, axes, communicator.size());
+                               if (request.ranks > 0 && scene.dynamics.given)
+                                   predict_steps(predictions, planner, scene, axes, request.ranks);
+                           });
         share(communicator, predictions.choice);
         return predictions.choice;
     };

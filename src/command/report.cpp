@@ -7,24 +7,25 @@
 #include <optional>
 #include <set>
 
-#include "command/commands.hpp"
 #include "bench/peer_answers.hpp"
-#include "console/picture.hpp"
-#include "report/report_parts.hpp"
+#include "command/commands.hpp"
 #include "console/option_values.hpp"
-#include "report/version.hpp"
+#include "console/picture.hpp"
 #include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "force/openmm_force.hpp"
-#include "run/run_folder.hpp"
 #include "io/output.hpp"
-#include "mpi/first_rank.hpp"
 #include "measure/hardware.hpp"
+#include "mpi/first_rank.hpp"
+#include "report/report_parts.hpp"
+#include "report/version.hpp"
+#include "run/run_folder.hpp"
 
 namespace catena::command {
 namespace {
 
-constexpr int integrator_steps = 32;  // of a scene's own: the time over which its integrators are compared
+constexpr int integrator_steps =
+    32;  // of a scene's own: the time over which its integrators are compared
 constexpr double drift_step = 0.002;
 constexpr std::int64_t drift_steps = 1000000;
 
@@ -33,31 +34,39 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (error || !std::filesystem::is_directory(folder))
-            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
+            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder,
+                             "name another");
         if (holds_run(folder))
-            throw InputError("the folder holds a run, whose report.html would be replaced", "--output " + folder, "name another");
+            throw InputError("the folder holds a run, whose report.html would be replaced",
+                             "--output " + folder, "name another");
     });
 }
 
 /// All that this build and machine have, unless one is named.
 std::vector<Backend> backends_of(ReportRequest const& request) {
-    if (!request.backend.empty() && request.backend != "auto") return {backend_named("--backend", request.backend)};
+    if (!request.backend.empty() && request.backend != "auto")
+        return {backend_named("--backend", request.backend)};
     std::vector<Backend> backends = cpu_backends();
-    if (cuda::why_not().empty()) backends.insert(backends.end(), {Backend::cuda, Backend::cuda_levels});
+    if (cuda::why_not().empty())
+        backends.insert(backends.end(), {Backend::cuda, Backend::cuda_levels});
     return backends;
 }
 
 std::vector<Handles> handles_of(ReportRequest const& request) {
     std::vector<Handles> all{Handles::projected, Handles::full, Handles::articulated};
-    if (!request.handles.empty()) std::erase_if(all, [&](Handles kind) { return request.handles != name_of(kind); });
+    if (!request.handles.empty())
+        std::erase_if(all, [&](Handles kind) { return request.handles != name_of(kind); });
     return all;
 }
 
 /// Text and JSON, and on rank 0 the files.
-Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts, std::vector<std::string> const& left_out,
-                 Communicator const& communicator, ReportRequest const& request) {
+Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
+                 std::vector<std::string> const& left_out, Communicator const& communicator,
+                 ReportRequest const& request) {
     Outcome outcome;
-    std::string const hardware = fmt::format("{}, {}; {}", hardware_text(), counted(communicator.size(), "rank", "ranks"), compiler_name());
+    std::string const hardware =
+        fmt::format("{}, {}; {}", hardware_text(), counted(communicator.size(), "rank", "ranks"),
+                    compiler_name());
     outcome.json = {{"report", title},
                     {"build", version_json()},
                     {"hardware", hardware_json()},
@@ -71,7 +80,8 @@ Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
     outcome.json["valid"] = outcome.valid;
     outcome.complaint = "see the report";
     on_first_rank(communicator, [&] {
-        std::string const json = request.output + "/report.json", page = request.output + "/report.html";
+        std::string const json = request.output + "/report.json",
+                          page = request.output + "/report.html";
         write_text_file(json, json_text(outcome.json));
         write_text_file(page, page_of("Catena: " + title, hardware, parts));
         for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
@@ -79,18 +89,22 @@ Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
         std::string const remark = draw_report(json, request.output);
         if (!remark.empty()) outcome.text += remark + "\n";
         for (ReportPart const& part : parts)
-            if (remark.empty() && !part.picture.empty()) outcome.text += "drew " + request.output + "/" + part.picture + ".png\n";
+            if (remark.empty() && !part.picture.empty())
+                outcome.text += "drew " + request.output + "/" + part.picture + ".png\n";
         outcome.text += outcome.valid ? "VALID\n" : "INVALID\n";
     });
     return outcome;
 }
 
-ReportPart integrators_of(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
+ReportPart integrators_of(ReportScenes const& scenes, Communicator const& communicator,
+                          ReportRequest const& request) {
     std::vector<IntegratorStudy> studies;
     for (auto const& [group, slow] : {std::pair{&scenes.integrators, false}, {&scenes.slow, true}})
         for (Scene const& scene : *group) {
-            double const time = scenes.time > 0 ? scenes.time : integrator_steps * scene.dynamics.step;
-            studies.push_back(study_integrator_errors(scene, communicator, time, request.quick ? 8 : 10, request.repeat, slow));
+            double const time =
+                scenes.time > 0 ? scenes.time : integrator_steps * scene.dynamics.step;
+            studies.push_back(study_integrator_errors(
+                scene, communicator, time, request.quick ? 8 : 10, request.repeat, slow));
             spdlog::info("integrators of {} done", scene.title);
         }
     std::vector<DriftStudy> drifts;
@@ -102,47 +116,61 @@ ReportPart integrators_of(ReportScenes const& scenes, Communicator const& commun
 
 std::vector<StabilityCase> cases_of(ReportRequest const& request) {
     std::vector<StabilityCase> cases =
-        request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes);
+        request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick)
+                              : coils_and_dills(request.sizes);
     std::vector<std::string> const& words = request.cases;
-    auto const holds = [](StabilityCase const& each, std::string const& word) { return each.family.find(word) != std::string::npos; };
+    auto const holds = [](StabilityCase const& each, std::string const& word) {
+        return each.family.find(word) != std::string::npos;
+    };
     for (std::string const& word : words)
-        if (std::none_of(cases.begin(), cases.end(), [&](StabilityCase const& each) { return holds(each, word); })) {
+        if (std::none_of(cases.begin(), cases.end(),
+                         [&](StabilityCase const& each) { return holds(each, word); })) {
             std::set<std::string> families;
             for (StabilityCase const& each : cases) families.insert(each.family);
-            throw InputError("no family of cases has '" + word + "'", "--cases",
-                             fmt::format("take parts of these names: {}", fmt::join(families, "; ")));
+            throw InputError(
+                "no family of cases has '" + word + "'", "--cases",
+                fmt::format("take parts of these names: {}", fmt::join(families, "; ")));
         }
     if (!words.empty())
         std::erase_if(cases, [&](StabilityCase const& each) {
-            return std::none_of(words.begin(), words.end(), [&](std::string const& word) { return holds(each, word); });
+            return std::none_of(words.begin(), words.end(),
+                                [&](std::string const& word) { return holds(each, word); });
         });
     return cases;
 }
 
 }  // namespace
 
-Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
+Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicator,
+                      ReportRequest const& request) {
     make_folder(communicator, request.output);
     std::vector<SolverStudy> solver;
     std::vector<std::string> left_out = scenes.left_out;
     for (Scene const& scene : scenes.solver) {
-        SolverStudy study = study_solver_errors(scene, communicator, backends_of(request), handles_of(request), request.repeat);
+        SolverStudy study = study_solver_errors(scene, communicator, backends_of(request),
+                                                handles_of(request), request.repeat);
         if (study.points.empty())
-            left_out.push_back(fmt::format("the solver's errors in {}: no chains for {} handles", scene.title, request.handles));
+            left_out.push_back(fmt::format("the solver's errors in {}: no chains for {} handles",
+                                           scene.title, request.handles));
         else
             solver.push_back(std::move(study));
         spdlog::info("{} done", scene.title);
     }
     std::vector<ReportPart> parts;
-    if (std::any_of(scenes.solver.begin(), scenes.solver.end(), [](Scene const& s) { return s.solver.refine > 0; }))
-        left_out.emplace_back("refinement (solver.refine) of the solver's errors and times: see catena solve --refine");
+    if (std::any_of(scenes.solver.begin(), scenes.solver.end(),
+                    [](Scene const& s) { return s.solver.refine > 0; }))
+        left_out.emplace_back(
+            "refinement (solver.refine) of the solver's errors and times: see catena solve "
+            "--refine");
     if (communicator.rank() == 0) parts.push_back(solver_part(solver));
     if (communicator.size() > 1 && !(scenes.integrators.empty() && scenes.forces.empty()))
         left_out.emplace_back("integrators and forces: they are compared on one rank");
     if (communicator.size() == 1) {
-        if (!scenes.integrators.empty()) parts.push_back(integrators_of(scenes, communicator, request));
+        if (!scenes.integrators.empty())
+            parts.push_back(integrators_of(scenes, communicator, request));
         std::vector<ForceStudy> forces;
-        for (Scene const& scene : scenes.forces) forces.push_back(study_force_errors(scene, communicator, request.repeat));
+        for (Scene const& scene : scenes.forces)
+            forces.push_back(study_force_errors(scene, communicator, request.repeat));
         if (!forces.empty()) parts.push_back(force_part(forces));
         if (openmm_platforms().empty()) left_out.emplace_back("forces: built without OpenMM");
     }
@@ -151,7 +179,8 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
 
 Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
     if (communicator.size() > 1)
-        throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"), "--suite", "run it without mpirun");
+        throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"),
+                         "--suite", "run it without mpirun");
     std::vector<Backend> const backends = backends_of(request);
     std::vector<StabilityCase> const cases = cases_of(request);
     std::vector<std::string> left_out;
@@ -169,7 +198,8 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
         int const seeds = each.bodies > 100000 ? 1 : 3;
         StabilityStudy study = study_stability(each, backends, handles_of(request), seeds, ask);
         if (study.points.empty()) {
-            left_out.push_back(fmt::format("{}, {}: no chain for {} handles", each.family, each.name, request.handles));
+            left_out.push_back(fmt::format("{}, {}: no chain for {} handles", each.family,
+                                           each.name, request.handles));
             continue;
         }
         studies.push_back(std::move(study));

@@ -15,11 +15,11 @@
 #include "console/terminal.hpp"
 #include "error.hpp"
 #include "io/output.hpp"
+#include "io/printable.hpp"
 #include "mpi/first_rank.hpp"
 #include "mpi/gather_way.hpp"
 #include "mpi/gpu_exchange.hpp"
 #include "mpi/launcher.hpp"
-#include "io/printable.hpp"
 #include "reader/load_scene.hpp"
 
 namespace catena::command {
@@ -30,7 +30,8 @@ constexpr int stopped_status = 3;
 /// Longer than launchers let the other ranks live once one has given up (jobs/common.sh).
 constexpr std::chrono::seconds patience(4);
 
-/// With several ranks, an error that others may not know of ends all of them; rank 0, which may have met the same, has the first word.
+/// With several ranks, an error that others may not know of ends all of them; rank 0, which may
+/// have met the same, has the first word.
 int fail(Communicator const& communicator, std::string const& line) {
     bool const alone = communicator.size() == 1;
     if (!alone && communicator.rank() != 0) std::this_thread::sleep_for(patience);
@@ -69,17 +70,21 @@ int run_request(Communicator const& communicator, int argc, char** argv,
 
 }  // namespace
 
-Session::Session(Communicator const& communicator, CommonOptions const& options) : communicator_(communicator), options_(options) {
+Session::Session(Communicator const& communicator, CommonOptions const& options)
+    : communicator_(communicator), options_(options) {
     start_log(communicator.rank() != 0 ? "off" : options.log_level);
-    if (options.quiet && spdlog::get_level() < spdlog::level::err) spdlog::set_level(spdlog::level::err);
+    if (options.quiet && spdlog::get_level() < spdlog::level::err)
+        spdlog::set_level(spdlog::level::err);
     on_first_rank(communicator, [&] {
         std::filesystem::path const file = options.json;
         if (file.empty() || file == "-") return;
         std::error_code ignored;
         if (std::filesystem::is_directory(file, ignored))
-            throw InputError("a folder is no file for JSON", "--json " + file.string(), "name a file");
+            throw InputError("a folder is no file for JSON", "--json " + file.string(),
+                             "name a file");
         if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path(), ignored))
-            throw InputError("no such folder: " + file.parent_path().string(), "--json " + file.string(), "make it, or name another file");
+            throw InputError("no such folder: " + file.parent_path().string(),
+                             "--json " + file.string(), "make it, or name another file");
     });
 }
 
@@ -92,7 +97,8 @@ Scene Session::load(std::string const& file) const {
     } catch (InputError const& error) {
         refusal = error.what();
     }
-    // Files that one rank alone cannot read, say for lack of memory there, must not leave the others waiting.
+    // Files that one rank alone cannot read, say for lack of memory there, must not leave the
+    // others waiting.
     if (communicator_.max(refusal.empty() ? 0 : 1) > 0) {
         auto const refuse = [&] {
             if (!refusal.empty()) throw InputError(refusal);
@@ -100,7 +106,8 @@ Scene Session::load(std::string const& file) const {
         on_first_rank(communicator_, refuse);
         on_every_rank(communicator_, refuse);
     }
-    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, seconds_now() - start, scene->chains.size(), scene->bodies());
+    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, seconds_now() - start,
+                  scene->chains.size(), scene->bodies());
     return *std::move(scene);
 }
 
@@ -110,7 +117,8 @@ int Session::conclude(Outcome const& outcome) const {
             print(json_text(outcome.json));
         else if (!options_.quiet)
             print(printable(outcome.text));
-        if (!outcome.valid && (options_.quiet || options_.json == "-")) spdlog::error("INVALID: {}", outcome.complaint);
+        if (!outcome.valid && (options_.quiet || options_.json == "-"))
+            spdlog::error("INVALID: {}", outcome.complaint);
         if (outcome.valid && !outcome.whole) say_error(outcome.complaint);
         if (options_.json.empty() || options_.json == "-" || outcome.json.is_null()) return;
         write_text_file(options_.json, json_text(outcome.json));
@@ -120,13 +128,15 @@ int Session::conclude(Outcome const& outcome) const {
     return outcome.whole ? 0 : stopped_status;
 }
 
-int guarded(int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
+int guarded(int argc, char** argv,
+            std::function<int(Communicator const&, Request const&)> const& execute) {
     prepare_process();
     try {
         start_hdf5();
         std::unique_ptr<Communicator> const world = world_communicator(&argc, &argv);
         return run_request(*world, argc, argv, execute);
-    } catch (InputError const& error) {  // no ranks, no communicator: the launcher's numbers say who speaks
+    } catch (InputError const&
+                 error) {  // no ranks, no communicator: the launcher's numbers say who speaks
         if (launch_environment().rank == 0) say_error(error.what());
         return 2;
     } catch (std::exception const& error) {

@@ -7,49 +7,58 @@
 #include <utility>
 
 #include "command/commands.hpp"
-#include "plan/describe.hpp"
 #include "console/terminal.hpp"
-#include "oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
-#include "observe/observables.hpp"
-#include "start/start_relaxation.hpp"
-#include "start/start_report.hpp"
-#include "start/start_velocities.hpp"
-#include "mpi/first_rank.hpp"
-#include "plan/choice.hpp"
 #include "measure/forward_error.hpp"
 #include "measure/solution.hpp"
 #include "measure/timing.hpp"
+#include "mpi/first_rank.hpp"
+#include "observe/observables.hpp"
+#include "oracle/oracle.hpp"
+#include "plan/choice.hpp"
+#include "plan/describe.hpp"
+#include "start/start_relaxation.hpp"
+#include "start/start_report.hpp"
+#include "start/start_velocities.hpp"
 
 namespace catena::command {
 namespace {
 
 constexpr std::int64_t most_bodies_in_json = 10000;
 
-/// The recursive Newton-Euler residual of the worst chain, where the oracle can have it: every body on this rank, not too many, none
-/// joined by links, no forces that it does not know. Of loops of bodies it says nothing: what their joints' moments are compared with may
-/// vanish where forces pass through the joints.
+/// The recursive Newton-Euler residual of the worst chain, where the oracle can have it: every body
+/// on this rank, not too many, none joined by links, no forces that it does not know. Of loops of
+/// bodies it says nothing: what their joints' moments are compared with may vanish where forces
+/// pass through the joints.
 Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     Scene const& scene = system.scene();
-    bool const left_out = std::any_of(scene.chains.begin(), scene.chains.end(),
-                                      [](ChainSpec const& c) { return c.is_linked() || (!c.is_beads() && c.tip == Tip::jointed); });
-    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || left_out || scene.dynamics.fixman) return nullptr;
+    bool const left_out =
+        std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) {
+            return c.is_linked() || (!c.is_beads() && c.tip == Tip::jointed);
+        });
+    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || left_out ||
+        scene.dynamics.fixman)
+        return nullptr;
     double worst = 0;
     std::size_t body = 0, bead = 0;
     for (ChainSpec const& chain : scene.chains) {
-        oracle::Loads loads{scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
+        oracle::Loads loads{
+            scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
         std::vector<Vec3> accelerations;
         Vec3 base = Vec3::zero();
         for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
             Vec3 own = Vec3::zero();
             auto const first = s.acceleration_offset[body];
-            for (std::int64_t i = 0; i < std::min<std::int64_t>(3, s.acceleration_offset[body + 1] - first); ++i)
+            for (std::int64_t i = 0;
+                 i < std::min<std::int64_t>(3, s.acceleration_offset[body + 1] - first); ++i)
                 own[static_cast<int>(i)] = s.acceleration[first + i];
             accelerations.push_back(own);
             if (s.acceleration_offset[body + 1] - first == 6)
                 for (int i = 0; i < 3; ++i) base[i] = s.acceleration[first + 3 + i];
         }
-        if (!s.bead_force.empty()) loads.bead_forces.assign(s.bead_force.begin() + bead, s.bead_force.begin() + bead + chain.bead_count());
+        if (!s.bead_force.empty())
+            loads.bead_forces.assign(s.bead_force.begin() + bead,
+                                     s.bead_force.begin() + bead + chain.bead_count());
         bead += chain.bead_count();
         worst = larger(worst, oracle::rnea_residual(chain, loads, accelerations, base));
     }
@@ -83,7 +92,8 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
                     accelerations.push_back({a[0], a[1], a[2]});
                     break;
                 default:
-                    accelerations.push_back({{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
+                    accelerations.push_back(
+                        {{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
             }
             if (chain.is_beads() || chain.is_linked())
                 forces.push_back(f[0]);
@@ -97,9 +107,10 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
     json["tip_forces"] = Json::array();
     for (TipForce const& tip : s.tip_force) {
         Vector<double, 6> const& w = tip.wrench;
-        json["tip_forces"].push_back({{"chain", scene.chains[static_cast<std::size_t>(tip.chain)].name},
-                                      {"torque", {w[0], w[1], w[2]}},
-                                      {"force", {w[3], w[4], w[5]}}});
+        json["tip_forces"].push_back(
+            {{"chain", scene.chains[static_cast<std::size_t>(tip.chain)].name},
+             {"torque", {w[0], w[1], w[2]}},
+             {"force", {w[3], w[4], w[5]}}});
     }
 }
 
@@ -137,47 +148,68 @@ bool starts_thermal(Scene const& scene) {
                        [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
 }
 
-std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing, std::string const& complaint) {
+std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing,
+                    std::string const& complaint) {
     Scene const& scene = system.scene();
     Text text;
     text.heading(title_of(scene));
     text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(),
-                                     counted(std::ssize(scene.chains), "chain", "chains"), degrees_of_freedom(scene)));
-    text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()), name_of(scene.solver.handles),
+                                     counted(std::ssize(scene.chains), "chain", "chains"),
+                                     degrees_of_freedom(scene)));
+    text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()),
+                                     name_of(scene.solver.handles),
                                      counted(system.communicator().size(), "rank", "ranks"),
                                      counted(system.executor().threads(), "thread", "threads")));
     text.entry("", json["backend_reason"]);
     for (std::size_t i = 0; system.openmm() && i < system.openmm()->description().size(); ++i)
         text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
     if (json["velocities"] == "thermal")
-        text.entry("velocities", fmt::format("thermal, {} K, seed {}, as a run's first", scene.dynamics.temperature, scene.dynamics.seed));
+        text.entry("velocities", fmt::format("thermal, {} K, seed {}, as a run's first",
+                                             scene.dynamics.temperature, scene.dynamics.seed));
     if (json["relaxation"].is_string()) text.entry("relaxation", json["relaxation"]);
-    text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median),
-                                   timing.evaluation.count, duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
-                                   1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
+    text.entry(
+        "time",
+        fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body",
+                    duration_text(timing.evaluation.median), timing.evaluation.count,
+                    duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
+                    1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
     // An evaluation finds matrices and biases at once where it can: apart they take longer.
     for (auto const& [name, seconds] : timing.phases)
-        text.entry("  " + name, duration_text(seconds) + (name.ends_with("sweep") ? ", by itself" : ""));
+        text.entry("  " + name,
+                   duration_text(seconds) + (name.ends_with("sweep") ? ", by itself" : ""));
     std::vector<double> const refinement = json["refinement"]["seconds_of_each"];
     if (!refinement.empty())
-        text.entry("refinement", fmt::format("{}, {} each", counted(std::ssize(refinement), "step", "steps"),
-                                             duration_text(spread_of(refinement).median)));
+        text.entry("refinement",
+                   fmt::format("{}, {} each", counted(std::ssize(refinement), "step", "steps"),
+                               duration_text(spread_of(refinement).median)));
     for (auto const& [term, energy] : json["potential_energy"].items())
-        text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
+        text.entry("potential energy",
+                   fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
     Json const &inverse = json["rnea_residual"], &error = json["estimated_error"];
-    text.entry("inverse dynamics",
-               inverse.is_null()
-                   ? "residual not computed (several ranks, many bodies, bodies on links or in loops, or a Fixman potential)"
-                   : fmt::format("residual {:.2e}, {}", inverse.get<double>(),
-                                 error.is_null() ? "as information" : "which grows with the condition number: the estimated error counts"));
-    text.entry("estimated error", error.is_null()
-                                      ? "not estimated (beads and linked bodies, or very many bodies)"
-                                      : fmt::format("{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
-                                                    error.get<double>(), json["estimated_error_bound"].get<double>()));
+    text.entry(
+        "inverse dynamics",
+        inverse.is_null()
+            ? "residual not computed (several ranks, many bodies, bodies on links or in loops, or "
+              "a Fixman potential)"
+            : fmt::format(
+                  "residual {:.2e}, {}", inverse.get<double>(),
+                  error.is_null()
+                      ? "as information"
+                      : "which grows with the condition number: the estimated error counts"));
+    text.entry(
+        "estimated error",
+        error.is_null()
+            ? "not estimated (beads and linked bodies, or very many bodies)"
+            : fmt::format(
+                  "{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
+                  error.get<double>(), json["estimated_error_bound"].get<double>()));
     if (int const more = json["refinement"]["steps_unasked"]; more > 0)
-        text.entry("", fmt::format("after {} of refinement, which articulated handles take on their own", counted(more, "step", "steps")));
+        text.entry(
+            "", fmt::format("after {} of refinement, which articulated handles take on their own",
+                            counted(more, "step", "steps")));
     text.entry("residual",
-               fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
+               fmt::format("{:.2e}, bound {:.2e} (32 depth eps)",
+                           json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
     for (std::string const& note : scene.notes) text.note(note);
     text.heading(complaint.empty() ? "VALID" : "INVALID: " + complaint);
@@ -202,32 +234,42 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
         std::filesystem::path const folder = std::filesystem::path(file).parent_path();
         std::error_code ignored;
         if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-            throw InputError("no such folder: " + folder.string(), "--accelerations " + file, "make it, or name another file");
+            throw InputError("no such folder: " + folder.string(), "--accelerations " + file,
+                             "make it, or name another file");
     });
 }
 
-std::string complaint_of(Scene const& scene, ForwardError const& error, double residual, double bound) {
+std::string complaint_of(Scene const& scene, ForwardError const& error, double residual,
+                         double bound) {
     if (error.is_small() || !(residual <= bound))
-        return fmt::format("residual {:.2e}, bound {:.2e}: compare with --refine 2 or, of open chains on joints, --handles articulated",
-                           residual, bound);
+        return fmt::format(
+            "residual {:.2e}, bound {:.2e}: compare with --refine 2 or, of open chains on joints, "
+            "--handles articulated",
+            residual, bound);
     char const* const refine = scene.solver.refine < 2 ? "--refine 2" : "more steps of --refine";
-    return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: take {}", *error.estimate, largest_forward_error,
+    return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: take {}",
+                       *error.estimate, largest_forward_error,
                        remedy_of_forward_error(scene, true, {refine, "--handles articulated"}));
 }
 
-Outcome solve_chosen(Scene const& given, Communicator const& communicator, SolveRequest const& request, std::string const& reason) {
+Outcome solve_chosen(Scene const& given, Communicator const& communicator,
+                     SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
-    std::optional<RelaxedScene> relaxed = relaxed_where_asked(given, communicator, relaxation_says(is_quiet()));
+    std::optional<RelaxedScene> relaxed =
+        relaxed_where_asked(given, communicator, relaxation_says(is_quiet()));
     if (!relaxed) refuse_coinciding(given, communicator);
-    Scene const scene = with_start_velocities(relaxed ? std::move(relaxed->scene) : given, communicator);
+    Scene const scene =
+        with_start_velocities(relaxed ? std::move(relaxed->scene) : given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     int const refinements = scene.solver.refine;
     if (refinements > 0 && system.joint().empty())
-        throw InputError("chains of beads and of linked bodies are not refined", "solver.refine", "leave it out");
+        throw InputError("chains of beads and of linked bodies are not refined", "solver.refine",
+                         "leave it out");
     system.close_tips();  // as a run does: velocities then fit them
     if (system.openmm()) {
         system.evaluate(false);
-        look_at_start(system);  // accelerations under forces of overlapping beads are right, but nobody's
+        look_at_start(
+            system);  // accelerations under forces of overlapping beads are right, but nobody's
     }
     Timing const timing = time_evaluations(system, request.repeat);
     std::vector<double> const refinement = refine(system, refinements);
@@ -236,8 +278,10 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
     json["backend_reason"] = reason;
     json["refinement"] = {{"steps", refinements}, {"seconds_of_each", refinement}};
     std::vector<EnergyTerm> const energies = system.potential_energy();
-    // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.
-    bool const wanted = scene.bodies() <= most_bodies_in_json || communicator.max(request.accelerations.empty() ? 0 : 1) > 0;
+    // Arrays of all bodies are made where somebody reads them; what is not finite makes the
+    // residual so.
+    bool const wanted = scene.bodies() <= most_bodies_in_json ||
+                        communicator.max(request.accelerations.empty() ? 0 : 1) > 0;
     double const bound = system.residual_bound();
     double residual = 0;
     Solution solution;
@@ -245,7 +289,8 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         residual = system.residual();
         if (wanted) solution = solution_of(system);
     });
-    bool const holds = residual <= bound && error.is_small() && finite(solution.acceleration) && finite(solution.joint_force);
+    bool const holds = residual <= bound && error.is_small() && finite(solution.acceleration) &&
+                       finite(solution.joint_force);
     outcome.valid = communicator.max(holds ? 0 : 1) == 0;
     on_first_rank(communicator, [&] {
         json["residual"] = residual;
@@ -279,9 +324,10 @@ Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest 
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
         return plan::choose(scene, Axes::joint, communicator, no_gpu);
     };
-    plan::with_choice(std::move(given), choose, [&](Scene const& scene, plan::Choice const& choice) {
-        outcome = solve_chosen(scene, communicator, request, choice.reason);
-    });
+    plan::with_choice(std::move(given), choose,
+                      [&](Scene const& scene, plan::Choice const& choice) {
+                          outcome = solve_chosen(scene, communicator, request, choice.reason);
+                      });
     return outcome;
 }
 

@@ -31,7 +31,8 @@ StopSignals::StopSignals() {
         action.sa_handler = note;
         action.sa_flags = signals[i].flags;
         ::sigaction(signals[i].number, &action, &before_[i]);
-        if (signals[i].number == SIGHUP && before_[i].sa_handler == SIG_IGN) ::sigaction(SIGHUP, &before_[i], nullptr);  // nohup
+        if (signals[i].number == SIGHUP && before_[i].sa_handler == SIG_IGN)
+            ::sigaction(SIGHUP, &before_[i], nullptr);  // nohup
     }
 }
 

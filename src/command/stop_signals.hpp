@@ -1,4 +1,5 @@
-// The signals by which a user, a launcher or a batch system asks a run to stop: noted, not obeyed at once.
+// The signals by which a user, a launcher or a batch system asks a run to stop: noted, not obeyed
+// at once.
 #pragma once
 
 #include <csignal>
@@ -6,8 +7,8 @@
 
 namespace catena::command {
 
-/// While it lives SIGTERM, SIGUSR1, SIGHUP, SIGXCPU and the first SIGINT are noted; a second SIGINT ends the process at once. A SIGHUP that
-/// was ignored before (nohup) stays ignored. One at a time.
+/// While it lives SIGTERM, SIGUSR1, SIGHUP, SIGXCPU and the first SIGINT are noted; a second SIGINT
+/// ends the process at once. A SIGHUP that was ignored before (nohup) stays ignored. One at a time.
 class StopSignals {
   public:
     StopSignals();

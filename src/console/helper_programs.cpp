@@ -39,9 +39,11 @@ int run_quietly(std::vector<std::string> words) {
     argv.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     if (::posix_spawn_file_actions_init(&actions) != 0) return -1;
-    for (int const stream : {STDOUT_FILENO, STDERR_FILENO}) ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+    for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
+        ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
     pid_t child = -1;
-    int const started = ::posix_spawnp(&child, argv[0], &actions, DefaultSignals().get(), argv.data(), environ);
+    int const started =
+        ::posix_spawnp(&child, argv[0], &actions, DefaultSignals().get(), argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     if (started != 0) return -1;
     int status = 0;
@@ -56,15 +58,19 @@ std::optional<fs::path> find_in_source_tree(std::string const& path) {
     return find_file(folders, path);
 }
 
-std::optional<fs::path> find_in_build_tree(std::string const& path) { return find_file(folders_above_program(), path); }
+std::optional<fs::path> find_in_build_tree(std::string const& path) {
+    return find_file(folders_above_program(), path);
+}
 
 std::optional<std::string> find_python(std::string const& module) {
     std::vector<std::string> candidates;
-    if (char const* const active = std::getenv("VIRTUAL_ENV"); active && *active) candidates.push_back(std::string(active) + "/bin/python");
+    if (char const* const active = std::getenv("VIRTUAL_ENV"); active && *active)
+        candidates.push_back(std::string(active) + "/bin/python");
     for (fs::path const& folder : folders_above_program())
         for (char const* const environment : {"venv", "peers-venv"}) {
             std::error_code ignored;
-            if (fs::path const python = folder / environment / "bin" / "python"; fs::exists(python, ignored))
+            if (fs::path const python = folder / environment / "bin" / "python";
+                fs::exists(python, ignored))
                 candidates.push_back(python.string());
         }
     candidates.emplace_back("python3");

@@ -17,41 +17,54 @@ std::string remedy_for(std::string_view text, std::span<std::string_view const> 
     return near ? "did you mean `" + *near + "`?" : "use one of " + scene::joined(known);
 }
 
-void require_files_apart(std::string const& scene, std::string const& json, std::string const& accelerations) {
+void require_files_apart(std::string const& scene, std::string const& json,
+                         std::string const& accelerations) {
     auto const is_same = [](std::string const& a, std::string const& b) {
         std::error_code ignored;
-        auto const place = [&](std::string const& file) { return std::filesystem::weakly_canonical(file, ignored); };
+        auto const place = [&](std::string const& file) {
+            return std::filesystem::weakly_canonical(file, ignored);
+        };
         return !a.empty() && a != "-" && !b.empty() && place(a) == place(b);
     };
-    for (auto const& [option, file] : {std::pair{"--json", json}, {"--accelerations", accelerations}})
+    for (auto const& [option, file] :
+         {std::pair{"--json", json}, {"--accelerations", accelerations}})
         if (is_same(file, scene))
-            throw InputError("the scene would be written over", std::string(option) + " " + file, "name another file");
-    if (is_same(json, accelerations)) throw InputError("--json and --accelerations name one file", "command line", "name two");
+            throw InputError("the scene would be written over", std::string(option) + " " + file,
+                             "name another file");
+    if (is_same(json, accelerations))
+        throw InputError("--json and --accelerations name one file", "command line", "name two");
 }
 
-std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least, std::int64_t most) {
+std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least,
+                          std::int64_t most) {
     double value = 0;
     scene::NumberFault const fault = scene::parse_number(text, value);
     bool const whole = fault == scene::NumberFault::none && std::floor(value) == value;
     std::int64_t const largest = std::min(most, std::int64_t{9'000'000'000'000'000});
     if (whole && value > static_cast<double>(largest))
-        throw InputError(fmt::format("{} is above {}", text, largest), option, fmt::format("give a whole number up to {}", largest));
+        throw InputError(fmt::format("{} is above {}", text, largest), option,
+                         fmt::format("give a whole number up to {}", largest));
     if (!whole || value < -9.0e15)
-        throw InputError(fmt::format("`{}` is not a whole number", text), option, fmt::format("give one from {} on", least));
+        throw InputError(fmt::format("`{}` is not a whole number", text), option,
+                         fmt::format("give one from {} on", least));
     auto const number = static_cast<std::int64_t>(value);
     if (number < least)
-        throw InputError(fmt::format("{} is below {}", number, least), option, fmt::format("give a whole number from {} on", least));
+        throw InputError(fmt::format("{} is below {}", number, least), option,
+                         fmt::format("give a whole number from {} on", least));
     return number;
 }
 
-double number_with_unit(std::string const& option, std::string const& text, std::span<Unit const> units) {
+double number_with_unit(std::string const& option, std::string const& text,
+                        std::span<Unit const> units) {
     std::size_t const end = text.find_last_of("0123456789.");
     std::size_t const length = end == std::string::npos ? 0 : end + 1;
     std::string unit = text.substr(length);
     unit.erase(0, unit.find_first_not_of(' '));
     double value = 0;
-    bool const good = scene::parse_number(text.substr(0, length), value) == scene::NumberFault::none && value > 0;
-    auto const known = std::find_if(units.begin(), units.end(), [&](Unit const& each) { return each.name == unit; });
+    bool const good =
+        scene::parse_number(text.substr(0, length), value) == scene::NumberFault::none && value > 0;
+    auto const known = std::find_if(units.begin(), units.end(),
+                                    [&](Unit const& each) { return each.name == unit; });
     if (good && known != units.end()) return value * known->worth;
     std::string names;
     for (Unit const& each : units) names += (names.empty() ? "" : ", ") + std::string(each.name);
@@ -59,9 +72,11 @@ double number_with_unit(std::string const& option, std::string const& text, std:
                      "write a number and one of these units: " + names);
 }
 
-std::string const& known_value(std::string const& option, std::string const& text, std::span<std::string_view const> known) {
+std::string const& known_value(std::string const& option, std::string const& text,
+                               std::span<std::string_view const> known) {
     if (std::find(known.begin(), known.end(), text) == known.end())
-        throw InputError(fmt::format("`{}` is not a value of {}", text, option), "command line", remedy_for(text, known));
+        throw InputError(fmt::format("`{}` is not a value of {}", text, option), "command line",
+                         remedy_for(text, known));
     return text;
 }
 
@@ -70,7 +85,9 @@ std::vector<std::string> comma_list(std::string const& option, std::string const
     for (std::size_t begin = 0; begin <= text.size();) {
         std::size_t const end = std::min(text.find(',', begin), text.size());
         parts.push_back(text.substr(begin, end - begin));
-        if (parts.back().empty()) throw InputError(fmt::format("`{}` has an empty part", text), option, "separate values by single commas");
+        if (parts.back().empty())
+            throw InputError(fmt::format("`{}` has an empty part", text), option,
+                             "separate values by single commas");
         begin = end + 1;
     }
     return parts;

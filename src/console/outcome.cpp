@@ -5,10 +5,14 @@
 namespace catena::command {
 namespace {
 
-std::string compact(Json const& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string compact(Json const& value) {
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 void append(std::string& text, Json const& value, std::string const& indent) {
-    bool const plain = std::none_of(value.begin(), value.end(), [](Json const& entry) { return entry.is_structured() && !entry.empty(); });
+    bool const plain = std::none_of(value.begin(), value.end(), [](Json const& entry) {
+        return entry.is_structured() && !entry.empty();
+    });
     if (!value.is_structured() || value.empty() || (value.is_array() && plain)) {
         text += compact(value);
         return;

@@ -14,10 +14,12 @@ struct Outcome {
     Json json;
     bool valid = true;
     bool whole = true;           // false: stopped on request before its end
-    std::string complaint = {};  // where it is not valid or whole: what is wrong and what to do, for those who see nothing of `text`
+    std::string complaint = {};  // where it is not valid or whole: what is wrong and what to do,
+                                 // for those who see nothing of `text`
 };
 
-/// Objects a key a line, lists of plain values on one line. Numbers read back to the same doubles; what is not finite becomes null.
+/// Objects a key a line, lists of plain values on one line. Numbers read back to the same doubles;
+/// what is not finite becomes null.
 std::string json_text(Json const&);
 
 }  // namespace catena::command

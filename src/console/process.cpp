@@ -17,7 +17,8 @@ constexpr int ignored_signals[] = {SIGPIPE, SIGXFSZ};
 void prepare_process() {
     for (int const descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
-        int const opened = ::open("/dev/null", O_RDWR);  // the lowest number that is free, which is this one
+        int const opened =
+            ::open("/dev/null", O_RDWR);  // the lowest number that is free, which is this one
         if (opened > STDERR_FILENO) ::close(opened);
     }
     for (int const number : ignored_signals) std::signal(number, SIG_IGN);

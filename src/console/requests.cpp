@@ -28,7 +28,8 @@ std::vector<std::int64_t> bench_sizes(std::string const& name) {
 }
 
 bool bench_takes(std::string const& name, std::string const& option) {
-    if (option == "--joints") return name == "solve" || name == "evaluation" || name == "peers" || name == "plan";
+    if (option == "--joints")
+        return name == "solve" || name == "evaluation" || name == "peers" || name == "plan";
     if (option == "--alike") return name == "solve" || name == "evaluation";
     if (option == "--loads") return name == "solve" || name == "evaluation" || name == "peers";
     if (option == "--sizes" || option == "--repeat") return name != "sampling";

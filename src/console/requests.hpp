@@ -14,12 +14,13 @@ namespace catena::command {
 struct CommonOptions {
     std::vector<std::string> set;                                     // key.path=value
     std::string backend, gpu_levels, handles, simd, threads, refine;  // empty: the scene's
-    std::string json;                                                 // file; empty: none; "-": standard output, in the place of the text
+    std::string json;  // file; empty: none; "-": standard output, in the place of the text
     std::string log_level = "warn";
     bool quiet = false;
     std::string command_line;
 };
-/// --set and the options that stand for keys of `solver`, as the scene's reader takes them; the options win.
+/// --set and the options that stand for keys of `solver`, as the scene's reader takes them; the
+/// options win.
 std::vector<std::string> overrides_of(CommonOptions const&);
 
 struct SceneOptions : CommonOptions {
@@ -48,7 +49,8 @@ struct ReportRequest : CommonOptions {
     std::vector<std::string> scenes;  // empty: generated ones
     std::string suite;                // "stability"; empty: error against run time
     std::vector<std::int64_t> sizes;  // of the suite: coils and dills of these alone
-    std::vector<std::string> cases;   // of the suite: those whose family holds one of these words; empty: all
+    std::vector<std::string>
+        cases;  // of the suite: those whose family holds one of these words; empty: all
     std::string output = "catena-report";
     int repeat = 11;
     bool quick = false;
@@ -84,6 +86,7 @@ struct Answer : CommonOptions {
     std::string text;
 };
 
-using Request = std::variant<Answer, CheckRequest, PlanRequest, SolveRequest, RunRequest, ReportRequest, BenchRequest>;
+using Request = std::variant<Answer, CheckRequest, PlanRequest, SolveRequest, RunRequest,
+                             ReportRequest, BenchRequest>;
 
 }  // namespace catena::command

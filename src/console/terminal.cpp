@@ -32,12 +32,15 @@ void print(std::string const& text) {
     errno = 0;
     bool const written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     int const cause = errno;
-    if (!written && cause != EPIPE) throw ComputationError("cannot write to standard output: " + std::string(std::strerror(cause)));
+    if (!written && cause != EPIPE)
+        throw ComputationError("cannot write to standard output: " +
+                               std::string(std::strerror(cause)));
 }
 
 void say_error(std::string const& line) {
     // What rank 0 shares of a failure is its text alone.
-    bool const memory = line.find("std::bad_alloc") != std::string::npos || line.find("std::bad_array_new_length") != std::string::npos;
+    bool const memory = line.find("std::bad_alloc") != std::string::npos ||
+                        line.find("std::bad_array_new_length") != std::string::npos;
     std::string one = memory ? out_of_memory : printable(line);
     std::replace(one.begin(), one.end(), '\n', ' ');
     std::fflush(stdout);
@@ -45,7 +48,8 @@ void say_error(std::string const& line) {
 }
 
 void start_log(std::string const& level) {
-    auto const logger = std::make_shared<spdlog::logger>("catena", std::make_shared<StandardError>());
+    auto const logger =
+        std::make_shared<spdlog::logger>("catena", std::make_shared<StandardError>());
     logger->set_pattern("catena: %l: %v");
     logger->set_level(spdlog::level::from_str(level));
     spdlog::set_default_logger(logger);

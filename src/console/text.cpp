@@ -19,7 +19,8 @@ std::string Table::text(std::string const& indent) const {
     for (auto const& row : rows_) {
         std::string line = indent;
         for (std::size_t c = 0; c < row.size(); ++c) {
-            line += (c == 0 ? "" : "  ") + (is_left(c) ? fmt::format("{:<{}}", row[c], width[c]) : fmt::format("{:>{}}", row[c], width[c]));
+            line += (c == 0 ? "" : "  ") + (is_left(c) ? fmt::format("{:<{}}", row[c], width[c])
+                                                       : fmt::format("{:>{}}", row[c], width[c]));
         }
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
@@ -39,9 +40,13 @@ std::string Table::html() const {
     return html + "</tbody>\n</table>\n";
 }
 
-bool Table::is_left(std::size_t column) const { return std::find(left_.begin(), left_.end(), column) != left_.end(); }
+bool Table::is_left(std::size_t column) const {
+    return std::find(left_.begin(), left_.end(), column) != left_.end();
+}
 
-void Text::entry(std::string const& name, std::string const& value) { text_ += fmt::format("  {:<20} {}\n", name, value); }
+void Text::entry(std::string const& name, std::string const& value) {
+    text_ += fmt::format("  {:<20} {}\n", name, value);
+}
 
 std::string duration_text(double seconds) {
     if (!std::isfinite(seconds)) return "?";
@@ -56,6 +61,8 @@ std::string bytes_text(double bytes) {
     return fmt::format("{:.4g} kB", 1e-3 * bytes);
 }
 
-std::string counted(long long n, std::string const& one, std::string const& many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+std::string counted(long long n, std::string const& one, std::string const& many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+}
 
 }  // namespace catena::command

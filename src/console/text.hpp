@@ -6,7 +6,8 @@
 
 namespace catena::command {
 
-/// Columns as wide as their widest cell; the first is flush left, the others flush right unless `left` says otherwise.
+/// Columns as wide as their widest cell; the first is flush left, the others flush right unless
+/// `left` says otherwise.
 class Table {
   public:
     explicit Table(std::vector<std::string> header, std::vector<std::size_t> left = {0})

@@ -1,4 +1,5 @@
-// The sweeps of articulated handles over the canonical tree, as tree_sweeps.hpp describes sweeps, for open chains in joint coordinates.
+// The sweeps of articulated handles over the canonical tree, as tree_sweeps.hpp describes sweeps,
+// for open chains in joint coordinates.
 #pragma once
 
 #include "dca/articulated.hpp"
@@ -21,15 +22,17 @@ class ArticulatedLeaf {
 
     /// A body held at its inboard joint in every direction, and what its handles see.
     struct Held {
-        typename MeetingFrames<K, sliding>::template State<double> state;
+        typename JointFrameHandles<K, sliding>::template State<double> state;
         HandlePair<Handle<double, K, sliding>> handles;
-        Matrix<double, 3, K> turning, shifting;  // angular acceleration and that of the centre for each direction of handle 1
+        Matrix<double, 3, K> turning,
+            shifting;  // angular acceleration and that of the centre for each direction of handle 1
         Matrix6 matrix;
     };
     CATENA_HD_APART Held held(std::int64_t k) const {
         Held b{frames_.state(k), {}, {}, {}, {}};
         b.handles = frames_.handles(b.state, k, to_matrix(as_quaternion(b.state.rotation)));
-        Mat3 const e = transposed_times(to_matrix(as_quaternion(b.state.rotation)), axes_of(b.state.axes1));
+        Mat3 const e =
+            transposed_times(to_matrix(as_quaternion(b.state.rotation)), axes_of(b.state.axes1));
         for (int i = 0; i < 3; ++i) {
             b.turning.set_column(i, Vec3::zero());
             b.shifting.set_column(i, e.column(i));
@@ -45,11 +48,13 @@ class ArticulatedLeaf {
                 b.matrix.inertia(i, j) = shifted + dot(b.turning.column(i), turned.column(j));
             }
         b.matrix.tip = b.matrix.rest = Matrix<double, K, K>::zero();
-        for (int j = 0; j < K; ++j) b.matrix.carry.set_column(j, along(b.handles.h2, b.turning.column(j), b.shifting.column(j)));
+        for (int j = 0; j < K; ++j)
+            b.matrix.carry.set_column(
+                j, along(b.handles.h2, b.turning.column(j), b.shifting.column(j)));
         return b;
     }
     /// With the directions that the joint leaves free released.
-    CATENA_HD_APART Matrix6 matrix(std::int64_t k, int restricted, Lost& found) const {
+    CATENA_HD_APART Matrix6 matrix(std::int64_t k, int restricted, PivotFailure& found) const {
         Matrix6 m = held(k).matrix;
         for (int i = K - 1; i >= restricted; --i) {
             double const own = release(i, m).own;
@@ -57,12 +62,18 @@ class ArticulatedLeaf {
         }
         return m;
     }
-    CATENA_HD Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const { return released(loads, k, restricted).bias; }
-    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted, HandleState<double, K> const& inboard,
-                              int restricted_outboard, HandleState<double, K> const& outboard, AccelerationsView const& out) const {
+    CATENA_HD Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const {
+        return released(loads, k, restricted).bias;
+    }
+    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted,
+                              HandleState<double, K> const& inboard, int restricted_outboard,
+                              HandleState<double, K> const& outboard,
+                              AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         Released const r = released(loads, k, restricted);
-        Vec6 const a = accelerations(r.body.matrix, r.bias, r.direction, inboard, restricted, outboard, restricted_outboard) - r.closure;
+        Vec6 const a = accelerations(r.body.matrix, r.bias, r.direction, inboard, restricted,
+                                     outboard, restricted_outboard) -
+                       r.closure;
         out.alpha.store(k, r.body.turning * a);
         out.acceleration.store(k, r.body.shifting * a);
     }
@@ -74,7 +85,8 @@ class ArticulatedLeaf {
         Bias6 bias;
         ReleasedDirection<double> direction[K];
     };
-    CATENA_HD_APART Released released(LoadsView const& loads, std::int64_t k, int restricted) const {
+    CATENA_HD_APART Released released(LoadsView const& loads, std::int64_t k,
+                                      int restricted) const {
         Released r{held(k), Vec6::zero(), {}, {}};
         Vec3 const w = read_or_zero(loads.omega, k), force = read_or_zero(loads.force, k);
         Vec3 torque = read_or_zero(loads.torque, k);
@@ -82,9 +94,11 @@ class ArticulatedLeaf {
         r.closure = along(r.body.handles.h1, Vec3::zero(), cross(w, cross(w, r.body.state.r1)));
         if (loads.bias) r.closure = r.closure + loads.bias.load<K>(k);
         Matrix6& m = r.body.matrix;
-        r.bias.p = -(m.inertia * r.closure) - transposed_times(r.body.turning, torque) - transposed_times(r.body.shifting, force);
+        r.bias.p = -(m.inertia * r.closure) - transposed_times(r.body.turning, torque) -
+                   transposed_times(r.body.shifting, force);
         r.bias.w = Vec6::zero();
-        r.bias.e = along(r.body.handles.h2, Vec3::zero(), cross(w, cross(w, r.body.state.r2))) - m.carry * r.closure;
+        r.bias.e = along(r.body.handles.h2, Vec3::zero(), cross(w, cross(w, r.body.state.r2))) -
+                   m.carry * r.closure;
         for (int i = K - 1; i >= restricted; --i) {
             r.direction[i] = release(i, m);
             release(i, r.direction[i], r.bias);
@@ -102,7 +116,7 @@ class ArticulatedLeaf {
     }
 
     GroupView group_;
-    MeetingFrames<K, sliding> frames_;
+    JointFrameHandles<K, sliding> frames_;
 };
 
 template <class Leaf>
@@ -113,8 +127,9 @@ struct ArticulatedSweeps {
     using Joint = ArticulatedJoint<double, K>;
     using Offset = ArticulatedOffset<double, K>;
     using State = HandleState<double, K>;
-    static constexpr StageRecords in_stage{static_cast<int>((sizeof(Matrices) + sizeof(Biases)) / sizeof(double)),
-                                           static_cast<int>(sizeof(State) / sizeof(double)), 128};
+    static constexpr StageRecords in_stage{
+        static_cast<int>((sizeof(Matrices) + sizeof(Biases)) / sizeof(double)),
+        static_cast<int>(sizeof(State) / sizeof(double)), 128};
     struct Node {
         Joint joint;
         Offset offset;
@@ -131,11 +146,12 @@ struct ArticulatedSweeps {
 
     static std::int64_t bytes(Schedule const& schedule) {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
-               schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + sizeof(Offset) + sizeof(State));
+               schedule.joints *
+                   static_cast<std::int64_t>(sizeof(Joint) + sizeof(Offset) + sizeof(State));
     }
     CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
-    CATENA_HD void note(Lost const& found) const {
-        if (found.joint != Lost{}.joint) lower_to(lost, found.joint);
+    CATENA_HD void note(PivotFailure const& found) const {
+        if (found.joint != PivotFailure{}.joint) lower_to(lost, found.joint);
     }
     CATENA_HD_APART Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
 };
@@ -150,7 +166,7 @@ struct ArticulatedMatrixSweep {
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
     CATENA_HD Segment part(Run const& run, int p, Part) const {
-        Lost found;
+        PivotFailure found;
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.matrix(begin, s.restricted[begin], found);
         for (std::int64_t k = begin + 1; k < end_of(run, p); ++k)
@@ -158,26 +174,32 @@ struct ArticulatedMatrixSweep {
         s.note(found);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
-        Lost found;
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard,
+                             JointAt const& at) const {
+        PivotFailure found;
         Segment const segment = joined(inboard, outboard, at, found);
         s.note(found);
         return segment;
     }
-    CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Lost& found) const {
+    CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard,
+                                   JointAt const& at, PivotFailure& found) const {
         typename Sweeps::Joint joint;
         Segment const segment = join(inboard, outboard, at.restricted, joint);
         s.joints.store(at.k, joint);
         for (int i = 0; i < Leaf::K; ++i)
-            if (double const pivot = joint.factor.lu(i, i); pivot == 0 || pivot - pivot != 0) found.add(at.k);
+            if (double const pivot = joint.factor.lu(i, i); pivot == 0 || pivot - pivot != 0)
+                found.add(at.k);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
-    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
+        s.matrices.store(slot, segment);
+    }
     CATENA_HD void close(Root const& /*root*/, Segment const& /*whole*/) const {}
 };
 
-/// Biases, then the joints' states and accelerations, with the matrices assembled last. Bodies are computed anew rather than kept.
+/// Biases, then the joints' states and accelerations, with the matrices assembled last. Bodies are
+/// computed anew rather than kept.
 template <class Leaf>
 struct ArticulatedBiasSweep {
     static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
@@ -199,15 +221,19 @@ struct ArticulatedBiasSweep {
             segment = joined(segment, s.leaf.bias(loads, k, s.restricted[k]), s.at(k));
         return segment;
     }
-    CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+    CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard,
+                                   JointAt const& at) const {
         typename Sweeps::Offset offset;
         Segment const segment = join(inboard, outboard, s.joints.load(at.k), offset);
         s.offsets.store(at.k, offset);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
-    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
-    /// The ground's acceleration stands in the biases of the joints to it, and at a free tip there is no force.
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
+        s.biases.store(slot, segment);
+    }
+    /// The ground's acceleration stands in the biases of the joints to it, and at a free tip there
+    /// is no force.
     CATENA_HD void close(Root const& root, Segment const& whole) const {
         s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p});
     }

@@ -1,10 +1,11 @@
-// Beads on links read from their positions and velocities: each link's direction is computed once and serves the beads at its two ends.
+// Beads on links read from their positions and velocities: each link's direction is computed once
+// and serves the beads at its two ends.
 #pragma once
 
 #include <cmath>
 
-#include "dca/leaf.hpp"
 #include "dca/lane_access.hpp"
+#include "dca/leaf.hpp"
 #include "tree/tree.hpp"
 
 namespace catena::dca {
@@ -22,12 +23,14 @@ template <class Real, int K>
 struct BiasedSegment {
     SegmentMatrix<Real, K> matrix;
     SegmentBias<Real, K> bias;
-    static CATENA_HD BiasedSegment zero() { return {SegmentMatrix<Real, K>::zero(), SegmentBias<Real, K>::zero()}; }
+    static CATENA_HD BiasedSegment zero() {
+        return {SegmentMatrix<Real, K>::zero(), SegmentBias<Real, K>::zero()};
+    }
 };
 
 /// As Resting (fused_sweep.hpp). No jointed tips. K = 1 projected, 3 full.
 template <int K>
-struct MovingBeads {
+struct BeadLeafFromPositions {
     static constexpr bool one_by_one = false;
     template <class Real>
     struct Link {
@@ -60,18 +63,22 @@ struct MovingBeads {
     };
     using Part = Neighbours<part_length>;
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {},
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end,
+                                 InverseLength const& inverse_length = {},
                                  Reader const& by = {}) const {
         return neighbours<part_length>(begin, end, inverse_length, by);
     }
     /// One alone.
     template <class InverseLength>
-    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k, InverseLength const& inverse_length) const {
+    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k,
+                                                  InverseLength const& inverse_length) const {
         return body(neighbours<1>(k, k + 1, inverse_length, ReadHere{}), 0);
     }
-    /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
+    /// All is read at once, in the place of what is not there something that is: reads that wait
+    /// for each other cost more.
     template <int most, class InverseLength, class Reader>
-    CATENA_HD_IN_PLACE Neighbours<most> neighbours(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length,
+    CATENA_HD_IN_PLACE Neighbours<most> neighbours(std::int64_t begin, std::int64_t end,
+                                                   InverseLength const& inverse_length,
                                                    Reader const& by) const {
         Neighbours<most> read;
         read.begin = begin;
@@ -118,9 +125,9 @@ struct MovingBeads {
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Neighbours<most> const& part, int i) const {
         return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
     }
-    template <class Factors>
+    template <class Factorizer>
     CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard, Vector<double, K> const& outboard,
-                                       AccelerationsView const& out, Factors const& factors) const {
+                                       AccelerationsView const& out, Factorizer const& factors) const {
         accelerate(body(part, i), inboard, outboard, out, factors);
     }
     template <class Place>
@@ -132,7 +139,7 @@ struct MovingBeads {
     template <class Place>
     class Walk {
       public:
-        CATENA_HD_IN_PLACE Walk(MovingBeads const& beads, Place begin) : beads_(beads), begin_(begin), outboard_(beads.link_before(begin)) {}
+        CATENA_HD_IN_PLACE Walk(BeadLeafFromPositions const& beads, Place begin) : beads_(beads), begin_(begin), outboard_(beads.link_before(begin)) {}
         CATENA_HD_IN_PLACE Body<Place> body(int i) {
             Body<Place> const body = beads_.between(begin_ + i, outboard_);
             outboard_ = body.outboard;
@@ -140,7 +147,7 @@ struct MovingBeads {
         }
 
       private:
-        MovingBeads const& beads_;
+        BeadLeafFromPositions const& beads_;
         Place begin_;
         Link<RealAt<Place>> outboard_;
     };
@@ -149,8 +156,8 @@ struct MovingBeads {
         return Walk<Place>(*this, begin);
     }
 
-    template <class Place, class Factors = dca::Factors>
-    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Factors const& /*factors*/ = {}) const {
+    template <class Place, class Factorizer = dca::Factorizer>
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Factorizer const& /*factors*/ = {}) const {
         using Kind = Vector<RealAt<Place>, K>;
         auto const &u1 = body.inboard.direction, &u2 = body.outboard.direction;
         BiasedSegment<RealAt<Place>, K> s{bead_matrix(body.inverse_mass, u1, u2, Kind{}),
@@ -162,10 +169,10 @@ struct MovingBeads {
     CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Body<Place> const& /*kept*/) const {
         return segment(body);
     }
-    template <class Place, class Factors = dca::Factors>
+    template <class Place, class Factorizer = dca::Factorizer>
     CATENA_HD void accelerate(Body<Place> const& body, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out,
-                              Factors const& /*factors*/ = {}) const {
+                              Factorizer const& /*factors*/ = {}) const {
         write(out.acceleration, body.k,
               bead_acceleration(body.inverse_mass, body.force, inboard_force[0], body.inboard.direction, outboard_force[0],
                                 body.outboard.direction));

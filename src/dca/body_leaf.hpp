@@ -1,4 +1,5 @@
-// How the tree solver reads one body from the arrays: its matrices, its bias, and its acceleration once the joint forces are known.
+// How the tree solver reads one body from the arrays: its matrices, its bias, and its acceleration
+// once the joint forces are known.
 #pragma once
 
 #include "dca/floating_run.hpp"
@@ -13,21 +14,27 @@ CATENA_HD Vector<RealAt<Place>, D> read_or_zero(ConstView<D> const& view, Place 
 
 /// Direction of the link on the outboard side of body k; 0 where there is none.
 template <class Place>
-CATENA_HD Vector<RealAt<Place>, 3> outboard_direction(GroupView const& group, ConstView<3> direction, ConstView<3> tip_direction, Place k) {
+CATENA_HD Vector<RealAt<Place>, 3> outboard_direction(GroupView const& group,
+                                                      ConstView<3> direction,
+                                                      ConstView<3> tip_direction, Place k) {
     if (!ends_chain(group, k)) return read(direction, k + 1);
     return has_jointed_tip(group, k) ? read(tip_direction, k) : Vector<RealAt<Place>, 3>::zero();
 }
 
-/// The velocity terms of the inboard joint, and of a jointed tip: the ground's handle 1 there is as good as the body's handle 2.
+/// The velocity terms of the inboard joint, and of a jointed tip: the ground's handle 1 there is as
+/// good as the body's handle 2.
 template <int K, class Place>
-CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, Place k, SegmentBias<RealAt<Place>, K>& b) {
+CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, Place k,
+                                SegmentBias<RealAt<Place>, K>& b) {
     if (loads.bias) b.b1 = b.b1 + read_directions<K>(loads.bias, k);
-    if (loads.tip_bias && has_jointed_tip(group, k)) b.b2 = b.b2 - read_directions<K>(loads.tip_bias, k);
+    if (loads.tip_bias && has_jointed_tip(group, k))
+        b.b2 = b.b2 - read_directions<K>(loads.tip_bias, k);
 }
 
 /// What is wanted of the forces at body k's two joints.
 template <int K, class Place>
-CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, Place k, Vector<RealAt<Place>, K> const& inboard,
+CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, Place k,
+                            Vector<RealAt<Place>, K> const& inboard,
                             Vector<RealAt<Place>, K> const& outboard) {
     if (out.joint_force) write_directions<K>(out.joint_force, k, inboard);
     if (out.tip_force && has_jointed_tip(group, k)) write_directions<K>(out.tip_force, k, outboard);
@@ -38,8 +45,9 @@ template <int K_>
 class BeadLeaf {
   public:
     static constexpr int K = K_;
-    static constexpr bool beads = true, in_joints = false, projected = K == 1, reads_neighbours = true, by_inertia = false;
-    using Moving = MovingBeads<K>;
+    static constexpr bool beads = true, in_joints = false, projected = K == 1,
+                          reads_neighbours = true, by_inertia = false;
+    using Moving = BeadLeafFromPositions<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         direction_ = c.direction;
@@ -49,24 +57,28 @@ class BeadLeaf {
 
     template <class Place>
     CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Place k) const {
-        return bead_matrix(inverse_mass(k), read(direction_, k), outboard(k), Vector<RealAt<Place>, K>{});
+        return bead_matrix(inverse_mass(k), read(direction_, k), outboard(k),
+                           Vector<RealAt<Place>, K>{});
     }
     template <class Place>
     CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Place k) const {
         using Real = RealAt<Place>;
         auto b = SegmentBias<Real, K>::zero();
         if (loads.force.origin)
-            b = bead_bias(inverse_mass(k), read(loads.force, k), read(direction_, k), outboard(k), Vector<RealAt<Place>, K>{});
+            b = bead_bias(inverse_mass(k), read(loads.force, k), read(direction_, k), outboard(k),
+                          Vector<RealAt<Place>, K>{});
         add_joint_biases(group_, loads, k, b);
         return b;
     }
     template <class Place>
-    CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
-                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
+    CATENA_HD void accelerate(LoadsView const& loads, Place k,
+                              Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force,
+                              AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         write(out.acceleration, k,
-              bead_acceleration(inverse_mass(k), read_or_zero(loads.force, k), inboard_force[0], read(direction_, k), outboard_force[0],
-                                outboard(k)));
+              bead_acceleration(inverse_mass(k), read_or_zero(loads.force, k), inboard_force[0],
+                                read(direction_, k), outboard_force[0], outboard(k)));
     }
 
   private:
@@ -96,13 +108,16 @@ template <class Handle, class Real>
 struct TurnedHandlePair {
     Handle h1, h2;
     Matrix<Real, 3, 3> to_force_axes;
-    CATENA_HD Vector<Real, 3> in_force_axes(Vector<Real, 3> const& v) const { return to_force_axes * v; }
+    CATENA_HD Vector<Real, 3> in_force_axes(Vector<Real, 3> const& v) const {
+        return to_force_axes * v;
+    }
 };
 
-/// What the joint on the inboard side yields is part of a body's handle (src/dca/README.md, "Joints"): Z + P B^-1 P^T. The angular
-/// directions are the last ones of full handles.
+/// What the joint on the inboard side yields is part of a body's handle (src/dca/README.md,
+/// "Joints"): Z + P B^-1 P^T. The angular directions are the last ones of full handles.
 template <int K, class Place>
-CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k, SegmentMatrix<RealAt<Place>, K>& s) {
+CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
+                              SegmentMatrix<RealAt<Place>, K>& s) {
     if constexpr (K == 6)
         if (compliance.origin) {
             auto const c = as_symmetric(read(compliance, k));
@@ -115,10 +130,10 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k, SegmentMa
 
 /// Joint coordinates: handles along the axes of the meeting frames, forces in B. `sliding`: prismatic and helical joints too.
 template <int K, bool sliding>
-class MeetingFrames {
+class JointFrameHandles {
   public:
     static constexpr bool any_forces = sliding, in_joints = true, on_links = false;
-    explicit MeetingFrames(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
+    explicit JointFrameHandles(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
         compliance_ = c.compliance;
@@ -265,7 +280,7 @@ class BodyLeaf {
     using Frames = Frames_;
     static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
     static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;  // or whether there are any
-    /// Whether runs of them on hinges alone go by their inertias (floating_run.hpp).
+    /// Whether runs of them on revolute joints alone go by their inertias (floating_run.hpp).
     static constexpr bool by_inertia = K == 5 && in_joints && !Frames::any_forces;
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
@@ -302,8 +317,8 @@ class BodyLeaf {
         Mat3At<Place> turn;  // to_matrix() of its rotation
         Vec3At<Place> torque;
     };
-    template <class Place, class Factors = dca::Factors>
-    CATENA_HD Turning<Place> turning(LoadsView const& loads, Body<Place> const& body, Factors const& factors = {}) const {
+    template <class Place, class Factorizer = dca::Factorizer>
+    CATENA_HD Turning<Place> turning(LoadsView const& loads, Body<Place> const& body, Factorizer const& factors = {}) const {
         return factors.with_inverse([&](auto const& inverse) {
             return Turning<Place>{matrix_scale(as_quaternion(body.state.rotation), inverse), applied_torque(loads, body, inverse)};
         });
@@ -351,27 +366,27 @@ class BodyLeaf {
 
     /// Precondition of these: by_inertia.
     template <class Place>
-    CATENA_HD HingedFrame<RealAt<Place>> hinged_frame(LoadsView const& loads, Place k) const {
+    CATENA_HD RevoluteFrame<RealAt<Place>> revolute_frame(LoadsView const& loads, Place k) const {
         auto f = frame_at_rest(k);
         set_moving(loads, k, read_or_zero(loads.omega, k), f);
         return f;
     }
     template <class Place>
-    CATENA_HD HingedBody<RealAt<Place>> hinged(LoadsView const& loads, Place k) const {
-        auto b = hinged_at_rest(loads, k);
+    CATENA_HD ArticulatedBody<RealAt<Place>> revolute(LoadsView const& loads, Place k) const {
+        auto b = revolute_at_rest(loads, k);
         auto const omega = read_or_zero(loads.omega, k);
         set_moving(loads, k, omega, b);
         add_gyroscopic(loads, omega, b);
         return b;
     }
-    /// `loads.hinges` and `loads.hinge_rate` are given.
+    /// `loads.revolute joints` and `loads.revolute_rate` are given.
     template <class Place, class Reader = ReadHere>
-    CATENA_HD BodyOnHinge<RealAt<Place>> on_hinge(LoadsView const& loads, Place k, Reader&& by = {}) const {
-        return {rotation_on_hinge(loads, k, by),
+    CATENA_HD BodyOnRevolute<RealAt<Place>> on_revolute(LoadsView const& loads, Place k, Reader&& by = {}) const {
+        return {rotation_on_revolute(loads, k, by),
                 by(group_.axes1.template components<3>(3), k),
                 by(group_.r1, k),
                 frames_.r2(k, by),
-                by(loads.hinge_rate, k)[0],
+                by(loads.revolute_rate, k)[0],
                 by(group_.mass, k)[0],
                 as_symmetric(by(group_.inertia, k))};
     }
@@ -381,7 +396,7 @@ class BodyLeaf {
     }
     // What they are made of. Not copied: a compiler may copy vectors by halves, which the next to read them waits for.
     template <class Place>
-    CATENA_HD HingedFrame<RealAt<Place>> frame_at_rest(Place k) const {
+    CATENA_HD RevoluteFrame<RealAt<Place>> frame_at_rest(Place k) const {
         using Vector3 = Vec3At<Place>;
         auto const state = frames_.state(k);
         return {state.r1,
@@ -393,22 +408,22 @@ class BodyLeaf {
                 Vector<RealAt<Place>, 5>::zero()};
     }
     template <class Place>
-    CATENA_HD HingedBody<RealAt<Place>> hinged_at_rest(LoadsView const& loads, Place k) const {
+    CATENA_HD ArticulatedBody<RealAt<Place>> revolute_at_rest(LoadsView const& loads, Place k) const {
         return {frame_at_rest(k), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)), read_or_zero(loads.torque, k),
                 read_or_zero(loads.force, k)};
     }
     template <class Place>
-    CATENA_HD void set_moving(LoadsView const& loads, Place k, Vec3At<Place> const& omega, HingedFrame<RealAt<Place>>& f) const {
+    CATENA_HD void set_moving(LoadsView const& loads, Place k, Vec3At<Place> const& omega, RevoluteFrame<RealAt<Place>>& f) const {
         f.inward1 = cross(omega, cross(omega, f.r1));
         f.inward2 = cross(omega, cross(omega, f.r2));
-        if (loads.hinge_rate.origin) {
-            f.bias = hinge_bias(f.e1, omega, read(loads.hinge_rate, k)[0]);
+        if (loads.revolute_rate.origin) {
+            f.bias = revolute_bias(f.e1, omega, read(loads.revolute_rate, k)[0]);
             if (!begins_chain(group_, k)) return;
         }
         if (loads.bias) f.bias = read_directions<5>(loads.bias, k);
     }
     template <class Real>
-    CATENA_HD void add_gyroscopic(LoadsView const& loads, Vector<Real, 3> const& omega, HingedBody<Real>& b) const {
+    CATENA_HD void add_gyroscopic(LoadsView const& loads, Vector<Real, 3> const& omega, ArticulatedBody<Real>& b) const {
         if (loads.gyroscopic) b.torque = b.torque - cross(omega, b.inertia * omega);
     }
 
@@ -443,12 +458,12 @@ class BodyLeaf {
     }
 
     template <class Reader>
-    CATENA_HD static Quat rotation_on_hinge(LoadsView const& loads, std::int64_t k, Reader&& by) {
-        return as_quaternion(by(loads.hinges.rotation, k));
+    CATENA_HD static Quat rotation_on_revolute(LoadsView const& loads, std::int64_t k, Reader&& by) {
+        return as_quaternion(by(loads.revolutes.rotation, k));
     }
     template <SeveralBodies Place, class Reader>
-    CATENA_HD QuatAt<Place> rotation_on_hinge(LoadsView const& loads, Place const& several, Reader&& by) const {
-        return as_quaternion(by(loads.hinges.frame, several)) * as_quaternion(frames_.rotation(several, by));
+    CATENA_HD QuatAt<Place> rotation_on_revolute(LoadsView const& loads, Place const& several, Reader&& by) const {
+        return as_quaternion(by(loads.revolutes.frame, several)) * as_quaternion(frames_.rotation(several, by));
     }
 
     GroupView group_;

@@ -1,5 +1,6 @@
-// Matrices, biases, forces and accelerations in one sweep, for where nothing is to be hidden and nothing repeated: leaves are computed
-// again on the way down, but for what takes longer than to keep it.
+// Matrices, biases, forces and accelerations in one sweep, for where nothing is to be hidden and
+// nothing repeated: leaves are computed again on the way down, but for what takes longer than to
+// keep it.
 #pragma once
 
 #include <cstddef>
@@ -26,16 +27,19 @@ struct Resting {
         std::int64_t begin;
     };
     template <class InverseLength, class Reader>
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/, InverseLength const& /*inverse_length*/,
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/,
+                                 InverseLength const& /*inverse_length*/,
                                  Reader const& /*by*/) const {
         return {begin};
     }
     template <class InverseLength>
-    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k, InverseLength const& /*inverse_length*/) const {
+    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k,
+                                                  InverseLength const& /*inverse_length*/) const {
         return body(Part{k}, 0);
     }
     template <class Reader = ReadHere>
-    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i, Reader const& by = {}) const {
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i,
+                                               Reader const& by = {}) const {
         return {leaf.body(loads, part.begin + i, by), restricted[part.begin + i]};
     }
     /// Of bodies that come by another way (cuda/sweeps/prefetch.cuh).
@@ -56,24 +60,32 @@ struct Resting {
 
     /// What its segment and its accelerations need, for one that keeps less.
     using Turning = typename Leaf::template Turning<std::int64_t>;
-    template <class Factors>
-    CATENA_HD Turning turning(Body<std::int64_t> const& body, Factors const& factors) const {
+    template <class Factorizer>
+    CATENA_HD Turning turning(Body<std::int64_t> const& body, Factorizer const& factors) const {
         return leaf.turning(loads, body, factors);
     }
-    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Turning const& turning, Vector<double, Leaf::K> const& inboard,
-                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
-        if (out.acceleration.origin) leaf.accelerate(body, leaf.turned(body, turning), inboard, outboard, out);
+    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Turning const& turning,
+                                       Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard,
+                                       AccelerationsView const& out) const {
+        if (out.acceleration.origin)
+            leaf.accelerate(body, leaf.turned(body, turning), inboard, outboard, out);
     }
-    template <class Factors = dca::Factors>
-    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
-                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out,
-                                       Factors const& factors = {}) const {
-        if (out.acceleration.origin) accelerate(body, turning(body, factors), inboard, outboard, out);
+    template <class Factorizer = dca::Factorizer>
+    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body,
+                                       Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard,
+                                       AccelerationsView const& out,
+                                       Factorizer const& factors = {}) const {
+        if (out.acceleration.origin)
+            accelerate(body, turning(body, factors), inboard, outboard, out);
     }
-    template <class Factors>
-    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
-                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out,
-                                       Factors const& factors) const {
+    template <class Factorizer>
+    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i,
+                                       Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard,
+                                       AccelerationsView const& out,
+                                       Factorizer const& factors) const {
         accelerate(body(part, i), inboard, outboard, out, factors);
     }
     /// Of several bodies side by side, whose joints restrict what handles carry.
@@ -81,35 +93,43 @@ struct Resting {
     struct Walk {
         Resting const& bodies;
         Place begin;
-        CATENA_HD_IN_PLACE Body<Place> body(int i) const { return {bodies.leaf.body(bodies.loads, begin + i), Leaf::K}; }
+        CATENA_HD_IN_PLACE Body<Place> body(int i) const {
+            return {bodies.leaf.body(bodies.loads, begin + i), Leaf::K};
+        }
     };
     template <class Place>
     CATENA_HD_IN_PLACE Walk<Place> walk(Place begin) const {
         return {*this, begin};
     }
 
-    template <class Place, class Factors = dca::Factors>
-    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body, Factors const& factors = {}) const {
+    template <class Place, class Factorizer = dca::Factorizer>
+    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body,
+                                                            Factorizer const& factors = {}) const {
         return leaf.segment(loads, body, leaf.turned(body, leaf.turning(loads, body, factors)));
     }
-    CATENA_HD BiasedSegment<double, Leaf::K> segment(Body<std::int64_t> const& body, Turning const& turning) const {
+    CATENA_HD BiasedSegment<double, Leaf::K> segment(Body<std::int64_t> const& body,
+                                                     Turning const& turning) const {
         return leaf.segment(loads, body, leaf.turned(body, turning));
     }
     template <class Place>
-    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body, Kept<Place> const& kept) const {
+    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body,
+                                                            Kept<Place> const& kept) const {
         return leaf.segment(loads, body, kept);
     }
     template <class Place>
-    CATENA_HD void accelerate(Kept<Place> const& kept, Vector<RealAt<Place>, Leaf::K> const& inboard,
-                              Vector<RealAt<Place>, Leaf::K> const& outboard, AccelerationsView const& out) const {
-        if (out.acceleration.origin) leaf.accelerate(leaf.body(loads, kept.k), kept, inboard, outboard, out);
+    CATENA_HD void accelerate(Kept<Place> const& kept,
+                              Vector<RealAt<Place>, Leaf::K> const& inboard,
+                              Vector<RealAt<Place>, Leaf::K> const& outboard,
+                              AccelerationsView const& out) const {
+        if (out.acceleration.origin)
+            leaf.accelerate(leaf.body(loads, kept.k), kept, inboard, outboard, out);
     }
 };
 
-/// Matrices and biases at once; on the way down a part is eliminated again from the force at its first joint, but for runs on hinges, which
-/// go by their inertias. `Bodies`: as Resting.
+/// Matrices and biases at once; on the way down a part is eliminated again from the force at its
+/// first joint, but for runs on revolute joints, which go by their inertias. `Bodies`: as Resting.
 template <class Leaf, class Bodies>
-struct Evaluation {
+struct FusedSweep {
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
@@ -122,10 +142,12 @@ struct Evaluation {
     using Passed = OneSided<double, K>;
     using Passage = Elimination<double, K>;
     static constexpr bool descends = true, one_by_one = Bodies::one_by_one;
-    static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
+    static constexpr bool keeps_nodes =
+        sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
     static constexpr bool takes_whole_runs = Leaf::by_inertia;
     static constexpr bool goes_short = !takes_whole_runs;
-    /// Whether parts are walked in loops in any case: larger handles fill a processor's instruction cache.
+    /// Whether parts are walked in loops in any case: larger handles fill a processor's instruction
+    /// cache.
     static constexpr bool in_loops = K > 3;
     Sweeps s;
     Bodies bodies;
@@ -133,49 +155,52 @@ struct Evaluation {
 
     /// One after the other, where both at once find no registers; the way down is this one.
     struct Biases : BiasSweep<Leaf> {
-        Evaluation whole;
+        FusedSweep whole;
         template <bool unroll>
-        CATENA_HD_IN_PLACE void down(Run const& run, int p, NothingRead, Directions const& first, Directions const& next) const {
-            whole.template down<unroll>(run, p, whole.read(begin_of(run, p), end_of(run, p)), first, next);
+        CATENA_HD_IN_PLACE void down(Run const& run, int p, NothingRead, Directions const& first,
+                                     Directions const& next) const {
+            whole.template down<unroll>(run, p, whole.read(begin_of(run, p), end_of(run, p)), first,
+                                        next);
         }
     };
     MatrixSweep<Leaf> matrices() const { return {s}; }
     Biases biases() const { return {{s, bodies.loads, out}, *this}; }
 
-    /// Runs on hinges go by their inertias.
+    /// Runs on revolute joints go by their inertias.
     CATENA_HD bool takes(Run const& run) const {
-        bool hinges = run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
+        bool revolutes =
+            run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
         if (run.count == longest_run) {  // asked for together
         CATENA_UNROLL
-            for (int i = 1; i < longest_run; ++i) hinges &= s.restricted[run.body + i] == K;
-            return hinges;
+            for (int i = 1; i < longest_run; ++i) revolutes &= s.restricted[run.body + i] == K;
+            return revolutes;
         }
-        for (int i = 1; i < run.count; ++i) hinges &= s.restricted[run.body + i] == K;
-        return hinges;
+        for (int i = 1; i < run.count; ++i) revolutes &= s.restricted[run.body + i] == K;
+        return revolutes;
     }
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
-        HingesInJoints<Sweeps> kept(s, run, goes_by_all());
+        RunWorkspace<Sweeps> kept(s, run, goes_by_all());
         int const count = static_cast<int>(run.count);
         Segment segment;
         if (follows()) {
             RunWithLoads<Leaf> const loaded = with_loads(run);
-            segment = climb_hinges<double>(
-                count, FollowedBodies<Leaf, HingesInJoints<Sweeps>>(loaded, goes_by_all(), kept),
+            segment = climb_revolutes<double>(
+                count, FollowedBodies<Leaf, RunWorkspace<Sweeps>>(loaded, goes_by_all(), kept),
                 [&](int i) { return loaded.torque_about(i); }, kept);
         } else {
-            auto const body = [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); };
-            segment = climb_hinges<double>(count, BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; }, kept);
+            auto const body = [&](int i) { return s.leaf.revolute(bodies.loads, run.body + i); };
+            segment = climb_revolutes<double>(count, BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; }, kept);
         }
         s.note(kept.lost());
         return segment;
     }
     CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
-        HingesInJoints<Sweeps> const kept(s, run, goes_by_all());
+        RunWorkspace<Sweeps> const kept(s, run, goes_by_all());
         typename RunWithLoads<Leaf>::PassedOn passed{next};
         Directions& outboard = passed.force;
-        descend_hinges<double>(
+        descend_revolutes<double>(
             static_cast<int>(run.count), goes_by_all(), [&](int i) { return frame(run, kept, i); }, kept, first, next,
-            [&](int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) {
+            [&](int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) {
                 std::int64_t const k = run.body + i;
                 accelerate(run, i, frame, a);
                 if (!out.joint_force) return;
@@ -184,35 +209,35 @@ struct Evaluation {
                 else if (follows())
                     with_loads(run).pass_on(i, frame, a, kept, passed);
                 else
-                    outboard = inboard_force(s.leaf.hinged(bodies.loads, k), a, outboard);
+                    outboard = inboard_force(s.leaf.revolute(bodies.loads, k), a, outboard);
                 write_directions<K>(out.joint_force, k, outboard);
             },
-            [](int, BodyAcceleration<double>&) {}, [&](int i, double of_hinge) { turn(run, i, of_hinge); });
+            [](int, BodyAcceleration<double>&) {}, [&](int i, double of_revolute) { turn(run, i, of_revolute); });
     }
     /// Whether what moves within runs is found on the way.
-    CATENA_HD bool follows() const { return bodies.loads.hinges.given; }
+    CATENA_HD bool follows() const { return bodies.loads.revolutes.given; }
     CATENA_HD RunWithLoads<Leaf> with_loads(Run const& run) const { return {s.leaf, bodies.loads, run}; }
-    CATENA_HD HingedFrame<double> frame(Run const& run, HingesInJoints<Sweeps> const& kept, int i) const {
-        return follows() ? with_loads(run).frame(i, kept) : s.leaf.hinged_frame(bodies.loads, run.body + i);
+    CATENA_HD RevoluteFrame<double> frame(Run const& run, RunWorkspace<Sweeps> const& kept, int i) const {
+        return follows() ? with_loads(run).frame(i, kept) : s.leaf.revolute_frame(bodies.loads, run.body + i);
     }
     /// Whether anything is wanted of each of a run's bodies.
     CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }
-    /// What is wanted of body i of a run on hinges.
-    CATENA_HD void accelerate(Run const& run, int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) const {
+    /// What is wanted of body i of a run on revolute joints.
+    CATENA_HD void accelerate(Run const& run, int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) const {
         std::int64_t const k = run.body + i;
-        if (out.hinge_acceleration.origin) {
+        if (out.revolute_acceleration.origin) {
             bool const begins = i == 0, ends = i == static_cast<int>(run.count) - 1;
-            if (begins) out.hinge_acceleration.at(k, 0) = about_inboard_hinge(frame, a);
-            if (ends) out.hinge_acceleration.at(k + 1, 1) = about_outboard_hinge(frame, a);
+            if (begins) out.revolute_acceleration.at(k, 0) = about_inboard_revolute(frame, a);
+            if (ends) out.revolute_acceleration.at(k + 1, 1) = about_outboard_revolute(frame, a);
             if (!(begins && begins_chain(s.leaf.group(), k)) && !(ends && comes_before_one(s.leaf.group(), k))) return;
         }
         if (!out.acceleration.origin) return;
         write(out.alpha, k, a.alpha);
         write(out.acceleration, k, a.a);
     }
-    /// And of its hinge.
-    CATENA_HD void turn(Run const& run, int i, double of_hinge) const {
-        if (out.hinge_acceleration.origin) out.hinge_acceleration.at(run.body + i, 0) = of_hinge;
+    /// And of its revolute joint.
+    CATENA_HD void turn(Run const& run, int i, double of_revolute) const {
+        if (out.revolute_acceleration.origin) out.revolute_acceleration.at(run.body + i, 0) = of_revolute;
     }
 
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
@@ -221,17 +246,17 @@ struct Evaluation {
         return bodies.part(begin, end, inverse_length, by);
     }
     /// `factors`: as factorize(), if not always.
-    template <class AnyPart, class Factors = dca::Factors>
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factors const& factors = {}) const {
+    template <class AnyPart, class Factorizer = dca::Factorizer>
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factorizer const& factors = {}) const {
         std::int64_t const begin = begin_of(run, p);
         int const count = static_cast<int>(end_of(run, p) - begin);
-        Lost found;
+        PivotFailure found;
         Segment segment = bodies.segment(bodies.body(part, 0), factors);
         each_body<unrolled<K>>(1, count, [&](int i) {
             Body const body = bodies.body(part, i);
             pass_up(segment, i, bodies.segment(body, factors), {begin + i, body.restricted}, Forgotten{}, found, factors);
         });
-        if constexpr (Factors::may_fail)
+        if constexpr (Factorizer::may_fail)
             if (!found.none()) return this->part(run, p, part);
         s.note(found);
         return segment;
@@ -241,16 +266,16 @@ struct Evaluation {
     template <class Restricted, class Kept>
     CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept) const {
         Segment segment = first_of(kept.template get<Segment>(0), kept);
-        Lost found;
+        PivotFailure found;
         each_body<unrolled<K>>(1, count, [&](int i) {
-            pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, Factors{});
+            pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, Factorizer{});
         });
         s.note(found);
         return segment;
     }
     /// The same without branches: missing bodies have zero() there and joints that are free. `factors` look after what is lost.
-    template <class Restricted, class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment join_bodies_at_once(int count, Restricted const& restricted, Kept&& kept, Factors const& factors) const {
+    template <class Restricted, class Kept, class Factorizer>
+    CATENA_HD_IN_PLACE Segment join_bodies_at_once(int count, Restricted const& restricted, Kept&& kept, Factorizer const& factors) const {
         Segment own[part_length];
         CATENA_UNROLL
         for (int i = 0; i < part_length; ++i) own[i] = kept.template get<Segment>(i);
@@ -258,7 +283,7 @@ struct Evaluation {
         CATENA_UNROLL
         for (int i = 1; i < part_length; ++i) {
             Directions const b1 = segment.bias.b1;
-            Lost found;
+            PivotFailure found;
             pass_up(segment, i, own[i], {0, restricted(i)}, kept, found, factors);
             if (i >= count) segment.bias.b1 = b1;
         }
@@ -270,23 +295,23 @@ struct Evaluation {
         keep(at.k, node);
         return segment;
     }
-    template <class Factors = dca::Factors>
+    template <class Factorizer = dca::Factorizer>
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
-                             Factors const& factors = {}) const {
-        Lost found;
+                             Factorizer const& factors = {}) const {
+        PivotFailure found;
         Segment segment = inboard;
         append(segment, outboard, at, node.joint, node.offset, found, factors);
-        if constexpr (Factors::may_fail)
+        if constexpr (Factorizer::may_fail)
             if (!found.none()) return joined(inboard, outboard, at, node);
         s.note(found);
         return segment;
     }
     /// The same by factors that look after what is lost. Beyond a free tip `outboard` may be zero() at a free joint: of the segment what
     /// counts there, its inboard handle, stays as it was, but that the bias may be another zero.
-    template <class Factors>
+    template <class Factorizer>
     CATENA_HD Segment joined_at_once(Segment const& inboard, Segment const& outboard, int restricted, Node& node,
-                                     Factors const& factors) const {
-        Lost found;
+                                     Factorizer const& factors) const {
+        PivotFailure found;
         Segment segment = inboard;
         append(segment, outboard, {0, restricted}, node.joint, node.offset, found, factors);
         return segment;
@@ -321,16 +346,16 @@ struct Evaluation {
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
     }
     /// The same of a chain whose tip is free. `factors`: as factorize(), always.
-    template <class Factors>
-    CATENA_HD void close_free(JointAt const& first, Segment const& floating, Factors const& factors) const {
-        static_assert(!Factors::may_fail);
+    template <class Factorizer>
+    CATENA_HD void close_free(JointAt const& first, Segment const& floating, Factorizer const& factors) const {
+        static_assert(!Factorizer::may_fail);
         Joint joint{};
         s.forces.store(first.k, first_force(first, floating, factors, joint.factor));
         s.joints.store(first.k, joint);
     }
     /// Of a whole chain whose tip is free, at its first joint: as close().
-    template <class Factors = dca::Factors>
-    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factors const& factors = {}) const {
+    template <class Factorizer = dca::Factorizer>
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factorizer const& factors = {}) const {
         Symmetric<double, K> factor;
         return first_force(at, floating, factors, factor);
     }
@@ -355,10 +380,10 @@ struct Evaluation {
     /// `passages`: put(i, Passage) and get(i), i < `most`, of what a part's joints pass on, the last one's apart where there is no place
     /// for it; one that `keeps_turnings`: keep(i, Bodies::Turning) and turning(i), i < part_length, as well. `factors`: as factorize(),
     /// always.
-    template <bool unroll, class Passages, class Factors = dca::Factors>
+    template <bool unroll, class Passages, class Factorizer = dca::Factorizer>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next, Passages&& passages,
-                                 Factors const& factors = {}) const {
-        static_assert(!Factors::may_fail);
+                                 Factorizer const& factors = {}) const {
+        static_assert(!Factorizer::may_fail);
         constexpr bool unrolled_here = unroll || unrolled<K>, last_apart = std::remove_reference_t<Passages>::most < part_length - 1;
         std::int64_t const k = begin_of(run, p);
         int const last = static_cast<int>(end_of(run, p) - k) - 1;
@@ -423,22 +448,22 @@ struct Evaluation {
         store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
     /// What the forces at its joints do to body k.
-    template <class Factors>
+    template <class Factorizer>
     CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard,
-                                       Factors const& factors) const {
+                                       Factorizer const& factors) const {
         bodies.accelerate(body, inboard, outboard, out, factors);
         store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
 
   private:
-    template <class Factors>
-    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factors const& factors,
+    template <class Factorizer>
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factorizer const& factors,
                                      Symmetric<double, K>& factor) const {
-        Lost found;
+        PivotFailure found;
         factor = factors(floating.matrix.z11, at.restricted);
         s.watch(at, factor, found);
-        if constexpr (Factors::may_fail)
-            if (!found.none()) return first_force(at, floating, dca::Factors{}, factor);
+        if constexpr (Factorizer::may_fail)
+            if (!found.none()) return first_force(at, floating, dca::Factorizer{}, factor);
         s.note(found);
         return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
     }
@@ -451,9 +476,9 @@ struct Evaluation {
         else
             return bodies.body(part, i);
     }
-    template <class Passages, class Factors>
+    template <class Passages, class Factorizer>
     CATENA_HD_IN_PLACE Segment segment_of(Body const& body, [[maybe_unused]] int i, [[maybe_unused]] Passages& passages,
-                                          Factors const& factors) const {
+                                          Factorizer const& factors) const {
         if constexpr (turnings_kept<Passages>) {
             auto const turning = bodies.turning(body, factors);
             passages.keep(i, turning);
@@ -470,17 +495,17 @@ struct Evaluation {
         kept.put(0, Passed{{}, own.matrix.z12, own.bias});
         return own;
     }
-    template <class Kept, class Factors>
-    CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at, Kept&& kept, Lost& found,
-                                    Factors const& factors) const {
+    template <class Kept, class Factorizer>
+    CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at, Kept&& kept, PivotFailure& found,
+                                    Factorizer const& factors) const {
         Joint joint;
         Directions offset;
         append(segment, own, at, joint, offset, found, factors);
         kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
     }
-    template <class Factors>
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
-                          Factors const& factors) const {
+    template <class Factorizer>
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, PivotFailure& found,
+                          Factorizer const& factors) const {
         dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
         s.watch(at, joint.factor, found);
         dca::append(segment.bias, outboard.bias, joint, offset);

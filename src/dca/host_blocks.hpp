@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "dca/solver.hpp"
-#include "tree/stages.hpp"
 #include "dca/tree_sweeps.hpp"
+#include "tree/stages.hpp"
 
 namespace catena {
 
@@ -13,8 +13,10 @@ class HostBlocks {
   public:
     /// A chain a block. Precondition: the group has no chain that is shared with other ranks.
     explicit HostBlocks(ChainGroup const& group)
-        : schedule_(group.schedule), plan_(dca::plan_blocks(group.schedule, last_bodies(group.tips))) {
-        for (auto const& level : schedule_.levels) merges_.insert(merges_.end(), level.begin(), level.end());
+        : schedule_(group.schedule),
+          plan_(dca::plan_blocks(group.schedule, last_bodies(group.tips))) {
+        for (auto const& level : schedule_.levels)
+            merges_.insert(merges_.end(), level.begin(), level.end());
     }
     std::int64_t count() const { return plan_.blocks(); }
 
@@ -27,7 +29,8 @@ class HostBlocks {
 
 class HostBlock {
   public:
-    HostBlock(HostBlocks const& blocks, std::int64_t at) : blocks_(blocks), at_(static_cast<std::size_t>(at)) {}
+    HostBlock(HostBlocks const& blocks, std::int64_t at)
+        : blocks_(blocks), at_(static_cast<std::size_t>(at)) {}
 
     template <class Action>
     void each_body(Action const& action) const {
@@ -39,22 +42,32 @@ class HostBlock {
     }
     template <class Sweep>
     void climb(Sweep const& sweep) const {
-        each(plan().run[at_], [&](std::int64_t i) { climb_run(sweep, blocks_.schedule_.runs[static_cast<std::size_t>(i)]); });
-        for (int l = 0; l < plan().levels; ++l) each_merge(l, [&](dca::Merge const& m) { climb_merge(sweep, m); });
-        each(plan().root[at_], [&](std::int64_t i) { close_root(sweep, blocks_.schedule_.roots[static_cast<std::size_t>(i)]); });
+        each(plan().run[at_], [&](std::int64_t i) {
+            climb_run(sweep, blocks_.schedule_.runs[static_cast<std::size_t>(i)]);
+        });
+        for (int l = 0; l < plan().levels; ++l)
+            each_merge(l, [&](dca::Merge const& m) { climb_merge(sweep, m); });
+        each(plan().root[at_], [&](std::int64_t i) {
+            close_root(sweep, blocks_.schedule_.roots[static_cast<std::size_t>(i)]);
+        });
     }
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep) const {
         climb(sweep);
-        for (int l = plan().levels; l-- > 0;) each_merge(l, [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
-        each(plan().run[at_], [&](std::int64_t i) { descend_run(sweep, blocks_.schedule_.runs[static_cast<std::size_t>(i)]); });
+        for (int l = plan().levels; l-- > 0;)
+            each_merge(l,
+                       [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
+        each(plan().run[at_], [&](std::int64_t i) {
+            descend_run(sweep, blocks_.schedule_.runs[static_cast<std::size_t>(i)]);
+        });
     }
 
   private:
     dca::BlockPlan const& plan() const { return blocks_.plan_; }
     template <class Action>
     void each_merge(int level, Action const& action) const {
-        dca::Range const range = plan().merge[at_ * static_cast<std::size_t>(plan().levels) + static_cast<std::size_t>(level)];
+        dca::Range const range = plan().merge[at_ * static_cast<std::size_t>(plan().levels) +
+                                              static_cast<std::size_t>(level)];
         each(range, [&](std::int64_t i) { action(blocks_.merges_[static_cast<std::size_t>(i)]); });
     }
     template <class Action>

@@ -1,5 +1,6 @@
-// Inertias and wrenches of articulated bodies as runs on hinges (floating_run.hpp) go by them: about another point, in other axes, and past
-// a hinge, which is released. Host and device; Real = double, wider, or several side by side.
+// Inertias and wrenches of articulated bodies as runs on revolute joints (floating_run.hpp) go by
+// them: about another point, in other axes, and past a revolute joint, which is released. Host and
+// device; Real = double, wider, or several side by side.
 #pragma once
 
 #include "dca/leaf.hpp"
@@ -15,10 +16,11 @@ template <class Real>
 struct Wrench {
     Vector<Real, 3> torque, force;
 };
-/// A hinge when it was released: I along it, its own share's inverse, and the parts that bias and first have in it. About the
-/// meeting point, in the axes of the run, but those of the run's last hinge in its own.
+/// A revolute joint when it was released: I along it, its own share's inverse, and the parts that
+/// bias and first have in it. About the meeting point, in the axes of the run, but those of the
+/// run's last revolute joint in its own.
 template <class Real>
-struct ReleasedHinge {
+struct ReleasedRevolute {
     Vector<Real, 3> turning, moving;
     Real inverse, bias;
     Vector<Real, 5> first;
@@ -108,14 +110,14 @@ template <class Real>
 CATENA_HD void turn_axes(Wrench<Real>& w, Matrix<Real, 3, 3> const& q) {
     w = {q * w.torque, q * w.force};
 }
-/// What a hinge that is released takes away, for a unit of what `along` it there is.
+/// What a revolute joint that is released takes away, for a unit of what `along` it there is.
 template <class Real>
 struct Release {
     Vector<Real, 3> axis, turning, moving;
 };
-/// No torque acts about `axis`, through the point that I is about, from here on. Of ReleasedHinge all but what the wrenches have.
+/// No torque acts about `axis`, through the point that I is about, from here on. Of ReleasedRevolute all but what the wrenches have.
 template <class Real>
-CATENA_HD Release<Real> release_hinge(SpatialInertia<Real>& all, Vector<Real, 3> const& axis, ReleasedHinge<Real>& h) {
+CATENA_HD Release<Real> release_revolute(SpatialInertia<Real>& all, Vector<Real, 3> const& axis, ReleasedRevolute<Real>& h) {
     h.turning = all.turning * axis;
     h.moving = transposed_times(all.coupling, axis);
     h.inverse = Real(1) / dot(axis, h.turning);
@@ -134,18 +136,18 @@ template <class Real>
 CATENA_HD void take_away(Wrench<Real>& w, Release<Real> const& r, Real const& along) {
     w = {plus_scaled(w.torque, -along, r.turning), plus_scaled(w.force, -along, r.moving)};
 }
-/// Returns what the wrench had along the hinge.
+/// Returns what the wrench had along the revolute joint.
 template <class Real>
-CATENA_HD Real release_hinge(Wrench<Real>& w, Release<Real> const& r) {
+CATENA_HD Real release_revolute(Wrench<Real>& w, Release<Real> const& r) {
     Real const along = dot(r.axis, w.torque);
     take_away(w, r, along);
     return along;
 }
-/// What a hinge does about its axis on the body outboard of it: nothing, or a torque, which then is in no body's own.
+/// What a revolute joint does about its axis on the body outboard of it: nothing, or a torque, which then is in no body's own.
 struct Undriven {};
 template <class Real>
 CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Undriven) {
-    return release_hinge(bias, r);
+    return release_revolute(bias, r);
 }
 template <class Real>
 CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Real const& torque) {
@@ -154,11 +156,11 @@ CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Real c
     return along;
 }
 template <class Real>
-CATENA_HD Real left_along_hinge(Undriven) {
+CATENA_HD Real left_along_revolute(Undriven) {
     return Real(0);
 }
 template <class Real>
-CATENA_HD Real left_along_hinge(Real const& torque) {
+CATENA_HD Real left_along_revolute(Real const& torque) {
     return -torque;
 }
 

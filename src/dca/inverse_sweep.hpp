@@ -1,8 +1,9 @@
-// Entries of the inverse of the links' matrix T (src/dca/README.md, "Link chains") next to its diagonal, from the roots to the leaves after
-// a matrix sweep. The derivative of log det T is made of them: an entry of T^-1 is what its own entry of T adds to it.
+// Entries of the inverse of the links' matrix T (src/dca/README.md, "Link chains") next to its
+// diagonal, from the roots to the leaves after a matrix sweep. The derivative of log det T is made
+// of them: an entry of T^-1 is what its own entry of T adds to it.
 //
-// A joint's force follows from those at its segment's ends, phi = in phi_first + out phi_next + w r, w the inverse of its pivot. T^-1 is
-// made from the ends inwards in the same way.
+// A joint's force follows from those at its segment's ends, phi = in phi_first + out phi_next + w
+// r, w the inverse of its pivot. T^-1 is made from the ends inwards in the same way.
 #pragma once
 
 #include "dca/tree_sweeps.hpp"
@@ -13,9 +14,10 @@ namespace catena::dca {
 template <class Leaf>
 struct InverseSweep {
     TreeSweeps<Leaf> s;
-    RecordsView<double, Order::plain> own;     // (T^-1)_jj, by joint
-    RecordsView<double, Order::plain> across;  // (T^-1)_jk of the joints at a segment's ends, by slot
-    View<1> beside;                            // as InverseView
+    RecordsView<double, Order::plain> own;  // (T^-1)_jj, by joint
+    RecordsView<double, Order::plain>
+        across;      // (T^-1)_jk of the joints at a segment's ends, by slot
+    View<1> beside;  // as InverseView
 
     void operator()(Root const& root) const {
         double const first = s.joints.load(root.first).factor(0, 0);
@@ -25,7 +27,8 @@ struct InverseSweep {
         if (root.tip == TipTo::ground) own.store(root.next, tip.own);
     }
     void operator()(Merge const& m) const {
-        Entries const e = entries(m.joint, own.load(m.first), across.load(m.slot), own.load(m.next));
+        Entries const e =
+            entries(m.joint, own.load(m.first), across.load(m.slot), own.load(m.next));
         own.store(m.joint, e.own);
         across.store(m.inboard, e.inboard);
         across.store(m.outboard, e.outboard);
@@ -33,19 +36,22 @@ struct InverseSweep {
     /// Its parts from the far end on, and each part's bodies.
     void operator()(Run const& run) const {
         Ends rest{own.load(run.body), across.load(run.slot), own.load(run.next)};
-        for (int p = parts_of(run) - 1; p > 0; --p) bodies(begin_of(run, p), end_of(run, p), take_off(begin_of(run, p), rest));
+        for (int p = parts_of(run) - 1; p > 0; --p)
+            bodies(begin_of(run, p), end_of(run, p), take_off(begin_of(run, p), rest));
         bodies(run.body, end_of(run, 0), rest);
     }
 
   private:
-    /// Of the joint where two segments meet: with the first joint's force, with its own and with the next joint's.
+    /// Of the joint where two segments meet: with the first joint's force, with its own and with
+    /// the next joint's.
     struct Entries {
         double inboard = 0, own = 0, outboard = 0;
     };
     CATENA_HD Entries entries(std::int64_t joint, double first, double between, double next) const {
         typename TreeSweeps<Leaf>::Joint const j = s.joints.load(joint);
         double const w = j.factor(0, 0), in = w * j.inboard(0, 0), out = w * j.outboard(0, 0);
-        double const inboard = fused(in, first, out * between), outboard = fused(in, between, out * next);
+        double const inboard = fused(in, first, out * between),
+                     outboard = fused(in, between, out * next);
         return {inboard, fused(in, inboard, fused(out, outboard, w)), outboard};
     }
     /// Of a segment.

@@ -1,11 +1,12 @@
-// How leaves read and write arrays of bodies. A place is a body's index, or what stands for several bodies side by side (simd/tile.hpp);
-// its scalar type follows from it, and the same source serves one body and several.
+// How leaves read and write arrays of bodies. A place is a body's index, or what stands for several
+// bodies side by side (simd/tile.hpp); its scalar type follows from it, and the same source serves
+// one body and several.
 #pragma once
 
 #include <type_traits>
 
-#include "math/rotation.hpp"
 #include "dca/solver.hpp"
+#include "math/rotation.hpp"
 
 namespace catena::dca {
 
@@ -39,8 +40,9 @@ template <class T, int D>
 CATENA_HD double read(FieldView<T, D> const& view, std::int64_t k, int component) {
     return view.at(k, component);
 }
-/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere, and some are wanted once: accelerations do
-/// without them where the turning is known (body_leaf.hpp). Another reader may have them elsewhere.
+/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere, and some
+/// are wanted once: accelerations do without them where the turning is known (body_leaf.hpp).
+/// Another reader may have them elsewhere.
 struct ReadHere {
     template <class T, int D, class Place>
     CATENA_HD Vector<RealAt<Place>, D> operator()(FieldView<T, D> const& view, Place k) const {
@@ -86,16 +88,24 @@ CATENA_HD Vector<double, K> read_directions(ConstDirectionsView const& view, std
     return view.load<K>(k);
 }
 template <int K>
-CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k, Vector<double, K> const& value) {
+CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k,
+                                Vector<double, K> const& value) {
     view.store<K>(k, value);
 }
 
 // Bodies side by side whose neighbours are read have both.
 CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
 CATENA_HD bool begins_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
-/// Whether a run's last body comes before one that makes a run by itself, or may: the body after it is another rank's, or the next chain.
-CATENA_HD bool comes_before_one(GroupView const& group, std::int64_t k) { return k + 1 >= group.size || group.is_last[k + 1]; }
-CATENA_HD bool has_jointed_tip(GroupView const& group, std::int64_t k) { return group.has_jointed_tip(k); }
-CATENA_HD Vec3 outboard_screw(GroupView const& group, std::int64_t k) { return group.outboard_screw(k); }
+/// Whether a run's last body comes before one that makes a run by itself, or may: the body after it
+/// is another rank's, or the next chain.
+CATENA_HD bool comes_before_one(GroupView const& group, std::int64_t k) {
+    return k + 1 >= group.size || group.is_last[k + 1];
+}
+CATENA_HD bool has_jointed_tip(GroupView const& group, std::int64_t k) {
+    return group.has_jointed_tip(k);
+}
+CATENA_HD Vec3 outboard_screw(GroupView const& group, std::int64_t k) {
+    return group.outboard_screw(k);
+}
 
 }  // namespace catena::dca

@@ -1,24 +1,27 @@
 // One body seen from its two handles, host and device.
 //
-// Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force` per unit of the joint force along
-// it. Then  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d . force_d' / m,
-// which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter, eqs 2.1-2.4, 2.6-2.7) for every kind of joint.
+// Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force` per unit
+// of the joint force along it. Then  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d .
+// force_d' / m, which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter,
+// eqs 2.1-2.4, 2.6-2.7) for every kind of joint.
 #pragma once
 
-#include "math/rotation.hpp"
 #include "dca/segment.hpp"
+#include "math/rotation.hpp"
 
 namespace catena::dca {
 
-/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which the caller keeps forces. The first
-/// three (K < 3: all) have forces, orthonormal, the others none, unless `any_forces`: then all may (screws).
+/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which
+/// the caller keeps forces. The first three (K < 3: all) have forces, orthonormal, the others none,
+/// unless `any_forces`: then all may (screws).
 template <class Real, int K, bool any_forces = false>
 struct Handle {
     static constexpr int forces = any_forces || K < 3 ? K : 3;
     Matrix<Real, 3, K> torque;
     Matrix<Real, 3, forces> force;
 };
-/// Whose first three directions are forces along the very axes in which forces are kept, the others torques about them.
+/// Whose first three directions are forces along the very axes in which forces are kept, the others
+/// torques about them.
 template <class Real, int K>
 struct GroundHandle {
     Matrix<Real, 3, K> torque;
@@ -26,12 +29,14 @@ struct GroundHandle {
     Matrix<Real, 3, 3> angular;
 };
 
-/// Directions at a point `r` from the centre of mass (body axes): first the three forces along the columns of `linear`, then
-/// torques about the columns of `angular` (the same axes, `angular` in body axes, `linear` where forces are kept).
-/// The last column is the joint's axis, the free direction of a revolute joint. K < 3: the first K forces alone (a link's
-/// direction; the plane of a planar chain).
+/// Directions at a point `r` from the centre of mass (body axes): first the three forces along the
+/// columns of `linear`, then torques about the columns of `angular` (the same axes, `angular` in
+/// body axes, `linear` where forces are kept). The last column is the joint's axis, the free
+/// direction of a revolute joint. K < 3: the first K forces alone (a link's direction; the plane of
+/// a planar chain).
 template <int K, bool any_forces = false, class Real>
-CATENA_HD Handle<Real, K, any_forces> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular,
+CATENA_HD Handle<Real, K, any_forces> make_handle(Vector<Real, 3> const& r,
+                                                  Matrix<Real, 3, 3> const& angular,
                                                   Matrix<Real, 3, 3> const& linear) {
     static_assert(K >= 1 && K <= 6);
     Handle<Real, K, any_forces> h;

@@ -15,8 +15,11 @@ struct Of {
 template <class Use>
 auto with_absolute_leaf(ChainGroup const& group, Use const& use) {
     if (group.beads) return group.directions == 1 ? use(Of<BeadLeaf<1>>{}) : use(Of<BeadLeaf<3>>{});
-    if (group.linked) return group.directions == 1 ? use(Of<BodyLeaf<1, LinkFrames<1>>>{}) : use(Of<BodyLeaf<3, LinkFrames<3>>>{});
-    return group.directions == 3 ? use(Of<BodyLeaf<3, GroundFrames<3>>>{}) : use(Of<BodyLeaf<6, GroundFrames<6>>>{});
+    if (group.linked)
+        return group.directions == 1 ? use(Of<BodyLeaf<1, LinkFrames<1>>>{})
+                                     : use(Of<BodyLeaf<3, LinkFrames<3>>>{});
+    return group.directions == 3 ? use(Of<BodyLeaf<3, GroundFrames<3>>>{})
+                                 : use(Of<BodyLeaf<6, GroundFrames<6>>>{});
 }
 
 /// Bodies in joint coordinates, held at their inboard joints.
@@ -30,15 +33,17 @@ template <class Use>
 auto with_joint_leaf(ChainGroup const& group, Use const& use) {
     switch (group.directions) {
         case 2:
-            return use(Of<BodyLeaf<2, MeetingFrames<2, false>>>{});
+            return use(Of<BodyLeaf<2, JointFrameHandles<2, false>>>{});
         case 3:
-            return use(Of<BodyLeaf<3, MeetingFrames<3, false>>>{});
+            return use(Of<BodyLeaf<3, JointFrameHandles<3, false>>>{});
         case 4:
-            return use(Of<BodyLeaf<4, MeetingFrames<4, false>>>{});
+            return use(Of<BodyLeaf<4, JointFrameHandles<4, false>>>{});
         case 5:
-            return group.has_screws ? use(Of<BodyLeaf<5, MeetingFrames<5, true>>>{}) : use(Of<BodyLeaf<5, MeetingFrames<5, false>>>{});
+            return group.has_screws ? use(Of<BodyLeaf<5, JointFrameHandles<5, true>>>{})
+                                    : use(Of<BodyLeaf<5, JointFrameHandles<5, false>>>{});
         default:
-            return group.has_screws ? use(Of<BodyLeaf<6, MeetingFrames<6, true>>>{}) : use(Of<BodyLeaf<6, MeetingFrames<6, false>>>{});
+            return group.has_screws ? use(Of<BodyLeaf<6, JointFrameHandles<6, true>>>{})
+                                    : use(Of<BodyLeaf<6, JointFrameHandles<6, false>>>{});
     }
 }
 

@@ -9,7 +9,9 @@ namespace {
 
 using Items = LevelPart::Items;
 
-std::size_t within(int levels, Schedule const& schedule) { return std::min(static_cast<std::size_t>(levels), schedule.levels.size()); }
+std::size_t within(int levels, Schedule const& schedule) {
+    return std::min(static_cast<std::size_t>(levels), schedule.levels.size());
+}
 
 /// Adds the time since the last call, or since it was made, to one of the sums.
 class Clock {
@@ -26,13 +28,14 @@ class Clock {
 
 class LevelSolver final : public ChainSolver {
   public:
-    LevelSolver(ChainGroup const& group, Communicator const& communicator, GpuLevels levels, LevelPartMaker const& lower,
-                LevelPartMaker const& upper)
+    LevelSolver(ChainGroup const& group, Communicator const& communicator, GpuLevels levels,
+                LevelPartMaker const& lower, LevelPartMaker const& upper)
         : group_(group), communicator_(communicator), has_lower_(levels.up > 0 || levels.down > 0) {
         Schedule const& s = group.schedule;
         std::size_t const up = within(levels.up, s), down = within(levels.down, s);
         lower_.part = lower(group, {levels.up > 0, levels.down > 0, 0, up, 0, down, false});
-        upper_.part = upper(group, {levels.up == 0, levels.down == 0, up, s.levels.size(), down, s.levels.size(), true});
+        upper_.part = upper(group, {levels.up == 0, levels.down == 0, up, s.levels.size(), down,
+                                    s.levels.size(), true});
         LevelCut const cut = cut_levels(s, levels);
         for (Side* side : {&lower_, &upper_}) {
             side->segments = side->part->choose(cut.segments);
@@ -41,7 +44,7 @@ class LevelSolver final : public ChainSolver {
             side->joints_down = side->part->choose(cut.joints_down);
         }
         std::vector<std::int64_t> own, all;
-        for (SharedUnit const& unit : s.shared) {
+        for (FrontierUnit const& unit : s.shared) {
             if (unit.is_own) own.push_back(unit.slot);
             all.push_back(unit.slot);
         }
@@ -135,8 +138,10 @@ class LevelSolver final : public ChainSolver {
         upper_.part->get(items, all_units_, all);  // for its size
         std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
         std::size_t const unit_bytes = all.size() / s.shared.size() * sizeof(double);
-        for (SharedUnit const& unit : s.shared) bytes[unit.owner] += static_cast<std::int64_t>(unit_bytes);
-        communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
+        for (FrontierUnit const& unit : s.shared)
+            bytes[unit.owner] += static_cast<std::int64_t>(unit_bytes);
+        communicator_.all_gather(std::as_bytes(std::span(own)),
+                                 std::as_writable_bytes(std::span(all)), bytes);
         upper_.part->put(items, all_units_, all);
         report_.exchange_seconds += seconds_now() - start;
     }
@@ -151,12 +156,14 @@ class LevelSolver final : public ChainSolver {
 };
 
 /// Places that are in `wanted` but not in `made`, each once, in order.
-std::vector<std::int64_t> missing(std::vector<std::int64_t> wanted, std::vector<std::int64_t> made) {
+std::vector<std::int64_t> missing(std::vector<std::int64_t> wanted,
+                                  std::vector<std::int64_t> made) {
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     std::sort(made.begin(), made.end());
     std::vector<std::int64_t> left;
-    std::set_difference(wanted.begin(), wanted.end(), made.begin(), made.end(), std::back_inserter(left));
+    std::set_difference(wanted.begin(), wanted.end(), made.begin(), made.end(),
+                        std::back_inserter(left));
     return left;
 }
 
@@ -168,7 +175,7 @@ std::vector<std::int64_t> segments_at(Schedule const& s, std::size_t up) {
             made.push_back(m.slot);
         }
     for (Root const& root : s.roots) wanted.push_back(root.slot);
-    for (SharedUnit const& unit : s.shared)
+    for (FrontierUnit const& unit : s.shared)
         if (unit.is_own) wanted.push_back(unit.slot);
     return missing(std::move(wanted), std::move(made));
 }
@@ -203,8 +210,10 @@ LevelCut cut_levels(Schedule const& s, GpuLevels levels) {
     return cut;
 }
 
-std::unique_ptr<ChainSolver> make_level_solver(ChainGroup const& group, Communicator const& communicator, GpuLevels levels,
-                                               LevelPartMaker const& lower, LevelPartMaker const& upper) {
+std::unique_ptr<ChainSolver> make_level_solver(ChainGroup const& group,
+                                               Communicator const& communicator, GpuLevels levels,
+                                               LevelPartMaker const& lower,
+                                               LevelPartMaker const& upper) {
     return std::make_unique<LevelSolver>(group, communicator, levels, lower, upper);
 }
 

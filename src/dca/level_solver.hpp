@@ -1,6 +1,7 @@
-// The chapter's scheme on a GPU and a CPU together: the pairwise tree is cut twice, once for the way up (assembly) and once for the way
-// down (disassembly). The lowest levels belong to one part, all others to a second one; segments cross the cut upwards, joint forces
-// downwards. Neither part knows where the other one computes.
+// The chapter's scheme on a GPU and a CPU together: the pairwise tree is cut twice, once for the
+// way up (assembly) and once for the way down (disassembly). The lowest levels belong to one part,
+// all others to a second one; segments cross the cut upwards, joint forces downwards. Neither part
+// knows where the other one computes.
 #pragma once
 
 #include <functional>
@@ -11,18 +12,28 @@
 
 namespace catena::dca {
 
-/// What one part does of a rank's schedule. Level l of the schedule is its l-th vector of merges, [first, end) of them are the part's.
+/// What one part does of a rank's schedule. Level l of the schedule is its l-th vector of merges,
+/// [first, end) of them are the part's.
 struct LevelWork {
-    bool leaves_up = false, leaves_down = false;  // matrices and biases of the bodies; their accelerations
+    bool leaves_up = false,
+         leaves_down = false;  // matrices and biases of the bodies; their accelerations
     std::size_t first_up = 0, end_up = 0, first_down = 0, end_down = 0;
-    bool top = false;  // roots, and what is above the units of chains that ranks share: only where the host reads the memory
+    bool top = false;  // roots, and what is above the units of chains that ranks share: only where
+                       // the host reads the memory
     bool leaves() const { return leaves_up || leaves_down; }
 };
 
-/// Views are of the host, whatever the part's memory is. What a member asks for is done when it returns.
+/// Views are of the host, whatever the part's memory is. What a member asks for is done when it
+/// returns.
 class LevelPart {
   public:
-    enum class Items { matrices, biases, joints, offsets, forces };  // matrices and biases by slot, the others by joint
+    enum class Items {
+        matrices,
+        biases,
+        joints,
+        offsets,
+        forces
+    };  // matrices and biases by slot, the others by joint
     virtual ~LevelPart() = default;
     virtual void set(ConfigurationView const&) = 0;
     virtual void set(LoadsView const&, AccelerationsView const&) = 0;
@@ -42,21 +53,25 @@ class LevelPart {
     virtual std::int64_t memory_bytes() const = 0;
     virtual int threads() const = 0;
 };
-using LevelPartMaker = std::function<std::unique_ptr<LevelPart>(ChainGroup const&, LevelWork const&)>;
+using LevelPartMaker =
+    std::function<std::unique_ptr<LevelPart>(ChainGroup const&, LevelWork const&)>;
 
 /// On this host.
 LevelPartMaker host_levels(Executor const&);
 
 /// What crosses the cuts, `up` and `down` levels of merges being the lower part's.
 struct LevelCut {
-    std::vector<std::int64_t> segments;                // slots: the upper part's levels and roots start from them
-    std::vector<std::int64_t> forces;                  // joints: the lower part's disassembly starts from them
-    std::vector<std::int64_t> joints_up, joints_down;  // eliminated by one part, disassembled by the other
+    std::vector<std::int64_t> segments;  // slots: the upper part's levels and roots start from them
+    std::vector<std::int64_t> forces;    // joints: the lower part's disassembly starts from them
+    std::vector<std::int64_t> joints_up,
+        joints_down;  // eliminated by one part, disassembled by the other
 };
 LevelCut cut_levels(Schedule const&, GpuLevels);
 
-/// The group's tree must be the pairwise one. Group, communicator and what the makers hold must outlive the solver.
-std::unique_ptr<ChainSolver> make_level_solver(ChainGroup const&, Communicator const&, GpuLevels, LevelPartMaker const& lower,
+/// The group's tree must be the pairwise one. Group, communicator and what the makers hold must
+/// outlive the solver.
+std::unique_ptr<ChainSolver> make_level_solver(ChainGroup const&, Communicator const&, GpuLevels,
+                                               LevelPartMaker const& lower,
                                                LevelPartMaker const& upper);
 
 }  // namespace catena::dca

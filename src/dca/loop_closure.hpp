@@ -1,7 +1,8 @@
-// The joint that closes a chain last, host and device: of the first body to the ground or, in a ring, to the last body.
+// The joint that closes a chain last, host and device: of the first body to the ground or, in a
+// ring, to the last body.
 //
-// A loop may hold a chain more often than it can move: its closing joint's matrix then is singular. What is determined is solved for, and
-// of the forces that are not the least are taken.
+// A loop may hold a chain more often than it can move: its closing joint's matrix then is singular.
+// What is determined is solved for, and of the forces that are not the least are taken.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Bodies of a run on hinges whose motion is found along the way up (HingeLoads): in the run's axes, from what moves before. Host and
-// device.
+// Bodies of a run on revolute joints whose motion is found along the way up (RevoluteLoads): in the
+// run's axes, from what moves before. Host and device.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -7,24 +7,35 @@
 
 namespace catena::dca {
 
-/// What moves, in the run's axes, and what it is there: `difference.a` lacks the share of the handle inboard of it.
+/// What moves, in the run's axes, and what it is there: `difference.a` lacks the share of the
+/// handle inboard of it.
 template <class Real>
 struct FollowedBody {
     LoadedBodyInRun<Real> in_run;
     Vector<Real, 3> omega, inward2;
 };
-/// Of a body to whose axes `turn` leads back from the run's, from the angular velocity of the one before. What acts on it from outside is
-/// not there yet.
+/// Of a body to whose axes `turn` leads back from the run's, from the angular velocity of the one
+/// before. What acts on it from outside is not there yet.
 template <class Real>
-CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnHinge<Real> const& body, Matrix<Real, 3, 3> const& turn,
+CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
+                                             Matrix<Real, 3, 3> const& turn,
                                              Vector<Real, 3> const& omega_before) {
     using Vector3 = Vector<Real, 3>;
     Vector3 const axis = turn * body.axis, r1 = turn * body.r1, r2 = turn * body.r2;
-    Vector3 const angular = body.rate * cross(omega_before, axis), omega = plus_scaled(omega_before, body.rate, axis);
+    Vector3 const angular = body.rate * cross(omega_before, axis),
+                  omega = plus_scaled(omega_before, body.rate, axis);
     Real const square = dot(omega, omega);  // omega x (omega x r) in fewer operations
-    auto const inward = [&](Vector3 const& r) { return plus_scaled(dot(omega, r) * omega, -square, r); };
+    auto const inward = [&](Vector3 const& r) {
+        return plus_scaled(dot(omega, r) * omega, -square, r);
+    };
     Symmetric<Real, 3> const inertia = turned(turn, body.inertia);
-    return {{{axis, r2 - r1}, {angular, -inward(r1)}, -r2, body.mass, inertia, cross(inertia * omega, omega), Vector3::zero()},
+    return {{{axis, r2 - r1},
+             {angular, -inward(r1)},
+             -r2,
+             body.mass,
+             inertia,
+             cross(inertia * omega, omega),
+             Vector3::zero()},
             omega,
             inward(r2)};
 }
@@ -43,15 +54,16 @@ struct FollowedState {
     }
 };
 
-/// A run of two bodies or more whose hinges' loads are given.
+/// A run of two bodies or more whose revolute joints' loads are given.
 template <class Leaf>
 class RunWithLoads {
     using Real = double;
 
   public:
-    CATENA_HD RunWithLoads(Leaf const& leaf, LoadsView const& loads, Run const& run) : leaf_(leaf), loads_(loads), run_(run) {}
+    CATENA_HD RunWithLoads(Leaf const& leaf, LoadsView const& loads, Run const& run)
+        : leaf_(leaf), loads_(loads), run_(run) {}
     CATENA_HD int count() const { return static_cast<int>(run_.count); }
-    CATENA_HD bool has_wrenches() const { return loads_.hinges.torque.origin; }
+    CATENA_HD bool has_wrenches() const { return loads_.revolutes.torque.origin; }
     CATENA_HD Vec3 first_omega() const { return loads_.omega.load(run_.body); }
     /// omega x (omega x r) at the first body's handle 2.
     CATENA_HD Vec3 first_inward() const {
@@ -59,27 +71,32 @@ class RunWithLoads {
         return cross(omega, cross(omega, leaf_.frame_at_rest(run_.body).r2));
     }
     CATENA_HD Mat3 axes2(int i) const { return axes_of(leaf_.axes2(run_.body + i)); }
-    CATENA_HD BodyOnHinge<Real> on_hinge(int i) const { return leaf_.on_hinge(loads_, run_.body + i, ReadLast{}); }
-    /// Of the hinge inboard of body i, within the run.
+    CATENA_HD BodyOnRevolute<Real> on_revolute(int i) const {
+        return leaf_.on_revolute(loads_, run_.body + i, ReadLast{});
+    }
+    /// Of the revolute joint inboard of body i, within the run.
     CATENA_HD double torque_about(int i) const {
-        return joint_torque().origin ? joint_torque().at(run_.body + i, HingeLoads::about_hinge) : 0.0;
+        return joint_torque().origin
+                   ? joint_torque().at(run_.body + i, RevoluteLoads::about_revolute)
+                   : 0.0;
     }
     /// From outside, on a body in the run's axes.
     CATENA_HD void add_wrench(int i, LoadedBodyInRun<Real>& body) const {
         if (has_wrenches()) add_wrench(i, first_from_ground(), body.torque, body.force);
     }
-    CATENA_HD HingedBody<Real> first() const {
-        HingedBody<Real> body = at_rest(0);
+    CATENA_HD ArticulatedBody<Real> first() const {
+        ArticulatedBody<Real> body = at_rest(0);
         set_moving(0, first_omega(), body);
         push(0, has_wrenches() ? first_from_ground() : Mat3::identity(), body);
         return body;
     }
-    /// `axes` of its hinge and `omega` of the body before, in the run's axes. `kept`: put_omega(i, its own, in its axes), and
-    /// put_orientation(what turns to its axes) where there are wrenches.
+    /// `axes` of its revolute joint and `omega` of the body before, in the run's axes. `kept`:
+    /// put_omega(i, its own, in its axes), and put_orientation(what turns to its axes) where there
+    /// are wrenches.
     template <class Kept>
-    CATENA_HD HingedBody<Real> last(Mat3 const& axes, Vec3 const& omega, Kept&& kept) const {
+    CATENA_HD ArticulatedBody<Real> last(Mat3 const& axes, Vec3 const& omega, Kept&& kept) const {
         int const i = count() - 1;
-        HingedBody<Real> body = at_rest(i);
+        ArticulatedBody<Real> body = at_rest(i);
         Mat3 const turn = axes * transpose(body.e1);
         Vec3 const own = omega_beyond(turn, omega, body);
         set_moving(i, own, body);
@@ -94,8 +111,8 @@ class RunWithLoads {
     }
     /// For the way back. `kept`: omega(i), orientation().
     template <class Kept>
-    CATENA_HD HingedFrame<Real> frame(int i, Kept const& kept) const {
-        HingedFrame<Real> f = leaf_.frame_at_rest(run_.body + i);
+    CATENA_HD RevoluteFrame<Real> frame(int i, Kept const& kept) const {
+        RevoluteFrame<Real> f = leaf_.frame_at_rest(run_.body + i);
         leaf_.set_moving(loads_, run_.body + i, omega(i, f, kept), f);
         return f;
     }
@@ -103,22 +120,26 @@ class RunWithLoads {
     struct PassedOn {
         Vector<Real, 5> force;
         Mat3 e1 = Mat3::identity(), from_ground = Mat3::identity();
-        double torque = 0;  // about the hinge between them, within the run
+        double torque = 0;  // about the revolute joint between them, within the run
     };
     /// The force at the joint inboard of body i, from that at the next one: in turn.
     template <class Kept>
-    CATENA_HD Vector<Real, 5> pass_on(int i, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a, Kept const& kept,
+    CATENA_HD Vector<Real, 5> pass_on(int i, RevoluteFrame<Real> const& frame,
+                                      BodyAcceleration<Real> const& a, Kept const& kept,
                                       PassedOn& passed) const {
-        HingedBody<Real> body = at_rest(i);
+        ArticulatedBody<Real> body = at_rest(i);
         set_moving(i, omega(i, frame, kept), body);
         if (has_wrenches()) {
             if (i < count() - 1)
-                passed.from_ground = transposed_times(passed.e1 * transpose(frame.e2), passed.from_ground);
+                passed.from_ground =
+                    transposed_times(passed.e1 * transpose(frame.e2), passed.from_ground);
             else
-                passed.from_ground = i > 1 ? kept.orientation() : transposed_times(turn_of_two(frame), first_from_ground());
+                passed.from_ground =
+                    i > 1 ? kept.orientation()
+                          : transposed_times(turn_of_two(frame), first_from_ground());
         }
         push(i, passed.from_ground, body);
-        // Its own hinge's torque is along none of the force's directions.
+        // Its own revolute joint's torque is along none of the force's directions.
         body.torque = body.torque - passed.torque * body.e2.column(2);
         passed.force = inboard_force(body, a, passed.force);
         passed.e1 = frame.e1;
@@ -127,35 +148,45 @@ class RunWithLoads {
     }
 
   private:
-    CATENA_HD ConstView<3> const& joint_torque() const { return loads_.hinges.joint_torque; }
-    CATENA_HD Mat3 first_from_ground() const { return transpose(to_matrix(as_quaternion(loads_.hinges.orientation.load(run_.body)))); }
-    CATENA_HD HingedBody<Real> at_rest(int i) const { return leaf_.hinged_at_rest(LoadsView{}, run_.body + i); }
-    CATENA_HD void set_moving(int i, Vec3 const& omega, HingedBody<Real>& body) const {
+    CATENA_HD ConstView<3> const& joint_torque() const { return loads_.revolutes.joint_torque; }
+    CATENA_HD Mat3 first_from_ground() const {
+        return transpose(to_matrix(as_quaternion(loads_.revolutes.orientation.load(run_.body))));
+    }
+    CATENA_HD ArticulatedBody<Real> at_rest(int i) const {
+        return leaf_.revolute_at_rest(LoadsView{}, run_.body + i);
+    }
+    CATENA_HD void set_moving(int i, Vec3 const& omega, ArticulatedBody<Real>& body) const {
         leaf_.set_moving(loads_, run_.body + i, omega, body);
         body.torque = body.torque - cross(omega, body.inertia * omega);
     }
-    CATENA_HD Vec3 omega_beyond(Mat3 const& turn, Vec3 const& omega, HingedFrame<Real> const& last) const {
-        return transposed_times(turn, omega) + loads_.hinge_rate.at(run_.body + count() - 1, 0) * last.e1.column(2);
+    CATENA_HD Vec3 omega_beyond(Mat3 const& turn, Vec3 const& omega,
+                                RevoluteFrame<Real> const& last) const {
+        return transposed_times(turn, omega) +
+               loads_.revolute_rate.at(run_.body + count() - 1, 0) * last.e1.column(2);
     }
     /// From the second of two bodies to the first one.
-    CATENA_HD Mat3 turn_of_two(HingedFrame<Real> const& last) const { return axes2(0) * transpose(last.e1); }
+    CATENA_HD Mat3 turn_of_two(RevoluteFrame<Real> const& last) const {
+        return axes2(0) * transpose(last.e1);
+    }
     template <class Kept>
-    CATENA_HD Vec3 omega(int i, HingedFrame<Real> const& frame, Kept const& kept) const {
+    CATENA_HD Vec3 omega(int i, RevoluteFrame<Real> const& frame, Kept const& kept) const {
         if (i == 0) return first_omega();
         return count() > 2 ? kept.omega(i) : omega_beyond(turn_of_two(frame), first_omega(), frame);
     }
     CATENA_HD void add_wrench(int i, Mat3 const& from_ground, Vec3& torque, Vec3& force) const {
-        torque = torque + from_ground * loads_.hinges.torque.load(run_.body + i);
-        force = force + from_ground * loads_.hinges.force.load(run_.body + i);
+        torque = torque + from_ground * loads_.revolutes.torque.load(run_.body + i);
+        force = force + from_ground * loads_.revolutes.force.load(run_.body + i);
     }
-    /// What acts on the first body or the last one from outside and by the joint at the run's end, on others from outside alone.
-    CATENA_HD void push(int i, Mat3 const& from_ground, HingedBody<Real>& body) const {
+    /// What acts on the first body or the last one from outside and by the joint at the run's end,
+    /// on others from outside alone.
+    CATENA_HD void push(int i, Mat3 const& from_ground, ArticulatedBody<Real>& body) const {
         if (has_wrenches()) add_wrench(i, from_ground, body.torque, body.force);
         if (!joint_torque().origin) return;
         std::int64_t const k = run_.body + i;
         if (i == 0) body.torque = body.torque + body.e1 * joint_torque().load(k);
         if (i == count() - 1 && !ends_chain(leaf_.group(), k))
-            body.torque = body.torque - joint_torque().at(k + 1, HingeLoads::about_hinge) * body.e2.column(2);
+            body.torque = body.torque - joint_torque().at(k + 1, RevoluteLoads::about_revolute) *
+                                            body.e2.column(2);
     }
 
     Leaf const& leaf_;
@@ -167,14 +198,15 @@ class RunWithLoads {
 template <class Leaf, class Kept>
 class FollowedBodies {
   public:
-    CATENA_HD FollowedBodies(RunWithLoads<Leaf> const& run, bool all, Kept& kept) : run_(run), all_(all), kept_(kept) {}
-    CATENA_HD_IN_PLACE HingedBody<double> first() {
-        HingedBody<double> const body = run_.first();
+    CATENA_HD FollowedBodies(RunWithLoads<Leaf> const& run, bool all, Kept& kept)
+        : run_(run), all_(all), kept_(kept) {}
+    CATENA_HD_IN_PLACE ArticulatedBody<double> first() {
+        ArticulatedBody<double> const body = run_.first();
         state = {Quat::identity(), run_.first_omega(), body.inward2};
         return body;
     }
     CATENA_HD_IN_PLACE LoadedBodyInRun<double> next(int i) {
-        BodyOnHinge<double> const here = run_.on_hinge(i);
+        BodyOnRevolute<double> const here = run_.on_revolute(i);
         state.turn = state.turn * here.turn;
         Mat3 const turn = to_matrix_of_unit(state.turn);
         LoadedBodyInRun<double> body = state.go_on(follow(here, turn, state.omega));
@@ -183,7 +215,9 @@ class FollowedBodies {
         return body;
     }
     /// After before_last().
-    CATENA_HD_IN_PLACE HingedBody<double> last(int) { return run_.last(axes_, state.omega, kept_); }
+    CATENA_HD_IN_PLACE ArticulatedBody<double> last(int) {
+        return run_.last(axes_, state.omega, kept_);
+    }
     CATENA_HD_IN_PLACE OutboardHandle<double> before_last() {
         axes_ = to_matrix_of_unit(state.turn) * run_.axes2(run_.count() - 2);
         return {axes_, state.inward};
@@ -194,7 +228,7 @@ class FollowedBodies {
     RunWithLoads<Leaf> const& run_;
     bool all_;
     Kept& kept_;
-    Mat3 axes_;  // of the last hinge
+    Mat3 axes_;  // of the last revolute joint
 };
 
 }  // namespace catena::dca

@@ -1,4 +1,5 @@
-// Where runs on hinges leave what their way back needs: among the nodes of the joints that they do not join.
+// Where runs on revolute joints leave what their way back needs: among the nodes of the joints that
+// they do not join.
 #pragma once
 
 #include <cstddef>
@@ -8,47 +9,53 @@
 
 namespace catena::dca {
 
-/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end(), hinge(),
-/// body(), omega() and swing() are asked for was put; axes(), omega(), swing() and orientation(): of a run of three bodies or more.
+/// What the way down needs of a run on revolute joints, where joining would keep the joints of its
+/// bodies. Precondition: what end(), revolute joint(), body(), omega() and swing() are asked for
+/// was put; axes(), omega(), swing() and orientation(): of a run of three bodies or more.
 template <class Sweeps>
-class HingesInJoints {
-    using Hinge = ReleasedHinge<double>;
+class RunWorkspace {
+    using Revolute = ReleasedRevolute<double>;
     using Body = BodyInRun<double>;
     using End = RunsEnd<double>;
     using Factor = Symmetric<double, 6>;
     using Column = Vector<double, 6>;
-    // The last hinge's and the end's numbers lie together, what else is of the last body beside the body before: a run of two has none
-    // between its ends.
-    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
-    static constexpr int of_end = sizeof(End) / sizeof(double), most = sizeof(typename Sweeps::Node) / sizeof(double);
+    // The last revolute joint's and the end's numbers lie together, what else is of the last body
+    // beside the body before: a run of two has none between its ends.
+    static constexpr int of_revolute = sizeof(Revolute) / sizeof(double),
+                         of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
+    static constexpr int of_end = sizeof(End) / sizeof(double),
+                         most = sizeof(typename Sweeps::Node) / sizeof(double);
     using Swing = BodyAcceleration<double>;
     static constexpr int of_swing = sizeof(Swing) / sizeof(double);
-    static constexpr int at_axes = of_hinge + of_body, at_swing = at_axes + of_axes, at_omega = at_swing + of_swing,
-                         at_last_omega = at_omega + of_omega, at_orientation = at_last_omega + of_omega;
-    static_assert(of_hinge + of_end <= most && at_orientation + of_axes <= most);
-    static constexpr int at_first = of_hinge + Factor::size, at_bias = at_first + 6 * 5;
-    static_assert(offsetof(End, first) == (at_first - of_hinge) * sizeof(double) &&
-                  offsetof(End, bias) == (at_bias - of_hinge) * sizeof(double));
+    static constexpr int at_axes = of_revolute + of_body, at_swing = at_axes + of_axes,
+                         at_omega = at_swing + of_swing, at_last_omega = at_omega + of_omega,
+                         at_orientation = at_last_omega + of_omega;
+    static_assert(of_revolute + of_end <= most && at_orientation + of_axes <= most);
+    static constexpr int at_first = of_revolute + Factor::size, at_bias = at_first + 6 * 5;
+    static_assert(offsetof(End, first) == (at_first - of_revolute) * sizeof(double) &&
+                  offsetof(End, bias) == (at_bias - of_revolute) * sizeof(double));
 
   public:
-    /// What the way back begins with, in a run of three bodies or more: end(), axes() and swing(last - 1).
+    /// What the way back begins with, in a run of three bodies or more: end(), axes() and
+    /// swing(last - 1).
     struct Tail {
         End end;
         Mat3 axes;
         Swing swing;
     };
     /// `all`: the way back asks for every body's swing.
-    CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run, bool all) : sweeps_(sweeps), run_(run), all_(all) {}
-    CATENA_HD void put(int i, Hinge const& hinge) {
-        store(i, 0, hinge);
-        watch(i, hinge.inverse);
+    CATENA_HD RunWorkspace(Sweeps const& sweeps, Run const& run, bool all)
+        : sweeps_(sweeps), run_(run), all_(all) {}
+    CATENA_HD void put(int i, Revolute const& revolute) {
+        store(i, 0, revolute);
+        watch(i, revolute.inverse);
     }
-    CATENA_HD void put(int i, Hinge const& hinge, Body const& body, Swing const& swing) {
-        put(i, hinge);
+    CATENA_HD void put(int i, Revolute const& revolute, Body const& body, Swing const& swing) {
+        put(i, revolute);
         put(i, body, swing);
     }
     CATENA_HD void put(int i, Body const& body, Swing const& swing) {
-        store(i, of_hinge, body);
+        store(i, of_revolute, body);
         if (all_ || i == last() - 1) store(i, at_swing, swing);
     }
     CATENA_HD void put(End const& end) {
@@ -58,7 +65,7 @@ class HingesInJoints {
     }
     // Part by part.
     CATENA_HD void put(Factor const& factor) {
-        store(last(), of_hinge, factor);
+        store(last(), of_revolute, factor);
         CATENA_UNROLL
         for (int i = 0; i < 6; ++i) watch(last(), factor(i, i));
     }
@@ -81,19 +88,19 @@ class HingesInJoints {
     CATENA_HD void put_orientation(Mat3 const& from_ground) {
         if (last() > 1) store(last() - 1, at_orientation, from_ground);
     }
-    CATENA_HD Hinge hinge(int i) const { return load<Hinge>(i, 0); }
-    CATENA_HD Body body(int i) const { return load<Body>(i, of_hinge); }
+    CATENA_HD Revolute revolute(int i) const { return load<Revolute>(i, 0); }
+    CATENA_HD Body body(int i) const { return load<Body>(i, of_revolute); }
     CATENA_HD Swing swing(int i) const { return load<Swing>(i, at_swing); }
-    CATENA_HD End end() const { return load<End>(last(), of_hinge); }
+    CATENA_HD End end() const { return load<End>(last(), of_revolute); }
     CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, at_axes); }
     CATENA_HD Vec3 omega(int i) const { return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega); }
     CATENA_HD Mat3 orientation() const { return load<Mat3>(last() - 1, at_orientation); }
     /// Number n of it.
     CATENA_HD double tail(int n) const {
         static_assert(at_swing == at_axes + of_axes && sizeof(Tail) == (of_end + of_axes + of_swing) * sizeof(double));
-        return n < of_end ? number(last(), of_hinge + n) : number(last() - 1, at_axes + n - of_end);
+        return n < of_end ? number(last(), of_revolute + n) : number(last() - 1, at_axes + n - of_end);
     }
-    CATENA_HD Lost const& lost() const { return lost_; }
+    CATENA_HD PivotFailure const& lost() const { return lost_; }
 
   private:
     CATENA_HD int last() const { return static_cast<int>(run_.count) - 1; }
@@ -119,7 +126,7 @@ class HingesInJoints {
     Sweeps const& sweeps_;
     Run const& run_;
     bool all_;
-    Lost lost_;
+    PivotFailure lost_;
 };
 
 }  // namespace catena::dca

@@ -1,28 +1,34 @@
-// The two operations of the divide-and-conquer algorithm, host and device; Real = double, float, an extended or SIMD type,
-// K = number of directions a handle carries.
+// The two operations of the divide-and-conquer algorithm, host and device; Real = double, float, an
+// extended or SIMD type, K = number of directions a handle carries.
 //
-// At joint j the directions are ordered so that the first m(j) are the restricted ones (D of the chapter), the others are
-// free. Projected handles carry K = max m directions, full handles all of them (6; 3 for point beads): the operations are
-// the same, since forces along free directions are known and stand in the biases (src/dca/README.md, "Projected handles").
+// At joint j the directions are ordered so that the first m(j) are the restricted ones (D of the
+// chapter), the others are free. Projected handles carry K = max m directions, full handles all of
+// them (6; 3 for point beads): the operations are the same, since forces along free directions are
+// known and stand in the biases (src/dca/README.md, "Projected handles").
 #pragma once
 
 #include "math/linear.hpp"
 
 namespace catena::dca {
 
-/// A run of bodies seen from its two handles (chapter, eqs 2.8-2.9), projected on the directions of the joints there:
+/// A run of bodies seen from its two handles (chapter, eqs 2.8-2.9), projected on the directions of
+/// the joints there:
 ///   a1 = z11 f1 + z12 f2 + b1,   a2 = z12^T f1 + z22 f2 + b2.
 template <class Real, int K>
 struct SegmentMatrix {
     Symmetric<Real, K> z11, z22;
     Matrix<Real, K, K> z12;
     /// The ground: zeta = 0.
-    static CATENA_HD SegmentMatrix zero() { return {Symmetric<Real, K>::zero(), Symmetric<Real, K>::zero(), Matrix<Real, K, K>::zero()}; }
+    static CATENA_HD SegmentMatrix zero() {
+        return {Symmetric<Real, K>::zero(), Symmetric<Real, K>::zero(), Matrix<Real, K, K>::zero()};
+    }
 };
 template <class Real, int K>
 struct SegmentBias {
     Vector<Real, K> b1, b2;
-    static CATENA_HD SegmentBias zero() { return {Vector<Real, K>::zero(), Vector<Real, K>::zero()}; }
+    static CATENA_HD SegmentBias zero() {
+        return {Vector<Real, K>::zero(), Vector<Real, K>::zero()};
+    }
 };
 
 /// Row i of both; of z11 and z22 what stands up to the diagonal.
@@ -32,8 +38,9 @@ struct SegmentRow {
     Real b1, b2;
 };
 
-/// The matrices of an eliminated joint. With Z = z22^A + z11^B on the restricted directions and Z = L S L^T:
-/// inboard = L^-1 z21^A, outboard = L^-1 z12^B, factor = L below the diagonal and S^-1 on it (0 in unrestricted rows).
+/// The matrices of an eliminated joint. With Z = z22^A + z11^B on the restricted directions and Z =
+/// L S L^T: inboard = L^-1 z21^A, outboard = L^-1 z12^B, factor = L below the diagonal and S^-1 on
+/// it (0 in unrestricted rows).
 template <class Real, int K>
 struct JointMatrix {
     Symmetric<Real, K> factor;
@@ -47,10 +54,11 @@ struct Quotient {
         return Real(1) / x;
     }
 };
-/// Z = L S L^T on the leading `restricted` rows; the others get S^-1 = 0, so that they take no part in anything.
-/// Precondition: Z is positive definite there.
+/// Z = L S L^T on the leading `restricted` rows; the others get S^-1 = 0, so that they take no part
+/// in anything. Precondition: Z is positive definite there.
 template <class Real, int K, class Inverse = Quotient>
-CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted, Inverse const& inverse = {}) {
+CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted,
+                                       Inverse const& inverse = {}) {
     Symmetric<Real, K> f;
     Real pivot[K];
     CATENA_UNROLL
@@ -73,7 +81,7 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
 }
 
 /// How matrices are factorized, and inverses taken, as the leaves and the sweeps want them.
-struct Factors {
+struct Factorizer {
     static constexpr bool may_fail = false;
     /// result(inverse), inverse(x) = 1 / x. Another way may ask for it again with another inverse.
     template <class Result>
@@ -149,9 +157,9 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
 /// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (src/dca/README.md, "Assembly and disassembly", with
 /// W = D (D^T Z D)^-1 D^T).
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
-template <class Real, int K, class Factors = dca::Factors>
+template <class Real, int K, class Factorizer = dca::Factorizer>
 CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint,
-                      Factors const& factors = {}) {
+                      Factorizer const& factors = {}) {
     joint.factor = factors(segment.z22 + outboard.z11, restricted);
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
@@ -238,9 +246,9 @@ CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const
 }
 /// One side of `append`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
 /// that force's part in it); they become the joined segment's.
-template <class Real, int K, class Factors = dca::Factors>
+template <class Real, int K, class Factorizer = dca::Factorizer>
 CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,
-                                         SegmentBias<Real, K> const& bias, int restricted, Factors const& factors = {}) {
+                                         SegmentBias<Real, K> const& bias, int restricted, Factorizer const& factors = {}) {
     OneSided<Real, K> joint;
     joint.factor = factors(z22 + outboard.z11, restricted);
     joint.outboard = solve_lower(joint.factor, outboard.z12);

@@ -8,13 +8,18 @@
 
 namespace catena {
 
-std::vector<double> ChainSolver::time_evaluations(ConfigurationView const& configuration, LoadsView const& loads,
-                                                  AccelerationsView const& out, int chained, int repeat) {
+std::vector<double> ChainSolver::time_evaluations(ConfigurationView const& configuration,
+                                                  LoadsView const& loads,
+                                                  AccelerationsView const& out, int chained,
+                                                  int repeat) {
     auto const executor = serial_executor();
-    return HostSpace(*executor).time_chained(chained, repeat, true, [&] { assemble_and_solve(configuration, loads, out); });
+    return HostSpace(*executor).time_chained(
+        chained, repeat, true, [&] { assemble_and_solve(configuration, loads, out); });
 }
 
-void ChainSolver::invert(InverseView const& /*out*/) { throw ComputationError("this solver keeps nothing of the inverse of its matrix"); }
+void ChainSolver::invert(InverseView const& /*out*/) {
+    throw ComputationError("this solver keeps nothing of the inverse of its matrix");
+}
 
 void add_tree(ChainGroup const& group, Communicator const& communicator, SolverReport& report) {
     report.directions = group.directions;
@@ -40,11 +45,14 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
         body = schedule.top_body_of_joint[joint - schedule.first_top_joint()];
     }
     bool const tip = body == group.partition.trees[chain].bodies;
-    bool const open = !group.beads && !group.linked && group.axes == Axes::joint && !group.has_tips();
+    bool const open =
+        !group.beads && !group.linked && group.axes == Axes::joint && !group.has_tips();
     bool const may = open && group.handles != Handles::articulated && group.implicit_joint.empty();
-    std::string const what = group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";
+    std::string const what =
+        group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";
     throw ComputationError(what + " is not positive definite (chain " + group.name[chain] +
-                           (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) + "): " + dca::cause_of_lost_matrix +
+                           (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
+                           "): " + dca::cause_of_lost_matrix +
                            (may ? "; `handles: articulated` keeps more digits" : ""));
 }
 

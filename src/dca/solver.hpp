@@ -1,5 +1,5 @@
-// What every backend is: matrices and biases are separate steps, so that the one can run while forces are computed and the
-// other be repeated.
+// What every backend is: matrices and biases are separate steps, so that the one can run while
+// forces are computed and the other be repeated.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,9 @@ template <class Real>
 struct BasicDirectionsView {
     Real* origin = nullptr;
     std::int64_t pitch = 0;  // as place_of() has it
-    CATENA_HD Real& at(std::int64_t k, int direction) const { return origin[direction * to_next_number(pitch) + place_of(k, pitch)]; }
+    CATENA_HD Real& at(std::int64_t k, int direction) const {
+        return origin[direction * to_next_number(pitch) + place_of(k, pitch)];
+    }
     template <int K>
     CATENA_HD Vector<double, K> load(std::int64_t k) const {
         Vector<double, K> v;
@@ -88,15 +90,15 @@ struct ConfigurationView {
     std::int64_t pieces = 0;
 };
 
-/// For one that goes_by_hinges(): of runs of two bodies or more omega is known of first bodies alone, and this stands in the place of torque
+/// For one that goes_by_revolutes(): of runs of two bodies or more omega is known of first bodies alone, and this stands in the place of torque
 /// and force. A view without origin means zero.
-struct HingeLoads {
+struct RevoluteLoads {
     bool given = false;
-    ConstView<4> rotation;  // of bodies on hinges: quaternion of B in the body before; those side by side have `frame` instead
+    ConstView<4> rotation;  // of bodies on revolute joints: quaternion of B in the body before; those side by side have `frame` instead
     ConstView<4> frame;     // of the meeting frame there
-    /// What joints do along their free directions, on body k along the axes of its inboard joint, of hinges about the last one; [0, size].
+    /// What joints do along their free directions, on body k along the axes of its inboard joint, of revolute joints about the last one; [0, size].
     ConstView<3> joint_torque;
-    static constexpr int about_hinge = 2;  // component
+    static constexpr int about_revolute = 2;  // component
     ConstView<3> torque, force;  // from outside, about the centre of mass, W
     ConstView<4> orientation;    // where these are: of first bodies, quaternion of B in W
 };
@@ -110,10 +112,10 @@ struct LoadsView {
     ConstDirectionsView tip_bias;  // the same of the joint between last body k and the ground
     ConstView<3> velocity{};       // with positions given instead of directions: of beads, with their halo, W; instead of `bias`
     bool gyroscopic = false;       // `torque` lacks -omega x J omega: the solver adds it
-    /// For assemble_and_solve() that goes_by_hinges(): rates of the hinges, of which it makes their biases. `bias` then is asked for of
+    /// For assemble_and_solve() that goes_by_revolutes(): rates of the revolute joints, of which it makes their biases. `bias` then is asked for of
     /// bodies alone that begin a chain or make a run by themselves.
-    ConstView<1> hinge_rate{};
-    HingeLoads hinges{};
+    ConstView<1> revolute_rate{};
+    RevoluteLoads revolutes{};
 };
 
 /// Of links: what the inverse of their matrix T (src/dca/README.md, "Link chains") says beyond solutions.
@@ -128,14 +130,14 @@ struct AccelerationsView {
     View<3> acceleration;        // of the centre of mass (bead), axes of LoadsView::force; may be absent
     DirectionsView joint_force;  // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
     DirectionsView tip_force;    // on the ground at the jointed tip of last body k; may be absent
-    /// Of assemble_and_solve() that goes_by_hinges(), in the place of most bodies' alpha and acceleration, which then are those of bodies
+    /// Of assemble_and_solve() that goes_by_revolutes(), in the place of most bodies' alpha and acceleration, which then are those of bodies
     /// that begin a chain, make a run by themselves, come before such a one, or are this rank's last. In runs of two bodies or more
-    /// component 0 is the angular acceleration of body k about its hinge, against the body before or, of a run's first body, against the
+    /// component 0 is the angular acceleration of body k about its revolute joint, against the body before or, of a run's first body, against the
     /// ground; component 1, of the joint after such a run, that of the run's last body against the ground about that joint's axis:
     /// [0, size].
-    View<2> hinge_acceleration{};
-    /// Whether runs on hinges find the accelerations of all their bodies, not only of those named above.
-    CATENA_HD bool by_all_bodies() const { return !hinge_acceleration.origin || joint_force; }
+    View<2> revolute_acceleration{};
+    /// Whether runs on revolute joints find the accelerations of all their bodies, not only of those named above.
+    CATENA_HD bool by_all_bodies() const { return !revolute_acceleration.origin || joint_force; }
 };
 
 /// Of a tree whose lowest levels are computed in one place and the others in another one (cuda-levels: GPU and CPU).
@@ -187,9 +189,9 @@ class ChainSolver {
     }
     /// Whether assemble_and_solve() is one sweep, which reads beads by their positions and velocities.
     virtual bool at_once() const { return false; }
-    /// Whether it takes runs on hinges by their inertias, and so can do with less: LoadsView::hinge_rate, HingeLoads,
-    /// AccelerationsView::hinge_acceleration.
-    virtual bool goes_by_hinges() const { return false; }
+    /// Whether it takes runs on revolute joints by their inertias, and so can do with less: LoadsView::revolute_rate, RevoluteLoads,
+    /// AccelerationsView::revolute_acceleration.
+    virtual bool goes_by_revolutes() const { return false; }
     /// Whether runs go side by side (deal_out_runs()).
     virtual bool has_runs_side_by_side() const { return false; }
     /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.

@@ -1,4 +1,5 @@
-// A part of the tree's levels in any Space, level by level as the chapter has it: one loop (on a GPU: one kernel) a level.
+// A part of the tree's levels in any Space, level by level as the chapter has it: one loop (on a
+// GPU: one kernel) a level.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,9 @@ template <class Sweep>
 struct Descend {
     Sweep sweep;
     CATENA_HD void operator()(Run const& run) const { descend_run(sweep, run); }
-    CATENA_HD void operator()(Merge const& m) const { descend_merge(sweep, m, sweep.node(m.joint)); }
+    CATENA_HD void operator()(Merge const& m) const {
+        descend_merge(sweep, m, sweep.node(m.joint));
+    }
 };
 template <class T, Order order>
 struct Pack {
@@ -49,8 +52,12 @@ class HostCrossing {
     LoadsView take(LoadsView const& host) const { return host; }
     AccelerationsView wanted(AccelerationsView const& host) const { return host; }
     void fetch(AccelerationsView const&) const {}
-    void download(std::vector<double> const& from, std::vector<double>& to) const { std::copy_n(from.begin(), to.size(), to.begin()); }
-    void upload(std::vector<double> const& from, std::vector<double>& to) const { std::copy(from.begin(), from.end(), to.begin()); }
+    void download(std::vector<double> const& from, std::vector<double>& to) const {
+        std::copy_n(from.begin(), to.size(), to.begin());
+    }
+    void upload(std::vector<double> const& from, std::vector<double>& to) const {
+        std::copy(from.begin(), from.end(), to.begin());
+    }
 };
 
 /// `Crossing`: as HostCrossing, of the space.
@@ -89,7 +96,7 @@ class SpaceLevels final : public LevelPart {
           lost_(1),
           sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
                   joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
-        space_.put(lost_.data(), Lost{}.joint);
+        space_.put(lost_.data(), PivotFailure{}.joint);
     }
 
     void set(ConfigurationView const& host) override {
@@ -136,12 +143,13 @@ class SpaceLevels final : public LevelPart {
         if (work_.leaves_down) crossing_.fetch(host_out_);
         // Of the joint after this rank's last body: the top alone knows it.
         if (work_.top && out_.joint_force)
-            host_out_.joint_force.template store<K>(schedule_.bodies, force_of(sweeps_.forces.load(schedule_.halo)));
+            host_out_.joint_force.template store<K>(schedule_.bodies,
+                                                    force_of(sweeps_.forces.load(schedule_.halo)));
     }
     std::int64_t first_indefinite() override {
         unsigned long long const lost = space_.get(lost_.data());
-        if (lost == Lost{}.joint) return schedule_.joints;
-        space_.put(lost_.data(), Lost{}.joint);
+        if (lost == PivotFailure{}.joint) return schedule_.joints;
+        space_.put(lost_.data(), PivotFailure{}.joint);
         return static_cast<std::int64_t>(lost);
     }
 
@@ -150,10 +158,14 @@ class SpaceLevels final : public LevelPart {
         return static_cast<int>(std::ssize(places_)) - 1;
     }
     void get(Items items, int list, std::vector<double>& numbers) override {
-        with(items, [&](auto records) { get(records, *places_[static_cast<std::size_t>(list)], numbers); });
+        with(items, [&](auto records) {
+            get(records, *places_[static_cast<std::size_t>(list)], numbers);
+        });
     }
     void put(Items items, int list, std::vector<double> const& numbers) override {
-        with(items, [&](auto records) { put(records, *places_[static_cast<std::size_t>(list)], numbers); });
+        with(items, [&](auto records) {
+            put(records, *places_[static_cast<std::size_t>(list)], numbers);
+        });
     }
     std::int64_t memory_bytes() const override { return Sweeps::bytes(schedule_); }
     int threads() const override { return space_.threads(); }
@@ -170,7 +182,8 @@ class SpaceLevels final : public LevelPart {
     };
 
     OfBiases biases() const { return {sweeps_, loads_, out_}; }
-    static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels, std::size_t first, std::size_t end) {
+    static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels,
+                                          std::size_t first, std::size_t end) {
         std::vector<List<Merge>> all;
         for (std::size_t l = first; l < end; ++l) all.emplace_back(levels[l]);
         return all;
@@ -180,7 +193,8 @@ class SpaceLevels final : public LevelPart {
         for (List<Merge> const& level : levels) space_.over(level, action);
     }
     void descend(std::vector<List<Merge>> const& levels) const {
-        for (std::size_t l = levels.size(); l-- > 0;) space_.over(levels[l], loops::Descend<OfBiases>{biases()});
+        for (std::size_t l = levels.size(); l-- > 0;)
+            space_.over(levels[l], loops::Descend<OfBiases>{biases()});
     }
 
     template <class Use>
@@ -210,15 +224,19 @@ class SpaceLevels final : public LevelPart {
     void get(RecordsView<T, order> items, Places const& places, std::vector<double>& numbers) {
         numbers.resize(places.host.size() * (sizeof(T) / sizeof(double)));
         if (numbers.empty()) return;
-        space_.for_each(std::ssize(places.host), loops::Pack<T, order>{items, places.list.data(), parcel<T>(places.host.size())});
+        space_.for_each(
+            std::ssize(places.host),
+            loops::Pack<T, order>{items, places.list.data(), parcel<T>(places.host.size())});
         crossing_.download(parcel_, numbers);
     }
     template <class T, Order order>
-    void put(RecordsView<T, order> items, Places const& places, std::vector<double> const& numbers) {
+    void put(RecordsView<T, order> items, Places const& places,
+             std::vector<double> const& numbers) {
         if (numbers.empty()) return;
         T* const packed = parcel<T>(places.host.size());
         crossing_.upload(numbers, parcel_);
-        space_.for_each(std::ssize(places.host), loops::Unpack<T, order>{packed, places.list.data(), items});
+        space_.for_each(std::ssize(places.host),
+                        loops::Unpack<T, order>{packed, places.list.data(), items});
         space_.wait();
     }
 

@@ -6,7 +6,9 @@
 namespace catena::dca {
 
 TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs) {
-    auto const runs_of = [](Piece const& piece) { return (piece.count + longest_run - 1) / longest_run; };
+    auto const runs_of = [](Piece const& piece) {
+        return (piece.count + longest_run - 1) / longest_run;
+    };
     std::vector<std::size_t> first{0};  // piece of every team, and their number
     std::int64_t in_team = 0, most = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -29,10 +31,13 @@ TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs) {
         for (std::size_t i = first[team]; i < first[team + 1]; ++i) {
             Piece const& piece = pieces[i];
             auto const of_chain = static_cast<std::int32_t>(runs_of(piece));
-            levels = std::max<std::int32_t>(levels, std::bit_width(static_cast<std::uint32_t>(of_chain - 1)));
+            levels = std::max<std::int32_t>(
+                levels, std::bit_width(static_cast<std::uint32_t>(of_chain - 1)));
             for (std::int32_t run = 0; run < of_chain; ++run) {
-                std::int64_t const begin = run * longest_run, bodies = std::min(longest_run, piece.count - begin);
-                auto const parts = static_cast<std::int32_t>((bodies + part_length - 1) / part_length);
+                std::int64_t const begin = run * longest_run,
+                                   bodies = std::min(longest_run, piece.count - begin);
+                auto const parts =
+                    static_cast<std::int32_t>((bodies + part_length - 1) / part_length);
                 for (std::int32_t part = 0; part < parts_of_run; ++part, ++thread) {
                     auto const left = static_cast<std::int32_t>(bodies) - part * part_length;
                     if (left > 0)

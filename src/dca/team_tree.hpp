@@ -1,6 +1,7 @@
-// The tree's sweeps by a team of threads that takes whole chains, one thread for each part of a run (tree.hpp): a thread keeps what
-// belongs to the joints of its part, and the team hands on segments and forces. The same operations as of tree_sweeps.hpp, in the same
-// order wherever one needs another: the same bits.
+// The tree's sweeps by a team of threads that takes whole chains, one thread for each part of a run
+// (tree.hpp): a thread keeps what belongs to the joints of its part, and the team hands on segments
+// and forces. The same operations as of tree_sweeps.hpp, in the same order wherever one needs
+// another: the same bits.
 #pragma once
 
 #include "dca/tree_sweeps.hpp"
@@ -16,28 +17,36 @@ struct PartPlace {
     std::int32_t piece = 0;          // of the group
 
     /// Body i, or one that is there in its place.
-    CATENA_HD std::int64_t body_there(int i) const { return body + (i < count ? i : count > 0 ? count - 1 : 0); }
+    CATENA_HD std::int64_t body_there(int i) const {
+        return body + (i < count ? i : count > 0 ? count - 1 : 0);
+    }
     CATENA_HD bool starts_chain(int part) const { return count > 0 && part == 0 && run == 0; }
     /// Whether a part of the same chain follows.
-    CATENA_HD bool goes_on(int part) const { return part + 1 < parts || (count > 0 && run + 1 < runs); }
+    CATENA_HD bool goes_on(int part) const {
+        return part + 1 < parts || (count > 0 && run + 1 < runs);
+    }
 };
 
-/// Whole chains dealt out to teams: thread t of team b takes place[b * threads + t], part t mod parts_of_run of a run.
+/// Whole chains dealt out to teams: thread t of team b takes place[b * threads + t], part t mod
+/// parts_of_run of a run.
 struct TeamPlan {
     int threads = 0;
     std::vector<PartPlace> place;
     std::vector<std::int32_t> levels;  // of merges, of every team's tallest chain
     std::int64_t teams() const { return std::ssize(levels); }
 };
-/// Neighbouring chains share a team while they have at most `runs` runs together; a longer one has a team alone.
-/// Precondition: whole pieces, with runs of `longest_run`.
+/// Neighbouring chains share a team while they have at most `runs` runs together; a longer one has
+/// a team alone. Precondition: whole pieces, with runs of `longest_run`.
 TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs);
 
-/// One thread's part of the tree. A `Team` has levels(), part() of a run and slot() (of its run among the team's), sync() for all of its
-/// threads, from_inboard(value) and from_outboard(value), what the neighbouring thread of the same run gave, put(slot, segment),
-/// get<Segment>(slot), put_force(slot, force) and force<K>(slot). All of its threads must come to each call of a member.
+/// One thread's part of the tree. A `Team` has levels(), part() of a run and slot() (of its run
+/// among the team's), sync() for all of its threads, from_inboard(value) and from_outboard(value),
+/// what the neighbouring thread of the same run gave, put(slot, segment), get<Segment>(slot),
+/// put_force(slot, force) and force<K>(slot). All of its threads must come to each call of a
+/// member.
 ///
-/// Where a part has fewer bodies than part_length, what is computed for the others is not used: side by side costs less than in turn.
+/// Where a part has fewer bodies than part_length, what is computed for the others is not used:
+/// side by side costs less than in turn.
 template <class Team, int K>
 struct PartTree {
     using Matrices = SegmentMatrix<double, K>;
@@ -49,16 +58,20 @@ struct PartTree {
     Joint joint[part_length];  // inboard of each body
     Directions offset[part_length];
 
-    /// leaf(i): the matrices of the part's body i; restricted(i): directions of its inboard joint; watch(i, factor): of every joint.
+    /// leaf(i): the matrices of the part's body i; restricted(i): directions of its inboard joint;
+    /// watch(i, factor): of every joint.
     CATENA_EITHER_SIDE
     template <class Leaf, class Restricted, class Watch>
-    CATENA_HD_IN_PLACE void assemble_matrices(Leaf const& leaf, Restricted const& restricted, Watch const& watch) {
+    CATENA_HD_IN_PLACE void assemble_matrices(Leaf const& leaf, Restricted const& restricted,
+                                              Watch const& watch) {
         climb<Matrices>(
             joint, leaf,
             [&](Matrices const& inboard, Matrices const& outboard, int i, Joint& of_joint) {
                 return assemble(inboard, outboard, restricted(i), of_joint);
             },
-            [&](Matrices const& floating) { joint[0].factor = factorize(floating.z11, restricted(0)); });
+            [&](Matrices const& floating) {
+                joint[0].factor = factorize(floating.z11, restricted(0));
+            });
         CATENA_UNROLL
         for (int i = 0; i < part_length; ++i)
             if (i < place.count) watch(i, joint[i].factor);
@@ -156,7 +169,7 @@ struct MatricesOfChains {
     CATENA_HD_IN_PLACE void operator()(Team const& team) const {
         PartTree<Team, K> tree{team, team.place(), {}, {}};
         PartPlace const& place = tree.place;
-        Lost lost;
+        PivotFailure lost;
         tree.assemble_matrices([&](int i) { return sweeps.leaf.matrix(place.body_there(i)); },
                                [&](int i) { return sweeps.restricted[place.body_there(i)]; },
                                [&](int i, Symmetric<double, K> const& factor) {

@@ -1,20 +1,25 @@
-// One item of every sweep over the canonical tree, host and device: a part of a run, a run, a merge, a root. Who calls them for which
-// items is the driver's business (tree_solver.hpp) and the space's.
+// One item of every sweep over the canonical tree, host and device: a part of a run, a run, a
+// merge, a root. Who calls them for which items is the driver's business (tree_solver.hpp) and the
+// space's.
 //
-// A sweep is an object with its sweeps `s` (TreeSweeps, or another of SweepsOf with all its members), Segment (what travels upwards), Part
-// (what read(begin, end) finds of a part's bodies), part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots,
-// close(Root, segment) and, if it `descends`, node(joint), force(node, first, next), down<unroll>(Run, p, Part, first, next) from the
-// states at the ends of part p and ShownNumbers (of what ranks show each other in between, frontier_records.hpp). One that `keeps_nodes` has
-// joined(..., node) and keep(joint, node) as well. One that `goes_short` (cuda/short/short_chain.cuh, cuda/sweeps/group_lanes.cuh) also has bodies that
-// are read one by one (body_at), join_bodies() or join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(),
-// accelerate() or accelerate_turned(), and nobody reads its joints, forces or slots afterwards: not all of them are written then. One that
-// has matrices() and biases() may leave stages with runs to these, one after the other (cuda/sweeps/stage_walk.cuh); one that takes factors has
-// joined(..., factors), close_free(), down(..., passages, factors) and PassagesHere, instead of which there may be others
-// (cuda/sweeps/run_parts.cuh).
+// A sweep is an object with its sweeps `s` (TreeSweeps, or another of SweepsOf with all its
+// members), Segment (what travels upwards), Part (what read(begin, end) finds of a part's bodies),
+// part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots, close(Root,
+// segment) and, if it `descends`, node(joint), force(node, first, next), down<unroll>(Run, p, Part,
+// first, next) from the states at the ends of part p and ShownNumbers (of what ranks show each
+// other in between, frontier_records.hpp). One that `keeps_nodes` has joined(..., node) and
+// keep(joint, node) as well. One that `goes_short` (cuda/short/short_chain.cuh,
+// cuda/sweeps/group_lanes.cuh) also has bodies that are read one by one (body_at), join_bodies() or
+// join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(),
+// accelerate() or accelerate_turned(), and nobody reads its joints, forces or slots afterwards: not
+// all of them are written then. One that has matrices() and biases() may leave stages with runs to
+// these, one after the other (cuda/sweeps/stage_walk.cuh); one that takes factors has joined(...,
+// factors), close_free(), down(..., passages, factors) and PassagesHere, instead of which there may
+// be others (cuda/sweeps/run_parts.cuh).
 #pragma once
 
-#include "dca/loop_closure.hpp"
 #include "dca/body_leaf.hpp"
+#include "dca/loop_closure.hpp"
 #include "tree/frontier_records.hpp"
 #include "tree/stages.hpp"
 
@@ -27,7 +32,7 @@ struct JointAt {
 };
 
 /// A joint whose matrix is not positive definite; none at first.
-struct Lost {
+struct PivotFailure {
     unsigned long long joint = ~0ULL;
     CATENA_HD void add(std::int64_t k) {
         auto const bad = static_cast<unsigned long long>(k);
@@ -52,12 +57,13 @@ struct TreeSweeps {
                                   in_stage_of_whole_runs = stage_records(K, Leaf::projected, true);
 
     Leaf leaf;
-    std::uint8_t const* restricted = nullptr;      // of every joint (ChainGroup::restricted_of_joint)
+    std::uint8_t const* restricted = nullptr;  // of every joint (ChainGroup::restricted_of_joint)
     RecordsView<Matrices, Order::plain> matrices;  // by slot
     RecordsView<Biases, Order::plain> biases;
     RecordsView<Joint, Order::by_body> joints;  // by joint
     RecordsView<Directions, Order::by_body> offsets, forces;
-    unsigned long long* lost = nullptr;  // the smallest joint whose matrix was not positive definite
+    unsigned long long* lost =
+        nullptr;  // the smallest joint whose matrix was not positive definite
 
     static std::int64_t bytes(Schedule const& schedule) {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
@@ -65,7 +71,8 @@ struct TreeSweeps {
     }
     CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
     /// The smallest joint so far whose matrix is not positive definite, as its pivots say.
-    CATENA_HD static void watch(JointAt const& joint, Symmetric<double, K> const& factor, Lost& found) {
+    CATENA_HD static void watch(JointAt const& joint, Symmetric<double, K> const& factor,
+                                PivotFailure& found) {
         bool good = true;
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) good = good && (i >= joint.restricted || is_good(factor(i, i)));
@@ -73,7 +80,7 @@ struct TreeSweeps {
         found.joint = good || bad > found.joint ? found.joint : bad;
     }
     /// Apart from the watching, so that it does not stand between a loop's reads.
-    CATENA_HD void note(Lost const& found) const {
+    CATENA_HD void note(PivotFailure const& found) const {
         if (!found.none()) lower_to(lost, found.joint);
     }
     /// Number n of a slot's matrices and, after them, biases.
@@ -106,7 +113,7 @@ struct TreeSweeps {
     /// The joint that is closed last, between a chain's first body and the ground or, in a ring, its last body; returns it. `floating`, the
     /// chain as it floats; `held`, with its tip on the ground.
     CATENA_HD Joint fasten(Root const& root, Matrices const& floating, Matrices const& held) const {
-        Lost found;
+        PivotFailure found;
         JointAt const at_first = at(root.first);
         Joint first{};
         if (root.tip == TipTo::nothing) {
@@ -166,7 +173,7 @@ struct MatrixSweep {
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
-        Lost found;
+        PivotFailure found;
         Segment segment = s.leaf.matrix(begin);
         each_body<unrolled<Leaf::K>>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
             std::int64_t const k = begin + i;
@@ -176,7 +183,7 @@ struct MatrixSweep {
         return segment;
     }
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
-        Lost found;
+        PivotFailure found;
         Segment segment = inboard;
         append(segment, outboard, at, found);
         s.note(found);
@@ -189,7 +196,7 @@ struct MatrixSweep {
     }
 
   private:
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Lost& found) const {
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, PivotFailure& found) const {
         Joint joint;
         dca::append(segment, outboard, at.restricted, joint);
         s.joints.store(at.k, joint);

@@ -7,7 +7,8 @@
 namespace catena {
 
 StateArray const& array_named(std::vector<StateArray> const& arrays, std::string const& name) {
-    auto const found = std::find_if(arrays.begin(), arrays.end(), [&](StateArray const& a) { return a.name == name; });
+    auto const found = std::find_if(arrays.begin(), arrays.end(),
+                                    [&](StateArray const& a) { return a.name == name; });
     if (found == arrays.end()) throw ComputationError("the state lacks the array " + name);
     return *found;
 }
@@ -16,16 +17,20 @@ std::vector<LocalPiece> local_pieces(ChainGroup const& group, Scene const& scene
     std::vector<LocalPiece> pieces;
     for (dca::Piece const& piece : group.pieces) {
         ChainSpec const& chain = scene.chains[group.chain[piece.chain]];
-        Vec3 const anchor = group.beads ? chain.beads.anchor : group.linked ? chain.linked.anchor : group.joint_translation[piece.local];
+        Vec3 const anchor = group.beads    ? chain.beads.anchor
+                            : group.linked ? chain.linked.anchor
+                                           : group.joint_translation[piece.local];
         pieces.push_back({piece.local, group.scene_index(piece.local), anchor});
     }
     return pieces;
 }
 
-PotentialEnergy potential_in(Vec3 const& gravity, ChainGroup const& group, Field<3> const& position) {
+PotentialEnergy potential_in(Vec3 const& gravity, ChainGroup const& group,
+                             Field<3> const& position) {
     PotentialEnergy e;
     e.gravity.reserve(static_cast<std::size_t>(group.size));
-    for (std::int64_t k = 0; k < group.size; ++k) e.gravity.push_back(-group.mass.view().at(k, 0) * dot(gravity, position[k]));
+    for (std::int64_t k = 0; k < group.size; ++k)
+        e.gravity.push_back(-group.mass.view().at(k, 0) * dot(gravity, position[k]));
     e.springs.assign(static_cast<std::size_t>(group.size), 0.0);
     return e;
 }

@@ -4,7 +4,8 @@ namespace catena {
 
 std::vector<std::uint8_t> links_of(ChainGroup const& group) {
     std::vector<std::uint8_t> links;
-    for (std::int64_t k = 0; k < group.size; ++k) links.push_back(group.joint[k] == JointType::link ? 1 : 0);
+    for (std::int64_t k = 0; k < group.size; ++k)
+        links.push_back(group.joint[k] == JointType::link ? 1 : 0);
     return links;
 }
 
@@ -16,7 +17,8 @@ Field<1> halves_over(Field<1> const& length, Executor const& executor) {
     return halves;
 }
 
-void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity, Executor const& executor) {
+void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity,
+                 Executor const& executor) {
     each_local_body(group, executor, [&](dca::Piece const& piece, std::int64_t i) {
         BeadArrays const& beads = scene.chains[group.chain[piece.chain]].beads;
         position.store(piece.local + i, beads.position[piece.body + i]);
@@ -44,12 +46,14 @@ BodyResults BeadSolution::results() const {
     return r;
 }
 
-double BeadSolution::residual(Communicator const& communicator, ConstView<3> velocity, std::vector<HeldTip> const& tips) const {
+double BeadSolution::residual(Communicator const& communicator, ConstView<3> velocity,
+                              std::vector<HeldTip> const& tips) const {
     Field<4> terms(group.size);  // acceleration and the size of what each force adds to it
     double worst = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
         Vec3 const a = acceleration.load(k), ma = group.mass.view().at(k, 0) * a, f = force.load(k);
-        Vec3 const inboard = joint_force.load<1>(k)[0] * direction.load(k), outboard = outboard_force(k);
+        Vec3 const inboard = joint_force.load<1>(k)[0] * direction.load(k),
+                   outboard = outboard_force(k);
         double const size = norm(f) + norm(inboard) + norm(outboard);
         worst = larger(worst, relative(norm(ma - f - inboard + outboard), norm(ma) + size));
         terms.set(k, {{a[0], a[1], a[2], group.inverse_mass.view().at(k, 0) * size}});
@@ -64,24 +68,35 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         if (tip.body < 0) continue;
         Vector<double, 7> const b = beyond[group.tip_index(tip.body)];
         Vec3 const u = tip_direction.load(tip.body), there{{b[0], b[1], b[2]}};
-        double const turning = swing(Vec3{{b[4], b[5], b[6]}} - velocity.load(tip.body), u, tip.length);
-        worst = larger(worst, relative(turning + dot(u, there - acceleration.load(tip.body)), terms[tip.body][3] + b[3] + turning));
+        double const turning =
+            swing(Vec3{{b[4], b[5], b[6]}} - velocity.load(tip.body), u, tip.length);
+        worst = larger(worst, relative(turning + dot(u, there - acceleration.load(tip.body)),
+                                       terms[tip.body][3] + b[3] + turning));
     }
     for (std::int64_t k = 0; k < group.size; ++k) {
         if (group.joint[k] != JointType::link) continue;
-        Vector<double, 4> const mine = terms[k], before = group.is_first[k] ? Vector<double, 4>::zero() : terms.view().load(k - 1);
+        Vector<double, 4> const mine = terms[k], before = group.is_first[k]
+                                                              ? Vector<double, 4>::zero()
+                                                              : terms.view().load(k - 1);
         Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
-        Vec3 const apart = velocity.load(k) - (group.is_first[k] ? Vec3::zero() : velocity.load(k - 1));
+        Vec3 const apart =
+            velocity.load(k) - (group.is_first[k] ? Vec3::zero() : velocity.load(k - 1));
         double const turning = swing(apart, direction.load(k), group.length.view().at(k, 0));
-        worst = larger(worst, relative(dot(direction.load(k), across) + turning, mine[3] + before[3] + turning));
+        worst = larger(worst, relative(dot(direction.load(k), across) + turning,
+                                       mine[3] + before[3] + turning));
     }
     return communicator.max(worst);
 }
 
-std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
-                                                     Communicator const& communicator, std::unique_ptr<ChainSolver> solver) {
-    auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver));
-    if (scene.dynamics.fixman) beads->use(std::make_unique<FixmanPotential>(group, scene, executor, communicator, beads->solver()));
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene,
+                                                     Executor const& executor,
+                                                     Communicator const& communicator,
+                                                     std::unique_ptr<ChainSolver> solver) {
+    auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, HostSpace(executor),
+                                                           communicator, std::move(solver));
+    if (scene.dynamics.fixman)
+        beads->use(std::make_unique<FixmanPotential>(group, scene, executor, communicator,
+                                                     beads->solver()));
     return beads;
 }
 

@@ -15,7 +15,8 @@ namespace catena {
 /// Links of the group's chains on this rank.
 std::vector<std::uint8_t> links_of(ChainGroup const&);
 /// Where they start.
-void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity, Executor const&);
+void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity,
+                 Executor const&);
 
 /// What the last evaluate() of bead chains found, on the host.
 struct BeadSolution {
@@ -37,8 +38,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
 
   public:
     /// `solver` takes views of the same space.
-    BeadDynamics(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
-                 std::unique_ptr<ChainSolver> solver)
+    BeadDynamics(ChainGroup const& group, Scene const& scene, Space const& space,
+                 Communicator const& communicator, std::unique_ptr<ChainSolver> solver)
         : group_(group),
           space_(space),
           communicator_(communicator),
@@ -47,7 +48,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
           links_(links_of(group)),
           halves_(halves_over(group.length, space.on_host())),
           piece_(local_pieces(group, scene)),
-          tip_(held_tips(group, [&](std::int64_t k) { return scene.chains[group.scene_chain(k)].beads.position.back(); })),
+          tip_(held_tips(group,
+                         [&](std::int64_t k) {
+                             return scene.chains[group.scene_chain(k)].beads.position.back();
+                         })),
           is_first_(group.is_first),
           has_link_(links_),
           pieces_(piece_),
@@ -70,7 +74,9 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
           tip_force_(group.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
         space_.set(position_, [&](View<3> position) {
-            space_.set(velocity_, [&](View<3> velocity) { place_beads(group, scene, position, velocity, space_.on_host()); });
+            space_.set(velocity_, [&](View<3> velocity) {
+                place_beads(group, scene, position, velocity, space_.on_host());
+            });
         });
     }
 
@@ -106,12 +112,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     void put_positions(DeviceParticles const& particles) override {
         if (put_at_step_ == particles.order) return;
-        space_.for_each(group_.size,
-                        [particles, x = ConstView<3>(position_.view())] CATENA_LAMBDA(std::int64_t k) { particles.put(k, x.load(k)); });
+        space_.for_each(group_.size, [particles, x = ConstView<3>(position_.view())] CATENA_LAMBDA(
+                                         std::int64_t k) { particles.put(k, x.load(k)); });
     }
     void show(ShownBeads const& shown) override {
-        space_.for_each(group_.size,
-                        [shown, x = ConstView<3>(position_.view())] CATENA_LAMBDA(std::int64_t k) { shown.show(k, x.load(k)); });
+        space_.for_each(group_.size, [shown, x = ConstView<3>(position_.view())] CATENA_LAMBDA(
+                                         std::int64_t k) { shown.show(k, x.load(k)); });
     }
     void add_forces(DeviceParticles const& particles) override { forces_.particles = particles; }
     ConstView<3> host_positions() override { return bead_positions(); }
@@ -136,21 +142,29 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         drift(h, sweeps);
         return closing.close(sweeps, [&] { return agreed_error(); }, [&] { parts().close(h); });
     }
-    void thermalise(Thermostat const& thermostat, std::uint64_t step) override { parts().thermalise(thermostat, step); }
+    void thermalise(Thermostat const& thermostat, std::uint64_t step) override {
+        parts().thermalise(thermostat, step);
+    }
     /// Block by block where it pays.
     void step(ConstrainedStep const& step) override {
-        if (!carry<dca::BeadLeaf<1>>(step) && !carry<dca::BeadLeaf<3>>(step)) AbsoluteDynamics::step(step);
+        if (!carry<dca::BeadLeaf<1>>(step) && !carry<dca::BeadLeaf<3>>(step))
+            AbsoluteDynamics::step(step);
     }
 
-    void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
-        auto const drawn = [&](std::size_t i) { return of_chain[static_cast<std::size_t>(group_.pieces[i].chain)]; };
-        for (std::size_t i = 0, end = 0; i < group_.pieces.size(); i = end) {  // neighbours in one loop
+    void draw_velocities(double kt, std::uint64_t seed,
+                         std::vector<bool> const& of_chain) override {
+        auto const drawn = [&](std::size_t i) {
+            return of_chain[static_cast<std::size_t>(group_.pieces[i].chain)];
+        };
+        for (std::size_t i = 0, end = 0; i < group_.pieces.size();
+             i = end) {  // neighbours in one loop
             std::int64_t count = 0;
-            for (end = i; end < group_.pieces.size() && drawn(end) == drawn(i); ++end) count += group_.pieces[end].count;
+            for (end = i; end < group_.pieces.size() && drawn(end) == drawn(i); ++end)
+                count += group_.pieces[end].count;
             if (drawn(i))
-                space_.for_each(count, [c = chains(), kt, seed, first = group_.pieces[i].local] CATENA_LAMBDA(std::int64_t k) {
-                    c.draw_velocity(first + k, kt, seed);
-                });
+                space_.for_each(
+                    count, [c = chains(), kt, seed, first = group_.pieces[i].local] CATENA_LAMBDA(
+                               std::int64_t k) { c.draw_velocity(first + k, kt, seed); });
         }
         kick(0.0);
     }
@@ -167,15 +181,17 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         return communicator_.max(own_error());
     }
     std::string trouble() override {
-        HeldTrouble found;
+        DeferredError found;
         found.hold([&] { check(); });
         return found.text();
     }
     /// Neighbours' positions are here: update_configuration() has brought them.
     double own_error() override {
         BeadChains const c = chains();
-        double const along = space_.largest(group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
-        double const at_tips = space_.largest(tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
+        double const along = space_.largest(
+            group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
+        double const at_tips = space_.largest(
+            tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
         return larger(along, at_tips);
     }
     double own_error_beyond(double tolerance) override {
@@ -192,8 +208,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     void set_state(std::vector<StateArray> const& arrays) override {
         put_at_step_ = never;
         trouble_.forget();
-        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view, space_.on_host()); });
-        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view, space_.on_host()); });
+        space_.edit(position_, [&](View<3> view) {
+            from_array<3>(array_named(arrays, "position"), view, space_.on_host());
+        });
+        space_.edit(velocity_, [&](View<3> view) {
+            from_array<3>(array_named(arrays, "velocity"), view, space_.on_host());
+        });
     }
     std::vector<StateArray> observed_state() const override {
         check();
@@ -221,7 +241,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     std::vector<double> time_at_once(int chained, int repeat) override {
         settle_forces();
-        return solver_->time_evaluations(where(), what(), {{}, change_.view(), {}, {}}, chained, repeat);
+        return solver_->time_evaluations(where(), what(), {{}, change_.view(), {}, {}}, chained,
+                                         repeat);
     }
     BodyResults results() const override {
         check();
@@ -231,7 +252,9 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         check();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         auto const& observed = space_.read(observed_);
-        return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
+        return with_solution([&](BeadSolution const& s) {
+            return s.residual(communicator_, observed.view(), tip_);
+        });
     }
     PotentialEnergy potential() override {
         settle_forces();  // OpenMM's energy takes the place of its forces
@@ -242,7 +265,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
-    /// A step's parts, loop after loop over all chains (bead_step.hpp). Not private: nvcc asks for that.
+    /// A step's parts, loop after loop over all chains (bead_step.hpp). Not private: nvcc asks for
+    /// that.
     struct Way {
         BeadDynamics& d;
         template <class Action>
@@ -251,7 +275,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         }
         template <class Make, class Take>
         void each_bead(Make const& make, Take const& take) const {
-            d.space_.for_each(d.group_.size, [make, take] CATENA_LAMBDA(std::int64_t k) { take(k, make(k)); });
+            d.space_.for_each(d.group_.size,
+                              [make, take] CATENA_LAMBDA(std::int64_t k) { take(k, make(k)); });
         }
         template <class Action>
         void each_link(Action const& action) const {
@@ -265,23 +290,31 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_);
             d.ring_ends_.take(d.position_.view(), d.position_.view());
         }
-        void from_outboard() const { exchange_from_outboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
+        void from_outboard() const {
+            exchange_from_outboard(d.communicator_, d.group_, d.position_.view(), d.space_);
+        }
         void assemble() const { d.assemble_matrices(); }
-        void project(View<3> momentum, View<3> out) const { d.solver_->solve({{}, momentum, {}, {}, {}}, {{}, out, {}, {}}); }
+        void project(View<3> momentum, View<3> out) const {
+            d.solver_->solve({{}, momentum, {}, {}, {}}, {{}, out, {}, {}});
+        }
         void close(DirectionsView bias, DirectionsView tip_bias, View<3> out) const {
             d.solver_->solve({{}, {}, {}, bias, tip_bias}, {{}, out, {}, {}});
         }
     };
 
-    /// Adds up the forces that are ahead: whoever reads the array comes here first. Not private: nvcc asks for that.
+    /// Adds up the forces that are ahead: whoever reads the array comes here first. Not private:
+    /// nvcc asks for that.
     void settle_forces() {
         if (std::exchange(forces_are_ahead_, false))
-            space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) { c.take_forces(k, f); });
+            space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) {
+                c.take_forces(k, f);
+            });
     }
 
   private:
     static constexpr std::int64_t never = -1;
-    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that itself.
+    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that
+    /// itself.
     template <class Action>
     void held(Action const& action) {
         if constexpr (Space::answers_at_once)
@@ -297,7 +330,9 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     bool closed_within(double tolerance) {
         BeadChains const c = chains();
         for (dca::Piece const& p : group_.pieces)
-            if (!(c.error(p.local) <= tolerance) || !c.closed_along(p.local + 1, p.local + p.count, tolerance)) return false;
+            if (!(c.error(p.local) <= tolerance) ||
+                !c.closed_along(p.local + 1, p.local + p.count, tolerance))
+                return false;
         for (std::int64_t i = 0; i < tips(); ++i)
             if (!(c.tip_error(i) <= tolerance)) return false;
         return true;
@@ -310,16 +345,22 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             auto* const solver = dynamic_cast<dca::TreeSolver<Leaf, Space>*>(solver_.get());
             if (solver == nullptr || !solver->carries()) return false;
             held([&] {
-                solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(), [&](dca::TreeSweeps<Leaf> const& sweeps) {
-                    return StepOfChains<Leaf>{sweeps, chains(), step, forces_are_ahead_, forces_};
-                });
+                solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(),
+                              [&](dca::TreeSweeps<Leaf> const& sweeps) {
+                                  return StepOfChains<Leaf>{sweeps, chains(), step,
+                                                            forces_are_ahead_, forces_};
+                              });
             });
-            put_at_step_ = forces_are_ahead_ && forces_.particles.bead ? forces_.particles.order : never;
+            put_at_step_ =
+                forces_are_ahead_ && forces_.particles.bead ? forces_.particles.order : never;
             return true;
         }
         return false;
     }
-    ConfigurationView directions() { return {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}}; }
+    ConfigurationView directions() {
+        return {
+            direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}};
+    }
     ConfigurationView where() const {
         ConfigurationView at;
         at.direction = direction_.view();
@@ -362,11 +403,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     template <class Use>
     auto with_solution(Use const& use) const {
-        auto const &force = space_.read(force_), &acceleration = space_.read(change_), &direction = space_.read(direction_),
+        auto const &force = space_.read(force_), &acceleration = space_.read(change_),
+                   &direction = space_.read(direction_),
                    &tip_direction = space_.read(tip_direction_);
         auto const &joint_force = space_.read(joint_force_), &tip_force = space_.read(tip_force_);
-        return use(BeadSolution{group_, force.view(), acceleration.view(), direction.view(), tip_direction.view(), joint_force.view(),
-                                tip_force.view()});
+        return use(BeadSolution{group_, force.view(), acceleration.view(), direction.view(),
+                                tip_direction.view(), joint_force.view(), tip_force.view()});
     }
 
     ChainGroup const& group_;
@@ -387,9 +429,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     RingEnds<Space> ring_ends_;
     typename Space::template Mirror<3> position_mirror_, force_mirror_;
     BeadForces forces_;
-    HeldTrouble trouble_;
+    DeferredError trouble_;
     bool forces_are_ahead_ = false, forces_are_out_ = false;
-    std::int64_t put_at_step_ = never;  // DeviceParticles::order of the particles that the last step moved with the beads
+    std::int64_t put_at_step_ =
+        never;  // DeviceParticles::order of the particles that the last step moved with the beads
     std::unique_ptr<FixmanPotential> fixman_;
 };
 

@@ -1,5 +1,6 @@
-// A step of chains of point beads by a team of threads that keeps them in registers from its beginning to its end, up to four consecutive
-// beads a thread (dca/team_tree.hpp). What a step does to a bead is in bead_step.hpp and bead_chains.hpp, for every way alike.
+// A step of chains of point beads by a team of threads that keeps them in registers from its
+// beginning to its end, up to four consecutive beads a thread (dca/team_tree.hpp). What a step does
+// to a bead is in bead_step.hpp and bead_chains.hpp, for every way alike.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -17,9 +18,13 @@ struct BeadStep;
 template <int D>
 struct PartField {
     Vector<double, D>* bead = nullptr;  // the neighbour inboard
-    CATENA_HD_IN_PLACE double& at(std::int64_t i, int component) const { return bead[i + 1][component]; }
+    CATENA_HD_IN_PLACE double& at(std::int64_t i, int component) const {
+        return bead[i + 1][component];
+    }
     CATENA_HD_IN_PLACE Vector<double, D> load(std::int64_t i) const { return bead[i + 1]; }
-    CATENA_HD_IN_PLACE void store(std::int64_t i, Vector<double, D> const& v) const { bead[i + 1] = v; }
+    CATENA_HD_IN_PLACE void store(std::int64_t i, Vector<double, D> const& v) const {
+        bead[i + 1] = v;
+    }
 };
 /// As BeadPlaces; bead part_length is the neighbour outboard.
 struct PartPlaces {
@@ -48,7 +53,11 @@ class BeadPart {
     CATENA_EITHER_SIDE
     template <class Step>
     CATENA_HD_IN_PLACE BeadPart(Team const& team, Step const& step)
-        : team_(team), place_(team.place()), sweeps_(step.sweeps), chains_(step.chains), tree_{team, team.place(), {}, {}} {
+        : team_(team),
+          place_(team.place()),
+          sweeps_(step.sweeps),
+          chains_(step.chains),
+          tree_{team, team.place(), {}, {}} {
         BeadChains const& chains = chains_;
         each([&](int i) {
             std::int64_t const k = place_.body_there(i);
@@ -58,11 +67,13 @@ class BeadPart {
             half_over_length_[i + 1] = chains.half_over_length.load(k);
             position_[i + 1] = chains.position.load(k);
             velocity_[i + 1] = chains.velocity.load(k);
-            force_[i + 1] = step.forces_are_ahead ? step.forces.on(k, mass_[i + 1][0]) : chains.force.load(k);
+            force_[i + 1] =
+                step.forces_are_ahead ? step.forces.on(k, mass_[i + 1][0]) : chains.force.load(k);
             tree_.joint[i] = sweeps_.joints.load(k);
             direction_[i + 1] = ends_before(i) ? Vec3::zero() : chains.direction.load(k);
         });
-        direction_[length + 1] = goes_on() ? chains.direction.load(place_.body + length) : Vec3::zero();
+        direction_[length + 1] =
+            goes_on() ? chains.direction.load(place_.body + length) : Vec3::zero();
     }
     CATENA_HD_IN_PLACE BeadChainsIn<PartFields> chains() {
         BeadChainsIn<PartFields> c;
@@ -171,7 +182,7 @@ class BeadPart {
     CATENA_HD_IN_PLACE Vec3 const& outboard_direction(int i) const { return direction_[i + 2]; }
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void assemble() {
-        dca::Lost lost;
+        dca::PivotFailure lost;
         tree_.assemble_matrices(
             [&](int i) {
                 return dca::bead_matrix(inverse_mass_[i + 1][0], direction_[i + 1], outboard_direction(i), Directions{});

@@ -1,9 +1,11 @@
-// A step of chains of point beads, part by part, for whatever carries it out: loop after loop over all chains (BeadDynamics), or a block
-// of threads that takes whole chains through everything, so that a step is one launch.
+// A step of chains of point beads, part by part, for whatever carries it out: loop after loop over
+// all chains (BeadDynamics), or a block of threads that takes whole chains through everything, so
+// that a step is one launch.
 //
-// A `Way` has each_bead(action) and each_bead(make, take) for take(k, make(k)), where make is long, each_link(action) and each_tip(action),
-// from_inboard() and from_outboard() for the positions of neighbours elsewhere, assemble() for the matrices of the directions of now,
-// project(momentum, out) and close(bias, tip_bias, out), which solve for them.
+// A `Way` has each_bead(action) and each_bead(make, take) for take(k, make(k)), where make is long,
+// each_link(action) and each_tip(action), from_inboard() and from_outboard() for the positions of
+// neighbours elsewhere, assemble() for the matrices of the directions of now, project(momentum,
+// out) and close(bias, tip_bias, out), which solve for them.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -28,7 +30,8 @@ struct BeadStep {
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void assemble_matrices() const { way.assemble(); }
 
-    /// out = P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
+    /// out = P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in
+    /// the place of accelerations.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void project(double h, typename Fields::template Found<3> out) const {
         way.each_bead([c = c, h] CATENA_LAMBDA(std::int64_t k) { c.set_momentum(k, h); });
@@ -48,12 +51,16 @@ struct BeadStep {
         way.each_bead([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
         way.each_tip([c = c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_excess(i); });
         way.close(c.bias, c.tip_bias, c.change);
-        way.each_bead([c = c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
+        way.each_bead(
+            [c = c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
     }
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void thermalise(Thermostat const& t, std::uint64_t step) const {
-        way.each_bead([c = c, t, step] CATENA_LAMBDA(std::int64_t k) { return c.noise(k, t.seed, step); },
-                      [c = c, t] CATENA_LAMBDA(std::int64_t k, Vec3 const& noise) { c.thermalise(k, t.keep, t.spread, noise); });
+        way.each_bead(
+            [c = c, t, step] CATENA_LAMBDA(std::int64_t k) { return c.noise(k, t.seed, step); },
+            [c = c, t] CATENA_LAMBDA(std::int64_t k, Vec3 const& noise) {
+                c.thermalise(k, t.keep, t.spread, noise);
+            });
     }
 };
 
@@ -89,15 +96,18 @@ struct WayOfBlock {
     CATENA_HD void assemble() const { block.climb(dca::MatrixSweep<Leaf>{sweeps}); }
     CATENA_EITHER_SIDE
     CATENA_HD void project(View<3> momentum, View<3> out) const {
-        block.climb_and_descend(dca::BiasSweep<Leaf>{sweeps, {{}, momentum, {}, {}, {}}, {{}, out, {}, {}}});
+        block.climb_and_descend(
+            dca::BiasSweep<Leaf>{sweeps, {{}, momentum, {}, {}, {}}, {{}, out, {}, {}}});
     }
     CATENA_EITHER_SIDE
     CATENA_HD void close(DirectionsView bias, DirectionsView tip_bias, View<3> out) const {
-        block.climb_and_descend(dca::BiasSweep<Leaf>{sweeps, {{}, {}, {}, bias, tip_bias}, {{}, out, {}, {}}});
+        block.climb_and_descend(
+            dca::BiasSweep<Leaf>{sweeps, {{}, {}, {}, bias, tip_bias}, {{}, out, {}, {}}});
     }
 };
 
-/// A whole step on one block's chains, or (bead_part.hpp) on those that a team of threads keeps in registers.
+/// A whole step on one block's chains, or (bead_part.hpp) on those that a team of threads keeps in
+/// registers.
 template <class Leaf>
 struct StepOfChains {
     static constexpr int K = Leaf::K;
@@ -113,7 +123,10 @@ struct StepOfChains {
         if constexpr (requires { block.place(); }) {
             step_of_part(block, *this);
         } else {
-            if (forces_are_ahead) block.each_body([c = chains, f = forces] CATENA_LAMBDA(std::int64_t k) { c.take_forces(k, f); });
+            if (forces_are_ahead)
+                block.each_body([c = chains, f = forces] CATENA_LAMBDA(std::int64_t k) {
+                    c.take_forces(k, f);
+                });
             take_step(BeadStep<WayOfBlock<Block, Leaf>>{chains, {block, sweeps}}, step);
         }
     }

@@ -7,7 +7,8 @@
 
 namespace catena {
 
-/// Joint torques, springs, dampers and wrenches of a group's bodies, and gravity. Fields are empty where no body has any.
+/// Joint torques, springs, dampers and wrenches of a group's bodies, and gravity. Fields are empty
+/// where no body has any.
 struct BodyLoads {
     Vec3 gravity = Vec3::zero();          // W
     Field<3> torque, stiffness, damping;  // rules of BodyArrays
@@ -41,9 +42,10 @@ class BodyLoadsIn {
           rest_(host.rest),
           drag_(host.drag) {}
     BodyLoadsView view() const {
-        return {host_.gravity,         torque_.view(),       stiffness_.view(), damping_.view(),   rest_.view(),
-                wrench_torque_.view(), wrench_force_.view(), drag_.view(),      host_.joint_loads, host_.springs,
-                host_.dampers,         host_.wrenches,       host_.dragged};
+        return {host_.gravity,     torque_.view(),        stiffness_.view(),    damping_.view(),
+                rest_.view(),      wrench_torque_.view(), wrench_force_.view(), drag_.view(),
+                host_.joint_loads, host_.springs,         host_.dampers,        host_.wrenches,
+                host_.dragged};
     }
 
   private:
@@ -58,16 +60,17 @@ inline double radius_of_gyration(Sym3 const& inertia, double mass) {
     return std::sqrt(0.5 * (inertia.data[0] + inertia.data[2] + inertia.data[5]) / mass);
 }
 
-/// Torque of the spring (and damper) of a spherical joint on the outboard body, B. The energy is 1/2 sum k_i theta_i^2, theta the
-/// rotation vector of B from `rest`; its gradient turns with the inverse right Jacobian of SO(3) (Sola et al., "A micro Lie theory", 2018,
-/// eq 144).
+/// Torque of the spring (and damper) of a spherical joint on the outboard body, B. The energy is
+/// 1/2 sum k_i theta_i^2, theta the rotation vector of B from `rest`; its gradient turns with the
+/// inverse right Jacobian of SO(3) (Sola et al., "A micro Lie theory", 2018, eq 144).
 CATENA_HD Vec3 spherical_spring_torque(Vec3 const& stiffness, Quat const& rest, Quat const& turn) {
     Vec3 const theta = rotation_vector(conjugate(rest) * turn);
     Vec3 const k_theta{{stiffness[0] * theta[0], stiffness[1] * theta[1], stiffness[2] * theta[2]}};
     double const angle = norm(theta);
     CosSin const half = cos_sin(0.5 * angle);
     // (1 - (angle/2) cot(angle/2)) / angle^2, 1/12 for small angles
-    double const c = angle > 1e-3 ? (1.0 - 0.5 * angle * half.cos / half.sin) / (angle * angle) : 1.0 / 12.0 + angle * angle / 720.0;
+    double const c = angle > 1e-3 ? (1.0 - 0.5 * angle * half.cos / half.sin) / (angle * angle)
+                                  : 1.0 / 12.0 + angle * angle / 720.0;
     Vec3 const t1 = cross(theta, k_theta), t2 = cross(theta, t1);
     return -1.0 * (k_theta - 0.5 * t1 + c * t2);
 }

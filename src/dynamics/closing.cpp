@@ -14,14 +14,17 @@ constexpr int in_vain_at_rounding = 5;
 
 [[noreturn]] void fail(int sweeps, double error, double tolerance) {
     std::ostringstream line;
-    line << "the joints do not close to dynamics.constraint_tolerance = " << tolerance << " within " << sweeps << " sweeps (error " << error
-         << "): the step is too long for how fast bodies move here: choose a smaller dynamics.step, or look at the start and the forces";
+    line << "the joints do not close to dynamics.constraint_tolerance = " << tolerance << " within "
+         << sweeps << " sweeps (error " << error
+         << "): the step is too long for how fast bodies move here: choose a smaller "
+            "dynamics.step, or look at the start and the forces";
     throw StaysOpen(line.str());
 }
 
 }  // namespace
 
-int Closing::close(int done, std::function<double()> const& error, std::function<void()> const& sweep) const {
+int Closing::close(int done, std::function<double()> const& error,
+                   std::function<void()> const& sweep) const {
     double open = error(), best = std::numeric_limits<double>::infinity();
     if (open <= tolerance) return 0;
     int more = 0, in_vain = 0;

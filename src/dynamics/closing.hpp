@@ -1,4 +1,5 @@
-// Further sweeps of a drift that left its joints open: the number learnt before is a start, not a verdict.
+// Further sweeps of a drift that left its joints open: the number learnt before is a start, not a
+// verdict.
 #pragma once
 
 #include <functional>
@@ -15,30 +16,36 @@ struct Closing {
     int most = 30;             // sweeps of a drift in all, or the few that tell rounding
     double rounding = 1e-7;    // the most that coordinates' rounding leaves of an error
 
-    /// Calls `sweep` while `error()` asks for it, after `done` sweeps. Returns the number of calls. Throws ComputationError where the
-    /// joints stay open after `most` sweeps or come apart.
-    int close(int done, std::function<double()> const& error, std::function<void()> const& sweep) const;
+    /// Calls `sweep` while `error()` asks for it, after `done` sweeps. Returns the number of calls.
+    /// Throws ComputationError where the joints stay open after `most` sweeps or come apart.
+    int close(int done, std::function<double()> const& error,
+              std::function<void()> const& sweep) const;
 };
 
-/// Chains in absolute coordinates (AbsoluteDynamics) as ClosedSteps and ConstrainedIntegrator::step_closing() see them.
+/// Chains in absolute coordinates (AbsoluteDynamics) as ClosedSteps and
+/// ConstrainedIntegrator::step_closing() see them.
 class ClosingDrifts {
   public:
     virtual ~ClosingDrifts() = default;
-    /// As AbsoluteDynamics::drift(), with further sweeps where `closing` asks for them. Returns how many these were. Collective.
+    /// As AbsoluteDynamics::drift(), with further sweeps where `closing` asks for them. Returns how
+    /// many these were. Collective.
     virtual int drift_closing(double h, int sweeps, Closing const& closing) = 0;
-    /// AbsoluteDynamics::constraint_error() of this rank's joints, after step(). Collective, without an agreement of the ranks.
+    /// AbsoluteDynamics::constraint_error() of this rank's joints, after step(). Collective,
+    /// without an agreement of the ranks.
     virtual double own_error() = 0;
-    /// own_error(), or 0 where it is known to be no more than `tolerance`, which takes less time to find out. Collective, as own_error().
+    /// own_error(), or 0 where it is known to be no more than `tolerance`, which takes less time to
+    /// find out. Collective, as own_error().
     virtual double own_error_beyond(double tolerance) = 0;
-    /// AbsoluteDynamics::constraint_error() whatever became of matrices: where these are lost on one rank, all ranks come back. Collective.
+    /// AbsoluteDynamics::constraint_error() whatever became of matrices: where these are lost on
+    /// one rank, all ranks come back. Collective.
     virtual double agreed_error() = 0;
     /// What is wrong with matrices on this rank since the state was set last; empty: nothing.
     virtual std::string trouble() = 0;
 };
 
-/// What a rank finds wrong within a step, kept until all ranks look: thrown at once it would leave the others waiting, and no step could be
-/// taken again.
-class HeldTrouble {
+/// What a rank finds wrong within a step, kept until all ranks look: thrown at once it would leave
+/// the others waiting, and no step could be taken again.
+class DeferredError {
   public:
     template <class Action>
     void hold(Action const& action) {

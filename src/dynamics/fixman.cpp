@@ -8,18 +8,24 @@ namespace catena {
 namespace {
 
 /// What turns a link of this length along u towards s.
-Vec3 turning(double strength, Vec3 const& s, Vec3 const& u) { return strength * plus_scaled(s, -dot(s, u), u); }
+Vec3 turning(double strength, Vec3 const& s, Vec3 const& u) {
+    return strength * plus_scaled(s, -dot(s, u), u);
+}
 
 }  // namespace
 
-FixmanPotential::FixmanPotential(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
+FixmanPotential::FixmanPotential(ChainGroup const& group, Scene const& scene,
+                                 Executor const& executor, Communicator const& communicator,
                                  ChainSolver& solver)
     : group_(group),
       executor_(executor),
       communicator_(communicator),
       solver_(solver),
       kt_(scene.boltzmann() * scene.dynamics.temperature),
-      tips_(held_tips(group, [&](std::int64_t k) { return scene.chains[group.scene_chain(k)].beads.position.back(); })),
+      tips_(held_tips(group,
+                      [&](std::int64_t k) {
+                          return scene.chains[group.scene_chain(k)].beads.position.back();
+                      })),
       pivot_(group.size),
       tip_pivot_(group.size),
       beside_(group.size),
@@ -31,35 +37,45 @@ Vec3 FixmanPotential::outboard(ConfigurationView const& at, std::int64_t k) cons
     return group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : at.direction.load(k + 1);
 }
 
-/// kT sum_k w_k grad(u_k . u_k+1), w_k = (T^-1)_k,k+1 / m_k: link k is turned towards w_k-1 u_k-1 + w_k u_k+1.
+/// kT sum_k w_k grad(u_k . u_k+1), w_k = (T^-1)_k,k+1 / m_k: link k is turned towards w_k-1 u_k-1 +
+/// w_k u_k+1.
 void FixmanPotential::add_forces(ConfigurationView const& at, View<3> force) {
     solver_.invert({pivot_.view(), tip_pivot_.view(), beside_.view()});
     View<1> const beside = beside_.view();
     ConstView<1> const inverse_mass = group_.inverse_mass.view(), length = group_.length.view();
     View<3> const pull = pull_.view(), turn = turn_.view();
     auto const weight = [=](std::int64_t k) { return beside.at(k, 0) * inverse_mass.at(k, 0); };
-    executor_.for_each(group_.size, [&](std::int64_t k) { pull.store(k, weight(k) * at.direction.load(k)); });
+    executor_.for_each(group_.size,
+                       [&](std::int64_t k) { pull.store(k, weight(k) * at.direction.load(k)); });
     exchange_from_inboard(communicator_, group_, pull);
     executor_.for_each(group_.size, [&](std::int64_t k) {
         if (!has_link(k)) return turn.store(k, Vec3::zero());
-        Vec3 const before = group_.is_first[static_cast<std::size_t>(k)] ? Vec3::zero() : pull.load(k - 1);
-        turn.store(k, turning(kt_ / length.at(k, 0), plus_scaled(before, weight(k), outboard(at, k)), at.direction.load(k)));
+        Vec3 const before =
+            group_.is_first[static_cast<std::size_t>(k)] ? Vec3::zero() : pull.load(k - 1);
+        turn.store(k,
+                   turning(kt_ / length.at(k, 0), plus_scaled(before, weight(k), outboard(at, k)),
+                           at.direction.load(k)));
     });
     exchange_from_outboard(communicator_, group_, turn);
     executor_.for_each(group_.size, [&](std::int64_t k) {
-        Vec3 const after = group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : turn.load(k + 1);
+        Vec3 const after =
+            group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : turn.load(k + 1);
         force.store(k, force.load(k) + (turn.load(k) - after));
     });
     for (HeldTip const& tip : tips_) {
-        Vec3 const of_tip = turning(kt_ / tip.length, pull.load(tip.body), at.tip_direction.load(tip.body));
+        Vec3 const of_tip =
+            turning(kt_ / tip.length, pull.load(tip.body), at.tip_direction.load(tip.body));
         force.store(tip.body, force.load(tip.body) - of_tip);
     }
 }
 
 std::vector<double> FixmanPotential::energy() const {
     std::vector<double> energy;
-    for (std::int64_t k = 0; k < group_.size; ++k) energy.push_back(0.5 * kt_ * std::log(pivot_.view().at(k, 0)));
-    for (HeldTip const& tip : tips_) energy[static_cast<std::size_t>(tip.body)] += 0.5 * kt_ * std::log(tip_pivot_.view().at(tip.body, 0));
+    for (std::int64_t k = 0; k < group_.size; ++k)
+        energy.push_back(0.5 * kt_ * std::log(pivot_.view().at(k, 0)));
+    for (HeldTip const& tip : tips_)
+        energy[static_cast<std::size_t>(tip.body)] +=
+            0.5 * kt_ * std::log(tip_pivot_.view().at(tip.body, 0));
     return energy;
 }
 

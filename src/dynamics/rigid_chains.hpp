@@ -1,18 +1,18 @@
-// What a step does to one body of chains of rigid bodies in absolute coordinates, for every Space. Positions, velocities and forces in
-// ground axes, angular velocities and torques in the body's.
+// What a step does to one body of chains of rigid bodies in absolute coordinates, for every Space.
+// Positions, velocities and forces in ground axes, angular velocities and torques in the body's.
 #pragma once
 
 #include <cmath>
 
-#include "math/philox.hpp"
 #include "dca/solver.hpp"
 #include "dynamics/body_loads.hpp"
-#include "kinematics/carried_beads.hpp"
 #include "dynamics/constrained_step.hpp"
 #include "dynamics/joint_rotors.hpp"
+#include "kinematics/carried_beads.hpp"
 #include "kinematics/link_geometry.hpp"
 #include "kinematics/ring_ends.hpp"
 #include "kinematics/rotor.hpp"
+#include "math/philox.hpp"
 
 namespace catena {
 
@@ -27,7 +27,8 @@ struct RigidNoise {
     Thermostat thermostat;
     std::uint64_t step = 0;
     NoiseStage linear = NoiseStage::start, angular = NoiseStage::start_angular;
-    bool between_drifts = false;  // not where forces are: there rotors have half the variance (JointRotors::add_noise)
+    bool between_drifts = false;  // not where forces are: there rotors have half the variance
+                                  // (JointRotors::add_noise)
 };
 
 /// Of body k relative to the joint frame (`frame`, in the inboard body).
@@ -35,14 +36,16 @@ CATENA_HD Quat turn_of_joint(Quat const& inboard, Quat const& frame, Quat const&
     return conjugate(inboard * frame) * orientation;
 }
 
-/// Handle 1 of body k lies at x + R r1, handle 2 at x + R r2 (x: centre of mass). Joints hold handles together; links keep them their
-/// length apart. A point bead is a body without inertia that never turns.
+/// Handle 1 of body k lies at x + R r1, handle 2 at x + R r2 (x: centre of mass). Joints hold
+/// handles together; links keep them their length apart. A point bead is a body without inertia
+/// that never turns.
 struct RigidChains {
     bool linked = false;
-    double reach = 1;                                            // that openings of joints are measured by
+    double reach = 1;  // that openings of joints are measured by
     std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // of its chain
     JointType const* joint = nullptr;
-    std::int32_t const* jointed_tip = nullptr;  // of its last body: index in `tip`, else -1; absent where there is none
+    std::int32_t const* jointed_tip =
+        nullptr;  // of its last body: index in `tip`, else -1; absent where there is none
     HeldTip const* tip = nullptr;
     RingEndsView ring_ends;
     LocalPiece const* piece = nullptr;
@@ -59,19 +62,27 @@ struct RigidChains {
     View<3> position, velocity, omega;
     View<4> orientation;
     View<3> observed_velocity, observed_omega, force, torque;
-    View<3> momentum, moment;           // linear and angular momenta; for accelerations `moment` is the torque less the gyroscopic one
-    View<3> acceleration, alpha;        // or what a sweep changes velocities by
+    View<3> momentum, moment;     // linear and angular momenta; for accelerations `moment` is the
+                                  // torque less the gyroscopic one
+    View<3> acceleration, alpha;  // or what a sweep changes velocities by
     View<3> inboard_end, outboard_end;  // the handles, or their velocities, W
     View<3> joint_torque;               // of joint k on body k, W
     View<3> direction, tip_direction;   // of links
-    DirectionsView bias, tip_bias;      // a link's direction comes first; full handles' other directions stay 0
+    DirectionsView bias,
+        tip_bias;  // a link's direction comes first; full handles' other directions stay 0
 
-    CATENA_HD Mat3 axes(std::int64_t k) const { return to_matrix(as_quaternion(orientation.load(k))); }
+    CATENA_HD Mat3 axes(std::int64_t k) const {
+        return to_matrix(as_quaternion(orientation.load(k)));
+    }
     CATENA_HD bool is_bead(std::int64_t k) const { return principal_moment.at(k, 0) == 0; }
     CATENA_HD bool is_joined(std::int64_t k) const { return joint[k] != JointType::free; }
     /// Of the chain that body k ends; null where it ends none or nothing holds it.
-    CATENA_HD HeldTip const* tip_of(std::int64_t k) const { return jointed_tip && jointed_tip[k] >= 0 ? tip + jointed_tip[k] : nullptr; }
-    CATENA_HD LocalPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
+    CATENA_HD HeldTip const* tip_of(std::int64_t k) const {
+        return jointed_tip && jointed_tip[k] >= 0 ? tip + jointed_tip[k] : nullptr;
+    }
+    CATENA_HD LocalPiece const& piece_of(std::int64_t k) const {
+        return catena::piece_of(piece, pieces, k);
+    }
 
     // Joints.
 
@@ -94,8 +105,12 @@ struct RigidChains {
         Vec3 direction;
         double length;
     };
-    CATENA_HD Link link(std::int64_t k) const { return linked ? Link{direction.load(k), length.at(k, 0)} : Link{Vec3::zero(), 0}; }
-    CATENA_HD Link link(HeldTip const& t) const { return {linked ? tip_direction.load(t.body) : Vec3::zero(), t.length}; }
+    CATENA_HD Link link(std::int64_t k) const {
+        return linked ? Link{direction.load(k), length.at(k, 0)} : Link{Vec3::zero(), 0};
+    }
+    CATENA_HD Link link(HeldTip const& t) const {
+        return {linked ? tip_direction.load(t.body) : Vec3::zero(), t.length};
+    }
 
     CATENA_HD void set_directions(std::int64_t k) const {
         Vec3 const d = is_joined(k) ? apart(k) : Vec3::zero();
@@ -111,7 +126,9 @@ struct RigidChains {
         Vec3 const d = ring_ends.first.load(i) - ring_ends.last.load(i);
         direction.store(ring.first, (1.0 / norm(d)) * d);
     }
-    CATENA_HD double error_of(Vec3 const& d, double l) const { return linked ? std::fabs(norm(d) - l) / l : norm(d) / reach; }
+    CATENA_HD double error_of(Vec3 const& d, double l) const {
+        return linked ? std::fabs(norm(d) - l) / l : norm(d) / reach;
+    }
     /// Of the inboard joint of body k and of its tip's.
     CATENA_HD double error(std::int64_t k) const {
         double const own = is_joined(k) ? error_of(apart(k), linked ? length.at(k, 0) : 0.0) : 0.0;
@@ -126,21 +143,27 @@ struct RigidChains {
         else
             out.store<3>(k, value);
     }
-    CATENA_HD Vec3 opening(Vec3 const& d, Link const& l) const { return linked ? Vec3{{excess(d, l.length, 0.5 / l.length), 0, 0}} : d; }
+    CATENA_HD Vec3 opening(Vec3 const& d, Link const& l) const {
+        return linked ? Vec3{{excess(d, l.length, 0.5 / l.length), 0, 0}} : d;
+    }
     /// For a drift that ended with the handles here: `scale` times how far joints are open.
     CATENA_HD void set_openings(std::int64_t k, double scale) const {
         set_bias(bias, k, is_joined(k) ? scale * opening(apart(k), link(k)) : Vec3::zero());
         rotors.set_opening(bias, k, scale);
-        if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, scale * opening(apart(*t), link(*t)));
+        if (HeldTip const* const t = tip_of(k))
+            set_bias(tip_bias, k, scale * opening(apart(*t), link(*t)));
     }
-    /// For accelerations: what the joints' velocities add, less the centripetal terms of the bodies, which are all there is but on links.
+    /// For accelerations: what the joints' velocities add, less the centripetal terms of the
+    /// bodies, which are all there is but on links.
     CATENA_HD Vec3 turning(Vec3 const& v, Link const& l) const {
         return linked ? Vec3{{swing(v, l.direction, l.length), 0, 0}} : Vec3::zero();
     }
     CATENA_HD void set_turnings(std::int64_t k) const {
         Vec3 const before = is_first[k] || !linked ? Vec3::zero() : outboard_end.load(k - 1);
-        set_bias(bias, k, is_joined(k) ? turning(inboard_end.load(k) - before, link(k)) : Vec3::zero());
-        if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, turning(apart(*t, Vec3::zero()), link(*t)));
+        set_bias(bias, k,
+                 is_joined(k) ? turning(inboard_end.load(k) - before, link(k)) : Vec3::zero());
+        if (HeldTip const* const t = tip_of(k))
+            set_bias(tip_bias, k, turning(apart(*t, Vec3::zero()), link(*t)));
     }
 
     // Forces.
@@ -151,9 +174,13 @@ struct RigidChains {
         if (joint[k] == JointType::spherical) {
             torque_on_body = given.torque.load(k);
             if (given.springs) {
-                Quat const inboard = is_first[k] ? Quat::identity() : as_quaternion(orientation.load(k - 1));
-                Quat const turn = turn_of_joint(inboard, as_quaternion(joint_frame.load(k)), as_quaternion(orientation.load(k)));
-                torque_on_body = torque_on_body + spherical_spring_torque(given.stiffness.load(k), as_quaternion(given.rest.load(k)), turn);
+                Quat const inboard =
+                    is_first[k] ? Quat::identity() : as_quaternion(orientation.load(k - 1));
+                Quat const turn = turn_of_joint(inboard, as_quaternion(joint_frame.load(k)),
+                                                as_quaternion(orientation.load(k)));
+                torque_on_body = torque_on_body +
+                                 spherical_spring_torque(given.stiffness.load(k),
+                                                         as_quaternion(given.rest.load(k)), turn);
             }
         }
         if (rotors.has(k)) {
@@ -188,10 +215,12 @@ struct RigidChains {
 
     CATENA_HD void set_momenta(std::int64_t k, double h) const {
         momentum.store(k, plus_scaled(mass.at(k, 0) * velocity.load(k), h, force.load(k)));
-        moment.store(k, plus_scaled(as_symmetric(inertia.load(k)) * omega.load(k), h, torque.load(k)));
+        moment.store(k,
+                     plus_scaled(as_symmetric(inertia.load(k)) * omega.load(k), h, torque.load(k)));
         if (rotors.implicit) rotors.set_kick(bias, k, h);
     }
-    /// A free flight from the drift's start, with what the sweep before it found added to the velocities there.
+    /// A free flight from the drift's start, with what the sweep before it found added to the
+    /// velocities there.
     CATENA_HD void fly(std::int64_t k, DriftSweep const& sweep) const {
         Vec3 v = velocity.load(k);
         RotorState turning{as_quaternion(orientation.load(k)), omega.load(k)};
@@ -202,7 +231,9 @@ struct RigidChains {
             if (!sweep.last) omega.store(k, turning.omega);
         }
         Vec3 const x = plus_scaled(position.load(k), sweep.time, v);
-        if (!is_bead(k)) turning = free_rotor({as_quaternion(principal_axes.load(k)), principal_moment.load(k)}, turning, sweep.time);
+        if (!is_bead(k))
+            turning = free_rotor({as_quaternion(principal_axes.load(k)), principal_moment.load(k)},
+                                 turning, sweep.time);
         if (!sweep.last) {
             if (rotors.implicit) rotors.flown.store(k, as_vector(turning.orientation));
             return set_ends(k, x, to_matrix(turning.orientation));
@@ -215,13 +246,15 @@ struct RigidChains {
         std::uint64_t const body = piece_of(k).body_of(k);
         Thermostat const& t = n.thermostat;
         Vec3 const noise = normal3(t.seed, n.step, body, n.linear);
-        velocity.store(k, plus_scaled(t.keep * velocity.load(k), t.spread * std::sqrt(inverse_mass.at(k, 0)), noise));
+        velocity.store(k, plus_scaled(t.keep * velocity.load(k),
+                                      t.spread * std::sqrt(inverse_mass.at(k, 0)), noise));
         rotors.add_noise(k, t, n.step, body, n.between_drifts);
         if (is_bead(k)) return;
         Vec3 const moments = principal_moment.load(k);
         Vec3 turning = normal3(t.seed, n.step, body, n.angular);
         for (int i = 0; i < 3; ++i) turning[i] *= t.spread / std::sqrt(moments[i]);
-        omega.store(k, t.keep * omega.load(k) + to_matrix(as_quaternion(principal_axes.load(k))) * turning);
+        omega.store(
+            k, t.keep * omega.load(k) + to_matrix(as_quaternion(principal_axes.load(k))) * turning);
     }
 
     // Evaluations, at the velocities observed last.

@@ -23,7 +23,8 @@ void place_linked(ChainGroup const& group, Scene const& scene, RigidStart& start
     }
 }
 
-void place_jointed(ChainGroup const& group, Scene const& scene, Communicator const& communicator, RigidStart& start) {
+void place_jointed(ChainGroup const& group, Scene const& scene, Communicator const& communicator,
+                   RigidStart& start) {
     auto const executor = serial_executor();
     HostSpace const host(*executor);
     JointState state = make_joint_state(group, scene);
@@ -49,13 +50,16 @@ PrincipalFrame principal_frame(Sym3 const& inertia) {
     Mat3 m;
     for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) m(a, b) = axes(a, b);
-    return {to_quaternion(m), {{solver.eigenvalues()[0], solver.eigenvalues()[1], solver.eigenvalues()[2]}}};
+    return {to_quaternion(m),
+            {{solver.eigenvalues()[0], solver.eigenvalues()[1], solver.eigenvalues()[2]}}};
 }
 
 }  // namespace
 
-RigidStart place_bodies(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
-    RigidStart start{Field<3>(group.size), Field<3>(group.size), Field<3>(group.size), Field<4>(group.size)};
+RigidStart place_bodies(ChainGroup const& group, Scene const& scene,
+                        Communicator const& communicator) {
+    RigidStart start{Field<3>(group.size), Field<3>(group.size), Field<3>(group.size),
+                     Field<4>(group.size)};
     if (group.linked)
         place_linked(group, scene, start);
     else
@@ -77,14 +81,18 @@ double reach_of_joints(ChainGroup const& group, Communicator const& communicator
     double reach = 0;
     for (std::int64_t k = 0; k < group.size; ++k)
         reach = std::max(
-            {reach, norm(group.r1[k]), norm(group.r2[k]), radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0))});
+            {reach, norm(group.r1[k]), norm(group.r2[k]),
+             radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0))});
     return communicator.max(reach);
 }
 
-std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
-                                                      Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const& group, Scene const& scene,
+                                                      Executor const& executor,
+                                                      Communicator const& communicator,
+                                                      std::unique_ptr<ChainSolver> solver,
                                                       double implicit_step) {
-    return std::make_unique<RigidDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
+    return std::make_unique<RigidDynamics<HostSpace>>(
+        group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
 }
 
 }  // namespace catena

@@ -1,4 +1,5 @@
-// Chains of rigid bodies in absolute coordinates, on spherical joints or on links among point beads, in any Space: their state stays there.
+// Chains of rigid bodies in absolute coordinates, on spherical joints or on links among point
+// beads, in any Space: their state stays there.
 #pragma once
 
 #include <cmath>
@@ -24,8 +25,9 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
 
   public:
     /// `solver` takes views of the same space.
-    RigidDynamics(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
-                  std::unique_ptr<ChainSolver> solver, double implicit_step = 0)
+    RigidDynamics(ChainGroup const& group, Scene const& scene, Space const& space,
+                  Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+                  double implicit_step = 0)
         : group_(group),
           space_(space),
           communicator_(communicator),
@@ -87,13 +89,20 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
     void update_configuration() override {
-        if (given_.springs) exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
-        if (rotors() > 0) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.rotors.set_compliance(k); });
+        if (given_.springs)
+            exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
+        if (rotors() > 0)
+            space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) {
+                c.rotors.set_compliance(k);
+            });
         if (!group_.linked) return;
         set_ends();
-        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_directions(k); });
+        space_.for_each(group_.size,
+                        [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_directions(k); });
         space_.for_each(std::ssize(group_.rings),
-                        [c = chains(), ring = rings_.data()] CATENA_LAMBDA(std::int64_t i) { c.set_first_direction(ring[i], i); });
+                        [c = chains(), ring = rings_.data()] CATENA_LAMBDA(std::int64_t i) {
+                            c.set_first_direction(ring[i], i);
+                        });
         exchange_from_outboard(communicator_, group_, direction_.view(), space_);
     }
     void assemble_matrices() override {
@@ -102,28 +111,36 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     void set_simple_forces() override {
         RigidChains const c = chains();
         if (given_.joint_loads) {
-            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_joint_torque(k); });
+            space_.for_each(group_.size,
+                            [c] CATENA_LAMBDA(std::int64_t k) { c.set_joint_torque(k); });
             exchange_from_outboard(communicator_, group_, joint_torque_.view(), space_);
         }
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_forces(k); });
     }
     View<3> bead_forces() override { return beads_.bead_forces(); }
     ConstView<3> bead_positions() override {
-        if (beads_.any()) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.put_beads(k); });
+        if (beads_.any())
+            space_.for_each(group_.size,
+                            [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.put_beads(k); });
         return beads_.bead_positions();
     }
     void take_bead_forces() override {
         beads_.take_bead_forces();
-        if (beads_.any()) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.take_bead_forces(k); });
+        if (beads_.any())
+            space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) {
+                c.take_bead_forces(k);
+            });
     }
 
     void kick(double h) override {
         project(h, velocity_.view(), omega_.view());
         if (rotors() > 0) take_rotors(omega_.view());
     }
-    void observe(double h) override { project(h, observed_velocity_.view(), observed_omega_.view()); }
-    /// Impulses along the joints at the start enter momenta before the drift, and the free rotor runs again in every sweep
-    /// (src/dca/README.md, "Rigid bodies under RATTLE").
+    void observe(double h) override {
+        project(h, observed_velocity_.view(), observed_omega_.view());
+    }
+    /// Impulses along the joints at the start enter momenta before the drift, and the free rotor
+    /// runs again in every sweep (src/dca/README.md, "Rigid bodies under RATTLE").
     void drift(double h, int sweeps) override {
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             fly({h, sweep == 0, false});
@@ -138,17 +155,21 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
             fly({h, false, false});
         };
         for (int i = 0; i < sweeps; ++i) sweep();
-        int const more = closing.close(sweeps, [&] { return communicator_.max(error_at_ends()); }, sweep);
+        int const more =
+            closing.close(sweeps, [&] { return communicator_.max(error_at_ends()); }, sweep);
         forget_correction();
         fly({h, false, true});
         return more;
     }
     void thermalise(Thermostat const& t, std::uint64_t step) override {
-        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular, true}, 0, group_.size);
+        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular, true}, 0,
+                  group_.size);
     }
-    void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
+    void draw_velocities(double kt, std::uint64_t seed,
+                         std::vector<bool> const& of_chain) override {
         for (dca::Piece const& piece : group_.pieces)
-            if (of_chain[piece.chain]) add_noise({{0.0, std::sqrt(kt), seed}}, piece.local, piece.count);
+            if (of_chain[piece.chain])
+                add_noise({{0.0, std::sqrt(kt), seed}}, piece.local, piece.count);
         kick(0.0);
     }
 
@@ -158,7 +179,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
     double agreed_error() override { return communicator_.max(own_error()); }
     std::string trouble() override {
-        HeldTrouble found;
+        DeferredError found;
         found.hold([&] { check(); });
         return found.text();
     }
@@ -170,21 +191,34 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
 
     std::vector<StateArray> state() const override {
         check();
-        std::vector<StateArray> all{to_array<3>("position", space_.read(position_).view(), space_.on_host()),
-                                    to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host()),
-                                    to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
-                                    to_array<3>("omega", space_.read(omega_).view(), space_.on_host())};
+        std::vector<StateArray> all{
+            to_array<3>("position", space_.read(position_).view(), space_.on_host()),
+            to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host()),
+            to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
+            to_array<3>("omega", space_.read(omega_).view(), space_.on_host())};
         if (of_stiffness_ > 0)
-            all.push_back(to_array<3>("rotor", space_.read(rotor_).view(), space_.on_host()));  // also on ranks that have none
+            all.push_back(to_array<3>("rotor", space_.read(rotor_).view(),
+                                      space_.on_host()));  // also on ranks that have none
         return all;
     }
     void set_state(std::vector<StateArray> const& arrays) override {
         trouble_.forget();
-        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view, space_.on_host()); });
-        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view, space_.on_host()); });
-        space_.edit(orientation_, [&](View<4> view) { from_array<4>(array_named(arrays, "orientation"), view, space_.on_host()); });
-        space_.edit(omega_, [&](View<3> view) { from_array<3>(array_named(arrays, "omega"), view, space_.on_host()); });
-        if (rotors() > 0) space_.edit(rotor_, [&](View<3> view) { from_array<3>(array_named(arrays, "rotor"), view, space_.on_host()); });
+        space_.edit(position_, [&](View<3> view) {
+            from_array<3>(array_named(arrays, "position"), view, space_.on_host());
+        });
+        space_.edit(velocity_, [&](View<3> view) {
+            from_array<3>(array_named(arrays, "velocity"), view, space_.on_host());
+        });
+        space_.edit(orientation_, [&](View<4> view) {
+            from_array<4>(array_named(arrays, "orientation"), view, space_.on_host());
+        });
+        space_.edit(omega_, [&](View<3> view) {
+            from_array<3>(array_named(arrays, "omega"), view, space_.on_host());
+        });
+        if (rotors() > 0)
+            space_.edit(rotor_, [&](View<3> view) {
+                from_array<3>(array_named(arrays, "rotor"), view, space_.on_host());
+            });
     }
     std::vector<StateArray> observed_state() const override {
         check();
@@ -195,7 +229,8 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
     void evaluate() override {
-        if (rotors() > 0) throw std::logic_error("forces of implicit joints are known within a step alone");
+        if (rotors() > 0)
+            throw std::logic_error("forces of implicit joints are known within a step alone");
         trouble_.check();
         set_loads();
         solver_->solve(loads(), found());
@@ -225,46 +260,66 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     ChainSolver& solver() const override { return *solver_; }
 
     // Not private: nvcc takes lambdas for kernels from public members alone.
-    /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
+    /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the
+    /// place of accelerations.
     void project(double h, View<3> velocity, View<3> omega) {
-        space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
-        solver_->solve({moment_.view(), momentum_.view(), {}, rotors() > 0 ? bias_.view() : DirectionsView{}, {}},
+        space_.for_each(group_.size,
+                        [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
+        solver_->solve({moment_.view(),
+                        momentum_.view(),
+                        {},
+                        rotors() > 0 ? bias_.view() : DirectionsView{},
+                        {}},
                        {omega, velocity, {}, {}});
     }
     /// A drift's flight from its start; but for the last one, neighbours see where it ends.
     void fly(DriftSweep const& s) {
-        space_.for_each(group_.size, [c = chains(), s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
+        space_.for_each(group_.size,
+                        [c = chains(), s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
         if (!s.last) show_ends();
     }
     /// What velocities at the drift's start lack so that the joints close where fly() ended.
     void correct(double h) {
-        space_.for_each(group_.size, [c = chains(), scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.set_openings(k, scale); });
-        solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
+        space_.for_each(group_.size, [c = chains(), scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) {
+            c.set_openings(k, scale);
+        });
+        solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)},
+                       {alpha_.view(), acceleration_.view(), {}, {}});
         if (rotors() > 0) add_to_rotors();
     }
     /// Velocities have it already.
     void forget_correction() {
-        space_.for_each(group_.size, [a = acceleration_.view(), t = alpha_.view()] CATENA_LAMBDA(std::int64_t k) {
+        space_.for_each(group_.size, [a = acceleration_.view(),
+                                      t = alpha_.view()] CATENA_LAMBDA(std::int64_t k) {
             a.store(k, Vec3::zero());
             t.store(k, Vec3::zero());
         });
     }
     double error_at_ends() {
-        return space_.largest(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
+        return space_.largest(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) -> double {
+            return c.error(k);
+        });
     }
     void take_rotors(View<3> omega) {
         exchange_from_inboard(communicator_, group_, omega, space_);
-        space_.for_each(group_.size, [c = chains(), omega] CATENA_LAMBDA(std::int64_t k) { c.rotors.take(k, omega); });
+        space_.for_each(group_.size, [c = chains(), omega] CATENA_LAMBDA(std::int64_t k) {
+            c.rotors.take(k, omega);
+        });
     }
     void add_to_rotors() {
         exchange_from_inboard(communicator_, group_, alpha_.view(), space_);
-        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.rotors.add(c.bias, k, c.alpha); });
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) {
+            c.rotors.add(c.bias, k, c.alpha);
+        });
     }
     void add_noise(RigidNoise const& noise, std::int64_t first, std::int64_t count) {
-        space_.for_each(count, [c = chains(), noise, first] CATENA_LAMBDA(std::int64_t i) { c.add_noise(first + i, noise); });
+        space_.for_each(count, [c = chains(), noise, first] CATENA_LAMBDA(std::int64_t i) {
+            c.add_noise(first + i, noise);
+        });
     }
     void set_ends() {
-        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_ends(k); });
+        space_.for_each(group_.size,
+                        [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_ends(k); });
         show_ends();
     }
     /// To neighbours, on whatever rank.
@@ -281,7 +336,8 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
   private:
-    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that itself.
+    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that
+    /// itself.
     template <class Action>
     void held(Action const& action) {
         if constexpr (Space::answers_at_once)
@@ -300,14 +356,25 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         fill(space_, velocity_, at.velocity);
         fill(space_, omega_, at.omega);
         fill(space_, orientation_, at.orientation);
-        return held_tips(group_,
-                         [&](std::int64_t k) { return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k]; });
+        return held_tips(group_, [&](std::int64_t k) {
+            return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k];
+        });
     }
     ConfigurationView configuration() const {
-        if (!group_.linked) return {{}, orientation_.view(), {}, {}, {}, rotors() > 0 ? ConstView<6>(compliance_.view()) : ConstView<6>{}};
-        return {direction_.view(), orientation_.view(), group_.has_tips() ? ConstView<3>(tip_direction_.view()) : ConstView<3>{}, {}, {}};
+        if (!group_.linked)
+            return {{}, orientation_.view(),
+                    {}, {},
+                    {}, rotors() > 0 ? ConstView<6>(compliance_.view()) : ConstView<6>{}};
+        return {direction_.view(),
+                orientation_.view(),
+                group_.has_tips() ? ConstView<3>(tip_direction_.view()) : ConstView<3>{},
+                {},
+                {}};
     }
-    LoadsView loads() { return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)}; }
+    LoadsView loads() {
+        return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(),
+                of_tips(group_, tip_bias_)};
+    }
     /// The solver adds what follows from angular velocities.
     LoadsView loads_at_once() {
         LoadsView l = loads();
@@ -317,7 +384,10 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         l.bias = {};
         return l;
     }
-    AccelerationsView found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
+    AccelerationsView found() {
+        return {alpha_.view(), acceleration_.view(), joint_force_.view(),
+                of_tips(group_, tip_force_)};
+    }
     RigidChains chains() {
         RigidChains c;
         c.linked = group_.linked;
@@ -341,8 +411,9 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         c.principal_moment = principal_moment_.view();
         c.given = loads_.view();
         if (rotors() > 0)
-            c.rotors = {of_stiffness_, implicit_.data(), is_first_.data(), c.given.stiffness, orientation_.view(),
-                        rotor_.view(), spring_.view(),   flown_.view(),    compliance_.view()};
+            c.rotors = {of_stiffness_,     implicit_.data(),    is_first_.data(),
+                        c.given.stiffness, orientation_.view(), rotor_.view(),
+                        spring_.view(),    flown_.view(),       compliance_.view()};
         c.beads = beads_.view();
         c.position = position_.view();
         c.velocity = velocity_.view();
@@ -370,14 +441,17 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     template <class Use>
     auto with_solution(Use const& use) const {
         auto const& orientation = space_.read(orientation_);
-        auto const &omega = space_.read(observed_omega_), &force = space_.read(force_), &torque = space_.read(torque_),
-                   &moment = space_.read(moment_), &alpha = space_.read(alpha_), &acceleration = space_.read(acceleration_),
-                   &direction = space_.read(direction_), &tip_direction = space_.read(tip_direction_);
-        auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
-                   &tip_force = space_.read(tip_force_);
-        return use(RigidSolution{group_, orientation.view(), omega.view(), force.view(), torque.view(), moment.view(), alpha.view(),
-                                 acceleration.view(), direction.view(), tip_direction.view(), bias.view(), joint_force.view(),
-                                 tip_bias.view(), tip_force.view()});
+        auto const &omega = space_.read(observed_omega_), &force = space_.read(force_),
+                   &torque = space_.read(torque_), &moment = space_.read(moment_),
+                   &alpha = space_.read(alpha_), &acceleration = space_.read(acceleration_),
+                   &direction = space_.read(direction_),
+                   &tip_direction = space_.read(tip_direction_);
+        auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_),
+                   &tip_bias = space_.read(tip_bias_), &tip_force = space_.read(tip_force_);
+        return use(RigidSolution{group_, orientation.view(), omega.view(), force.view(),
+                                 torque.view(), moment.view(), alpha.view(), acceleration.view(),
+                                 direction.view(), tip_direction.view(), bias.view(),
+                                 joint_force.view(), tip_bias.view(), tip_force.view()});
     }
 
     ChainGroup const& group_;
@@ -402,8 +476,8 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     Fixed<3> principal_moment_;
     FieldOf<3> position_, velocity_, omega_;
     FieldOf<4> orientation_;
-    FieldOf<3> observed_velocity_, observed_omega_, force_, torque_, momentum_, moment_, acceleration_, alpha_, inboard_end_, outboard_end_,
-        joint_torque_;
+    FieldOf<3> observed_velocity_, observed_omega_, force_, torque_, momentum_, moment_,
+        acceleration_, alpha_, inboard_end_, outboard_end_, joint_torque_;
     FieldOf<3> rotor_, spring_;  // JointRotors: rate, torque
     FieldOf<4> flown_;
     FieldOf<6> compliance_;
@@ -413,7 +487,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     List<HeldTip> tips_;
     List<LocalRing> rings_;
     RingEnds<Space> ring_ends_;
-    HeldTrouble trouble_;
+    DeferredError trouble_;
 };
 
 }  // namespace catena

@@ -4,13 +4,17 @@
 
 namespace catena {
 
-PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Field<3> const& position, Field<4> const& orientation) {
+PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given,
+                             Field<3> const& position, Field<4> const& orientation) {
     PotentialEnergy e = potential_in(given.gravity, group, position);
     for (std::int64_t k = 0; given.springs && k < group.size; ++k) {
         if (group.joint[k] != JointType::spherical) continue;
-        Quat const inboard = group.is_first[k] ? Quat::identity() : as_quaternion(orientation[k - 1]);
-        Quat const turn = turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]), as_quaternion(orientation[k]));
-        e.springs[static_cast<std::size_t>(k)] = spherical_spring_energy(given.stiffness[k], as_quaternion(given.rest[k]), turn);
+        Quat const inboard =
+            group.is_first[k] ? Quat::identity() : as_quaternion(orientation[k - 1]);
+        Quat const turn = turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]),
+                                        as_quaternion(orientation[k]));
+        e.springs[static_cast<std::size_t>(k)] =
+            spherical_spring_energy(given.stiffness[k], as_quaternion(given.rest[k]), turn);
     }
     return e;
 }
@@ -38,8 +42,10 @@ std::vector<Vector<double, 4>> RigidSolution::beyond_tips(Communicator const& co
 }
 
 double RigidSolution::residual(Communicator const& communicator) const {
-    // How far a joint is from closing, given the accelerations of its handles, over the size of its own terms.
-    auto const closing = [&](Vec3 const& difference, double terms, ConstView<3> along, ConstDirectionsView turning, std::int64_t k) {
+    // How far a joint is from closing, given the accelerations of its handles, over the size of its
+    // own terms.
+    auto const closing = [&](Vec3 const& difference, double terms, ConstView<3> along,
+                             ConstDirectionsView turning, std::int64_t k) {
         if (!group.linked) return relative(norm(difference), terms);
         double const s = turning.load<1>(k)[0];
         return relative(dot(along.load(k), difference) + s, terms + s);
@@ -57,12 +63,15 @@ double RigidSolution::residual(Communicator const& communicator) const {
         Vector<double, 4> const own = point[k];
         if (group.has_jointed_tip(k)) {
             Vector<double, 4> const there = beyond[group.tip_index(k)], apart = there - own;
-            worst = larger(worst, closing(Vec3{{apart[0], apart[1], apart[2]}}, own[3] + there[3], tip_direction, tip_bias, k));
+            worst = larger(worst, closing(Vec3{{apart[0], apart[1], apart[2]}}, own[3] + there[3],
+                                          tip_direction, tip_bias, k));
         }
         if (group.joint[static_cast<std::size_t>(k)] == JointType::free) continue;
         HandleAcceleration const mine = handle_acceleration(k, group.r1[k]);
-        Vector<double, 4> const before = group.is_first[k] ? Vector<double, 4>::zero() : point.view().load(k - 1);
-        worst = larger(worst, closing(mine.value - Vec3{{before[0], before[1], before[2]}}, mine.terms + before[3], direction, bias, k));
+        Vector<double, 4> const before =
+            group.is_first[k] ? Vector<double, 4>::zero() : point.view().load(k - 1);
+        worst = larger(worst, closing(mine.value - Vec3{{before[0], before[1], before[2]}},
+                                      mine.terms + before[3], direction, bias, k));
     }
     return communicator.max(worst);
 }
@@ -78,14 +87,17 @@ Vec3 RigidSolution::outboard_force(std::int64_t k) const {
     return group.is_last[k] ? Vec3::zero() : inboard_force(k + 1);
 }
 
-/// With the size of what each force and moment on the body, and its turning, adds (chapter, eqs 2.1-2.2).
-RigidSolution::HandleAcceleration RigidSolution::handle_acceleration(std::int64_t k, Vec3 const& r) const {
+/// With the size of what each force and moment on the body, and its turning, adds (chapter,
+/// eqs 2.1-2.2).
+RigidSolution::HandleAcceleration RigidSolution::handle_acceleration(std::int64_t k,
+                                                                     Vec3 const& r) const {
     Mat3 const to_ground = axes(k);
     Vec3 const w = omega.load(k), centripetal = cross(w, cross(w, r));
     Vec3 const f1 = inboard_force(k), f2 = outboard_force(k);
-    double terms = norm(centripetal) + group.inverse_mass.view().at(k, 0) * (norm(force.load(k)) + norm(f1) + norm(f2));
-    for (Vec3 const& applied :
-         {moment.load(k), cross(group.r1[k], transposed_times(to_ground, f1)), cross(group.r2[k], transposed_times(to_ground, f2))})
+    double terms = norm(centripetal) +
+                   group.inverse_mass.view().at(k, 0) * (norm(force.load(k)) + norm(f1) + norm(f2));
+    for (Vec3 const& applied : {moment.load(k), cross(group.r1[k], transposed_times(to_ground, f1)),
+                                cross(group.r2[k], transposed_times(to_ground, f2))})
         terms += norm(cross(as_symmetric(group.inverse_inertia[k]) * applied, r));
     return {acceleration.load(k) + to_ground * (cross(alpha.load(k), r) + centripetal), terms};
 }
@@ -94,13 +106,16 @@ double RigidSolution::newton_euler_residual(std::int64_t k) const {
     Mat3 const to_ground = axes(k);
     Vec3 const f = force.load(k), f1 = inboard_force(k), f2 = outboard_force(k);
     Vec3 const ma = group.mass.view().at(k, 0) * acceleration.load(k);
-    double const newton = relative(norm(ma - f - f1 + f2), norm(ma) + norm(f) + norm(f1) + norm(f2));
+    double const newton =
+        relative(norm(ma - f - f1 + f2), norm(ma) + norm(f) + norm(f1) + norm(f2));
     Sym3 const inertia = as_symmetric(group.inertia[k]);
     if (inertia.data[0] == 0) return newton;  // a bead
-    Vec3 const w = omega.load(k), t = torque.load(k), j_alpha = inertia * alpha.load(k), gyroscopic = cross(w, inertia * w);
-    Vec3 const t1 = cross(group.r1[k], transposed_times(to_ground, f1)), t2 = cross(group.r2[k], transposed_times(to_ground, f2));
-    double const euler =
-        relative(norm(j_alpha + gyroscopic - t - t1 + t2), norm(j_alpha) + norm(gyroscopic) + norm(t) + norm(t1) + norm(t2));
+    Vec3 const w = omega.load(k), t = torque.load(k), j_alpha = inertia * alpha.load(k),
+               gyroscopic = cross(w, inertia * w);
+    Vec3 const t1 = cross(group.r1[k], transposed_times(to_ground, f1)),
+               t2 = cross(group.r2[k], transposed_times(to_ground, f2));
+    double const euler = relative(norm(j_alpha + gyroscopic - t - t1 + t2),
+                                  norm(j_alpha) + norm(gyroscopic) + norm(t) + norm(t1) + norm(t2));
     return larger(newton, euler);
 }
 

@@ -21,7 +21,8 @@ struct PrincipalFrames {
 };
 PrincipalFrames principal_frames(ChainGroup const&);
 
-/// Longest distance of a joint from its bodies' centres, or a body's radius of gyration. The same on every rank; collective.
+/// Longest distance of a joint from its bodies' centres, or a body's radius of gyration. The same
+/// on every rank; collective.
 double reach_of_joints(ChainGroup const&, Communicator const&);
 
 }  // namespace catena

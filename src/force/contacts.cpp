@@ -26,8 +26,9 @@ void shorten_pair_forces(OpenMM::System& system, double reach) {
             shorten(*custom, reach);
         }
         if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&system.getForce(i));
-            charges && (charges->getNonbondedMethod() == OpenMM::NonbondedForce::CutoffNonPeriodic ||
-                        charges->getNonbondedMethod() == OpenMM::NonbondedForce::CutoffPeriodic)) {
+            charges &&
+            (charges->getNonbondedMethod() == OpenMM::NonbondedForce::CutoffNonPeriodic ||
+             charges->getNonbondedMethod() == OpenMM::NonbondedForce::CutoffPeriodic)) {
             charges->setUseDispersionCorrection(false);
             shorten(*charges, reach);
         }

@@ -21,23 +21,28 @@ Placement placement_for(OpenMM::System const& system) {
     bool images = system.usesPeriodicBoundaryConditions();
     for (int i = 0; i < system.getNumForces(); ++i) {
         OpenMM::Force const& force = system.getForce(i);
-        if (!can_be_split(force) && dynamic_cast<OpenMM::NonbondedForce const*>(&force) == nullptr) return Placement::as_given;
-        if (dynamic_cast<OpenMM::CustomExternalForce const*>(&force) != nullptr) return Placement::as_given;
+        if (!can_be_split(force) && dynamic_cast<OpenMM::NonbondedForce const*>(&force) == nullptr)
+            return Placement::as_given;
+        if (dynamic_cast<OpenMM::CustomExternalForce const*>(&force) != nullptr)
+            return Placement::as_given;
         images = images && force.usesPeriodicBoundaryConditions();
         if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
-            images = images && (pairs->getNumExceptions() == 0 || pairs->getExceptionsUsePeriodicBoundaryConditions());
+            images = images && (pairs->getNumExceptions() == 0 ||
+                                pairs->getExceptionsUsePeriodicBoundaryConditions());
     }
     return images ? Placement::wrapped : Placement::shifted;
 }
 
-ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box,
+ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system,
+                           OpenMmPlatform const& platform, std::optional<Vec3> const& box,
                            ForceContext* home)
     : box_(box),
       placement_(placement_for(*system)),
       system_(std::move(system)),
       evaluations_(platform.name() == "Reference" ? on_reference : evaluations_of_a_place) {
-    context_.reset(home ? impl_of(home->context()).createLinkedContext(*system_, integrator_)
-                        : new OpenMM::Context(*system_, integrator_, *platform.platform, platform.properties));
+    context_.reset(
+        home ? impl_of(home->context()).createLinkedContext(*system_, integrator_)
+             : new OpenMM::Context(*system_, integrator_, *platform.platform, platform.properties));
     positions_.resize(static_cast<std::size_t>(system_->getNumParticles()));
 }
 
@@ -46,18 +51,23 @@ void ForceContext::find_places(std::span<Vec3 const> positions, std::size_t cent
     place_.assign(positions.size(), shifted ? middle_of(positions.first(centred)) : Vec3::zero());
     if (placement_ != Placement::wrapped) return;
     for (std::size_t i = 0; i < positions.size(); ++i)
-        for (int c = 0; c < 3; ++c) place_[i][c] = (*box_)[c] * std::floor(positions[i][c] / (*box_)[c]);
+        for (int c = 0; c < 3; ++c)
+            place_[i][c] = (*box_)[c] * std::floor(positions[i][c] / (*box_)[c]);
 }
 
-/// Between two steps beads move far less: they are elsewhere where a state has been set, or another copy's frame.
+/// Between two steps beads move far less: they are elsewhere where a state has been set, or another
+/// copy's frame.
 bool ForceContext::have_strayed(std::span<Vec3 const> positions, std::size_t centred) const {
-    // Single precision tells places apart that are 1e-6 nm from each other up to 16 nm from the origin; 1000 nm away only 6e-5.
+    // Single precision tells places apart that are 1e-6 nm from each other up to 16 nm from the
+    // origin; 1000 nm away only 6e-5.
     double constexpr farthest = 10;
-    if (placement_ == Placement::shifted) return centred > 0 && norm(middle_of(positions.first(centred)) - place_.front()) > farthest;
+    if (placement_ == Placement::shifted)
+        return centred > 0 && norm(middle_of(positions.first(centred)) - place_.front()) > farthest;
     if (placement_ == Placement::as_given) return false;
     for (std::size_t i = 0; i < positions.size(); ++i)
         for (int c = 0; c < 3; ++c)
-            if (std::abs(positions[i][c] - place_[i][c] - (*box_)[c] / 2) > (*box_)[c]) return true;  // half an edge out of the box
+            if (std::abs(positions[i][c] - place_[i][c] - (*box_)[c] / 2) > (*box_)[c])
+                return true;  // half an edge out of the box
     return false;
 }
 
@@ -74,13 +84,16 @@ void ForceContext::set_positions(std::span<Vec3 const> positions, std::size_t ce
     context_->setPositions(positions_);
 }
 
-std::vector<OpenMM::Vec3> ForceContext::forces(int groups) { return context_->getState(OpenMM::State::Forces, false, groups).getForces(); }
+std::vector<OpenMM::Vec3> ForceContext::forces(int groups) {
+    return context_->getState(OpenMM::State::Forces, false, groups).getForces();
+}
 
 void ForceContext::find_energies(std::span<double> of_group, int groups) {
     for (int i = 0; i < system_->getNumForces(); ++i) {
         int const group = system_->getForce(i).getForceGroup();
         if ((groups & 1 << group) == 0) continue;
-        of_group[static_cast<std::size_t>(group)] = context_->getState(OpenMM::State::Energy, false, 1 << group).getPotentialEnergy();
+        of_group[static_cast<std::size_t>(group)] =
+            context_->getState(OpenMM::State::Energy, false, 1 << group).getPotentialEnergy();
     }
 }
 

@@ -1,4 +1,5 @@
-// What a rank among several computes where positions and forces stay on a GPU. For files that see OpenMM's headers.
+// What a rank among several computes where positions and forces stay on a GPU. For files that see
+// OpenMM's headers.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +8,22 @@
 #include <vector>
 
 #include "force/bead_pieces.hpp"
-#include "neighbours/ghost_lists.hpp"
 #include "force/ghost_slots.hpp"
-#include "neighbours/halo.hpp"
 #include "force/rank_share.hpp"
+#include "neighbours/ghost_lists.hpp"
+#include "neighbours/halo.hpp"
 
 namespace catena {
 
-/// Particles of the Context: own beads, partners, and slots for pieces of other ghosts, some of each kind to spare, which stand aside.
-/// Where more of a kind come than there are slots, the parameters of others of their length change; a Context is made anew where there are
-/// too few of these.
+/// Particles of the Context: own beads, partners, and slots for pieces of other ghosts, some of
+/// each kind to spare, which stand aside. Where more of a kind come than there are slots, the
+/// parameters of others of their length change; a Context is made anew where there are too few of
+/// these.
 class HaloForces final : public RankForces, public Halo {
   public:
-    /// While lists are made the GPU waits. The fastest of a million beads of a condensate (CALVADOS 2, 330 mg/ml, 10 fs) has gone 1 nm
-    /// after some 130 steps, of 14,000 beads 0.25 nm after 32, 0.5 after 80 and 1 nm after 220.
+    /// While lists are made the GPU waits. The fastest of a million beads of a condensate (CALVADOS
+    /// 2, 330 mg/ml, 10 fs) has gone 1 nm after some 130 steps, of 14,000 beads 0.25 nm after 32,
+    /// 0.5 after 80 and 1 nm after 220.
     static double constexpr skin_of_reach_on_device = 0.5;
 
     explicit HaloForces(RankPlan const& plan);
@@ -60,7 +63,8 @@ class HaloForces final : public RankForces, public Halo {
   private:
     /// One slot of a kind in so many is a spare when a Context is made, and so many besides.
     static std::int64_t constexpr spare_part = 8, least_spares = 16;
-    /// OpenMM computes on so many particles that follow each other at once: the longest pieces begin there.
+    /// OpenMM computes on so many particles that follow each other at once: the longest pieces
+    /// begin there.
     static int constexpr block = BeadPieces::longest;
 
     std::vector<std::int64_t> const& own() const { return share_.own(); }
@@ -76,7 +80,8 @@ class HaloForces final : public RankForces, public Halo {
 
     Communicator const& communicator_;
     bool every_rank_has_beads_;
-    std::unique_ptr<ForceContext> home_;  // before all Contexts that are made in its GPU context, share_'s among them
+    std::unique_ptr<ForceContext>
+        home_;  // before all Contexts that are made in its GPU context, share_'s among them
     SplitShare share_;
     BeadPieces pieces_;
     GhostLists ghosts_;

@@ -1,4 +1,5 @@
-// Energies of all beads where ranks compute the forces on theirs. For files that see OpenMM's headers.
+// Energies of all beads where ranks compute the forces on theirs. For files that see OpenMM's
+// headers.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@ class WholeEnergies {
   public:
     /// Keeps what `plan` refers to.
     explicit WholeEnergies(RankPlan const& plan);
-    /// RankForces::find_energies at these positions of own beads, from a Context of all beads on rank 0; `home` as in ForceContext.
+    /// RankForces::find_energies at these positions of own beads, from a Context of all beads on
+    /// rank 0; `home` as in ForceContext.
     void find(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group);
 
   private:

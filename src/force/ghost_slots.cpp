@@ -16,7 +16,9 @@ void GhostSlots::make(std::vector<std::int64_t> like, int idle_before) {
 }
 
 bool GhostSlots::take(std::span<std::int64_t const> pieces) { return take(pieces, false); }
-bool GhostSlots::take_of_any_kind(std::span<std::int64_t const> pieces) { return take(pieces, true); }
+bool GhostSlots::take_of_any_kind(std::span<std::int64_t const> pieces) {
+    return take(pieces, true);
+}
 
 bool GhostSlots::take(std::span<std::int64_t const> pieces, bool of_any_kind) {
     std::vector<char> stays(piece_.size(), 0);
@@ -31,7 +33,8 @@ bool GhostSlots::take(std::span<std::int64_t const> pieces, bool of_any_kind) {
     std::vector<std::vector<int>> free(static_cast<std::size_t>(kinds_));
     for (std::int64_t s = slots() - 1; s >= 0; --s)
         if (!stays[static_cast<std::size_t>(s)])
-            free[static_cast<std::size_t>(kind(like_[static_cast<std::size_t>(s)]))].push_back(static_cast<int>(s));
+            free[static_cast<std::size_t>(kind(like_[static_cast<std::size_t>(s)]))].push_back(
+                static_cast<int>(s));
     std::vector<int> slot_of_come(come.size(), -1);
     for (std::size_t i = 0; i < come.size(); ++i) {
         auto& of_kind = free[static_cast<std::size_t>(kind(come[i]))];
@@ -42,7 +45,8 @@ bool GhostSlots::take(std::span<std::int64_t const> pieces, bool of_any_kind) {
     bool const all = std::find(slot_of_come.begin(), slot_of_come.end(), -1) == slot_of_come.end();
     if (!all && !(of_any_kind && give_others(come, free, slot_of_come))) return false;
     for (std::size_t s = 0; s < piece_.size(); ++s)
-        if (!stays[s] && piece_[s] >= 0) slot_[static_cast<std::size_t>(std::exchange(piece_[s], -1))] = -1;
+        if (!stays[s] && piece_[s] >= 0)
+            slot_[static_cast<std::size_t>(std::exchange(piece_[s], -1))] = -1;
     for (std::size_t i = 0; i < come.size(); ++i) {
         slot_[static_cast<std::size_t>(come[i])] = slot_of_come[i];
         piece_[static_cast<std::size_t>(slot_of_come[i])] = come[i];
@@ -50,11 +54,15 @@ bool GhostSlots::take(std::span<std::int64_t const> pieces, bool of_any_kind) {
     return true;
 }
 
-/// Gives those that have none free slots of their length, which take their kinds; all of them or none.
-bool GhostSlots::give_others(std::span<std::int64_t const> pieces, std::vector<std::vector<int>>& free, std::vector<int>& slot_of_piece) {
+/// Gives those that have none free slots of their length, which take their kinds; all of them or
+/// none.
+bool GhostSlots::give_others(std::span<std::int64_t const> pieces,
+                             std::vector<std::vector<int>>& free, std::vector<int>& slot_of_piece) {
     std::vector<std::vector<int>> of_length(BeadPieces::longest + 1);
     for (auto const& of_kind : free)
-        for (int const s : of_kind) of_length[static_cast<std::size_t>(pieces_.of(like_[static_cast<std::size_t>(s)]))].push_back(s);
+        for (int const s : of_kind)
+            of_length[static_cast<std::size_t>(pieces_.of(like_[static_cast<std::size_t>(s)]))]
+                .push_back(s);
     std::vector<std::pair<int, std::int64_t>> changed;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (slot_of_piece[i] >= 0) continue;

@@ -2,20 +2,26 @@
 #include <algorithm>
 #include <utility>
 
-#include "neighbours/ghost_exchange.hpp"
 #include "force/rank_share.hpp"
+#include "neighbours/ghost_exchange.hpp"
 
 namespace catena {
 
 namespace {
 
-/// Particles of the Context: own beads, partners, other ghosts, and spares for more ghosts, which stand aside. Where ghosts change, the
-/// parameters of particles do: a Context is made anew only where spares run out, or particles cannot be exchanged.
+/// Particles of the Context: own beads, partners, other ghosts, and spares for more ghosts, which
+/// stand aside. Where ghosts change, the parameters of particles do: a Context is made anew only
+/// where spares run out, or particles cannot be exchanged.
 class SplitForces final : public RankForces {
   public:
     explicit SplitForces(RankPlan const& plan)
-        : share_(plan, skin_of_reach), audit_(plan.audit), beads_(plan.beads.size()), ghosts_(plan.communicator, share_.lists()) {
-        make_context(share_.partners(), 0);  // so that a platform that refuses the forces is found out before the first step
+        : share_(plan, skin_of_reach),
+          audit_(plan.audit),
+          beads_(plan.beads.size()),
+          ghosts_(plan.communicator, share_.lists()) {
+        make_context(
+            share_.partners(),
+            0);  // so that a platform that refuses the forces is found out before the first step
     }
 
     void gather(std::span<Vec3 const> own) override {
@@ -27,12 +33,14 @@ class SplitForces final : public RankForces {
 
     void evaluate(std::span<Vec3> own_forces) override {
         if (own().empty()) return;
-        if (std::exchange(listed_, ghosts_.traffic().rebuilds) != ghosts_.traffic().rebuilds) take_ghosts();
+        if (std::exchange(listed_, ghosts_.traffic().rebuilds) != ghosts_.traffic().rebuilds)
+            take_ghosts();
         std::int64_t const spares = context_->size() - std::ssize(positions_);
         for (std::int64_t i = 0; i < spares; ++i) positions_.push_back(ghosts_.aside(i, spares));
         context_->set_positions(positions_, own().size());
         auto const forces = context_->forces();
-        for (std::size_t k = 0; k < own().size(); ++k) own_forces[k] = {{forces[k][0], forces[k][1], forces[k][2]}};
+        for (std::size_t k = 0; k < own().size(); ++k)
+            own_forces[k] = {{forces[k][0], forces[k][1], forces[k][2]}};
         check_finite(own_forces, share_.own_numbers(), "OpenMM's force");
     }
 
@@ -73,7 +81,8 @@ class SplitForces final : public RankForces {
         std::int64_t const enough = std::min(beads_, needed + needed / spare_part + least_spares);
         bool const fits = needed <= context_->size() && context_->size() <= 2 * enough;
         if (share_.exchanges() && fits) {
-            exchange_particles(subset_of(ghosts_.beads(), context_->size() - needed), share_.system(), *system_, context_->context());
+            exchange_particles(subset_of(ghosts_.beads(), context_->size() - needed),
+                               share_.system(), *system_, context_->context());
             context_->place_anew();
         } else {
             make_context(ghosts_.beads(), share_.exchanges() ? enough - needed : 0);
@@ -95,6 +104,8 @@ class SplitForces final : public RankForces {
 
 }  // namespace
 
-std::unique_ptr<RankForces> make_split_forces(RankPlan const& plan) { return std::make_unique<SplitForces>(plan); }
+std::unique_ptr<RankForces> make_split_forces(RankPlan const& plan) {
+    return std::make_unique<SplitForces>(plan);
+}
 
 }  // namespace catena

@@ -33,6 +33,8 @@ class IdlePath final : public DevicePath {
 
 }  // namespace
 
-std::unique_ptr<DevicePath> make_idle_path(Halo& halo, bool overlap) { return std::make_unique<IdlePath>(halo, overlap); }
+std::unique_ptr<DevicePath> make_idle_path(Halo& halo, bool overlap) {
+    return std::make_unique<IdlePath>(halo, overlap);
+}
 
 }  // namespace catena

@@ -3,8 +3,8 @@
 #include <exception>
 #include <utility>
 
-#include "systems/force_layers.hpp"
 #include "force/rank_forces.hpp"
+#include "systems/force_layers.hpp"
 #include "systems/subset.hpp"
 
 namespace catena {
@@ -13,13 +13,17 @@ namespace {
 class LayeredForces final : public RankForces {
   public:
     LayeredForces(RankPlan plan, std::vector<ForceLayer> const& layers, MakeRankForces make) {
-        for (ForceLayer const& layer : layers) plan.longest_reach = std::max(plan.longest_reach, reach_of(*layer.model.system));
+        for (ForceLayer const& layer : layers)
+            plan.longest_reach = std::max(plan.longest_reach, reach_of(*layer.model.system));
         rest_ = make(plan);
         for (ForceLayer const& layer : layers) {
-            auto const box = layer.model.system->usesPeriodicBoundaryConditions() ? plan.beads.box : std::nullopt;
-            std::vector<std::int64_t> place = own_places(layer, plan.beads, plan.communicator.rank());
+            auto const box = layer.model.system->usesPeriodicBoundaryConditions() ? plan.beads.box
+                                                                                  : std::nullopt;
+            std::vector<std::int64_t> place =
+                own_places(layer, plan.beads, plan.communicator.rank());
             std::vector<Vec3> own(place.size());
-            layers_.push_back({make({layer.model, plan.platform, layer.beads, plan.communicator, box, plan.audit, plan.longest_reach}),
+            layers_.push_back({make({layer.model, plan.platform, layer.beads, plan.communicator,
+                                     box, plan.audit, plan.longest_reach}),
                                std::move(place), std::move(own)});
         }
     }
@@ -27,7 +31,8 @@ class LayeredForces final : public RankForces {
     void gather(std::span<Vec3 const> own) override {
         rest_->gather(own);
         for (Layer& layer : layers_) {
-            for (std::size_t i = 0; i < layer.own.size(); ++i) layer.own[i] = own[static_cast<std::size_t>(layer.place[i])];
+            for (std::size_t i = 0; i < layer.own.size(); ++i)
+                layer.own[i] = own[static_cast<std::size_t>(layer.place[i])];
             layer.forces->gather(layer.own);
         }
     }
@@ -61,8 +66,8 @@ class LayeredForces final : public RankForces {
         each([&](RankForces const& forces) { due = due || forces.ghosts_are_due(); });
         return due;
     }
-    /// Of all layers together: a bead counts in each in which it is a ghost. Each makes its lists anew when its own beads have moved far:
-    /// `rebuilds` is the most of one.
+    /// Of all layers together: a bead counts in each in which it is a ghost. Each makes its lists
+    /// anew when its own beads have moved far: `rebuilds` is the most of one.
     GhostTraffic traffic() const override {
         GhostTraffic all;
         each([&](RankForces const& forces) {
@@ -79,7 +84,9 @@ class LayeredForces final : public RankForces {
     }
     std::int64_t largest_context() const override {
         std::int64_t largest = 0;
-        each([&](RankForces const& forces) { largest = std::max(largest, forces.largest_context()); });
+        each([&](RankForces const& forces) {
+            largest = std::max(largest, forces.largest_context());
+        });
         return largest;
     }
     std::int64_t contexts() const override {
@@ -99,7 +106,8 @@ class LayeredForces final : public RankForces {
             std::vector<PairRange> const some = forces.ranges();
             all.insert(all.end(), some.begin(), some.end());
         });
-        std::stable_sort(all.begin(), all.end(), [](PairRange const& a, PairRange const& b) { return a.reach > b.reach; });
+        std::stable_sort(all.begin(), all.end(),
+                         [](PairRange const& a, PairRange const& b) { return a.reach > b.reach; });
         return all;
     }
 
@@ -121,7 +129,9 @@ class LayeredForces final : public RankForces {
 
 }  // namespace
 
-std::unique_ptr<RankForces> make_layered_forces(RankPlan const& plan, std::vector<ForceLayer> const& layers, MakeRankForces make) {
+std::unique_ptr<RankForces> make_layered_forces(RankPlan const& plan,
+                                                std::vector<ForceLayer> const& layers,
+                                                MakeRankForces make) {
     if (layers.empty()) return make(plan);
     return std::make_unique<LayeredForces>(plan, layers, make);
 }

@@ -2,22 +2,26 @@
 #include "error.hpp"
 #include "force/contacts.hpp"
 #include "force/openmm_force.hpp"
-#include "systems/import.hpp"
 #include "force/openmm_integrator.hpp"
+#include "systems/import.hpp"
 
 namespace catena {
 
 namespace {
 
-char const* const remedy = "install OpenMM (pip install openmm, or Debian's libopenmm-dev) and build again, or leave forces.openmm out";
+char const* const remedy =
+    "install OpenMM (pip install openmm, or Debian's libopenmm-dev) and build again, or leave "
+    "forces.openmm out";
 
 }  // namespace
 
-std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, ChainsOnDevice const&) {
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads,
+                                               Communicator const&, ChainsOnDevice const&) {
     throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
 }
 
-std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, double) {
+std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const&, BeadSystem const& beads,
+                                                  Communicator const&, double) {
     throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
 }
 
@@ -29,8 +33,9 @@ ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_
     throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
 }
 
-std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, OwnLinks, OwnRun const&,
-                                           std::vector<Vec3> const&) {
+std::unique_ptr<OpenMmIntegrator> make_openmm_integrator(OpenMmSpec const&, BeadSystem const& beads,
+                                                         Communicator const&, OwnLinks,
+                                                         OwnRun const&, std::vector<Vec3> const&) {
     throw built_without("OpenMM", beads.scene_file, remedy);
 }
 

@@ -11,16 +11,16 @@
 
 #include "clock.hpp"
 #include "error.hpp"
-#include "systems/force_layers.hpp"
-#include "systems/box.hpp"
 #include "force/contacts.hpp"
 #include "force/path.hpp"
 #include "force/rank_forces.hpp"
-#include "systems/plugins.hpp"
-#include "systems/subset.hpp"
 #include "force/worker.hpp"
 #include "mpi/first_rank.hpp"
 #include "scene/node.hpp"
+#include "systems/box.hpp"
+#include "systems/force_layers.hpp"
+#include "systems/plugins.hpp"
+#include "systems/subset.hpp"
 
 namespace catena {
 
@@ -28,13 +28,16 @@ namespace {
 
 std::size_t constexpr longest_message = 300;  // of OpenMM's
 
-std::string join(std::vector<std::string> const& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+std::string join(std::vector<std::string> const& words) {
+    return fmt::format("{}", fmt::join(words, ", "));
+}
 
 class OpenMmForces final : public OpenMmForce {
   public:
     /// `why_no_device`, `by_pairs`: the same on every rank.
-    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model,
-                 OpenMmPlatform platform, std::string const& why_no_device, bool by_pairs);
+    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                 OpenMmModel model, OpenMmPlatform platform, std::string const& why_no_device,
+                 bool by_pairs);
 
     void begin(ConstView<3> positions) override;
     void finish(View<3> forces) override;
@@ -57,7 +60,8 @@ class OpenMmForces final : public OpenMmForce {
     std::int64_t first() const { return first_of_rank_[communicator_.rank()]; }
     std::int64_t own_count() const { return first_of_rank_[communicator_.rank() + 1] - first(); }
     std::vector<ForceLayer> layers(OpenMmSpec const& spec, BeadSystem const& beads);
-    std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const;
+    std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec,
+                                                 BeadSystem const& beads) const;
     void evaluate() noexcept;
     void wait();
 
@@ -82,7 +86,8 @@ class OpenMmForces final : public OpenMmForce {
 
 std::vector<std::int64_t> BeadSystem::beads_of(int rank) const {
     std::vector<std::int64_t> own;
-    for (std::int64_t i = first_of_rank[rank]; i < first_of_rank[rank + 1]; ++i) own.push_back(by_rank.empty() ? i : by_rank[i]);
+    for (std::int64_t i = first_of_rank[rank]; i < first_of_rank[rank + 1]; ++i)
+        own.push_back(by_rank.empty() ? i : by_rank[i]);
     return own;
 }
 
@@ -93,27 +98,34 @@ std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
 }
 
 std::string split_text(RankForces const& rank) {
-    if (rank.shares_pairs()) return "split: every bead on each rank, which computes a share of the pairs";
-    if (!std::isfinite(rank.reach())) return "split: every bead on each rank (a force has no cutoff)";
-    std::string text = fmt::format("split: own beads and those within {} + {} nm on each rank", rank.reach(), rank.skin());
+    if (rank.shares_pairs())
+        return "split: every bead on each rank, which computes a share of the pairs";
+    if (!std::isfinite(rank.reach()))
+        return "split: every bead on each rank (a force has no cutoff)";
+    std::string text = fmt::format("split: own beads and those within {} + {} nm on each rank",
+                                   rank.reach(), rank.skin());
     std::vector<PairRange> const ranges = rank.ranges();
     for (std::size_t i = 1; i < ranges.size(); ++i)
-        text += fmt::format(", {} + {} nm where forces reach no farther", ranges[i].reach, rank.skin());
+        text +=
+            fmt::format(", {} + {} nm where forces reach no farther", ranges[i].reach, rank.skin());
     return text;
 }
 
 /// Why positions and forces cannot stay on a GPU; empty where they can.
-std::string cannot_stay_on_device(OpenMmSpec const& spec, OpenMmPlatform const& platform, Communicator const& communicator,
-                                  ChainsOnDevice const& chains) {
+std::string cannot_stay_on_device(OpenMmSpec const& spec, OpenMmPlatform const& platform,
+                                  Communicator const& communicator, ChainsOnDevice const& chains) {
     if (!chains.why_not.empty()) return chains.why_not;
     if (platform.name() != "CUDA") return fmt::format("OpenMM's platform is {}", platform.name());
-    if (communicator.size() > 1 && spec.replicate) return "forces.openmm.replicate: every rank computes the whole System";
+    if (communicator.size() > 1 && spec.replicate)
+        return "forces.openmm.replicate: every rank computes the whole System";
     if (spec.device >= 0 && spec.device != chains.device)
-        return fmt::format("forces.openmm.device is {} and the chains are on GPU {}", spec.device, chains.device);
+        return fmt::format("forces.openmm.device is {} and the chains are on GPU {}", spec.device,
+                           chains.device);
     return cuda::why_no_device_path();
 }
 
-OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model,
+OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads,
+                           Communicator const& communicator, OpenMmModel model,
                            OpenMmPlatform platform, std::string const& why_no_device, bool by_pairs)
     : communicator_(communicator),
       first_of_rank_(beads.first_of_rank),
@@ -131,22 +143,27 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
     if (path_.on_device()) device_ = rank_->device_path(spec.overlap);
 }
 
-/// On a GPU two Contexts take longer: lists of a shorter reach hold half of the pairs, not an eighth, and there are twice as many kernels.
+/// On a GPU two Contexts take longer: lists of a shorter reach hold half of the pairs, not an
+/// eighth, and there are twice as many kernels.
 std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem const& beads) {
     bool const pays = spec.layers == "all" || (spec.layers == "auto" && platform_.on_cpu());
     if (spec.replicate || path_.on_device() || !pays) return {};
     double constexpr few = 0.6, all = 1;
     std::vector<ForceLayer> taken = take_layers(model_, beads, spec.layers == "auto" ? few : all);
-    for (ForceLayer const& layer : taken) model_.notes.insert(model_.notes.begin(), text_of(layer, beads));
+    for (ForceLayer const& layer : taken)
+        model_.notes.insert(model_.notes.begin(), text_of(layer, beads));
     return taken;
 }
 
-std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const {
+std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spec,
+                                                           BeadSystem const& beads) const {
     auto const make = communicator_.size() == 1 || spec.replicate ? make_whole_forces
                       : by_pairs_                                 ? make_pair_forces
                       : path_.on_device()                         ? make_halo_forces
                                                                   : make_split_forces;
-    return make_layered_forces({model_, platform_, beads, communicator_, box_of(model_, beads), spec.audit}, layers_, make);
+    return make_layered_forces(
+        {model_, platform_, beads, communicator_, box_of(model_, beads), spec.audit}, layers_,
+        make);
 }
 
 void OpenMmForces::evaluate() noexcept {
@@ -183,13 +200,15 @@ void OpenMmForces::wait() {
 
 void OpenMmForces::finish(View<3> forces) {
     wait();
-    if (!std::exchange(under_way_, false)) throw ComputationError("OpenMM's forces were asked for before their computation was begun");
+    if (!std::exchange(under_way_, false))
+        throw ComputationError("OpenMM's forces were asked for before their computation was begun");
     try {
         if (error_) std::rethrow_exception(error_);
     } catch (ComputationError const&) {
         throw;
     } catch (std::exception const& e) {
-        throw ComputationError(fmt::format("OpenMM failed: {}", scene::shown(e.what(), longest_message)));
+        throw ComputationError(
+            fmt::format("OpenMM failed: {}", scene::shown(e.what(), longest_message)));
     }
     for (std::int64_t k = 0; k < own_count(); ++k)
         for (int c = 0; c < 3; ++c) forces.at(k, c) += forces_[k][c];
@@ -198,7 +217,8 @@ void OpenMmForces::finish(View<3> forces) {
 
 std::vector<EnergyTerm> OpenMmForces::energies() {
     wait();
-    if (!evaluated_ && !device_) throw ComputationError("OpenMM's energies were asked for before it was given positions");
+    if (!evaluated_ && !device_)
+        throw ComputationError("OpenMM's energies were asked for before it was given positions");
     std::vector<double> values(model_.terms.size());
     std::string failure;
     try {
@@ -213,7 +233,8 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     char failed = failure.empty() ? 0 : 1;
     communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
     if (failed != 0)
-        throw ComputationError(fmt::format("OpenMM failed to compute the energies on rank 0{}{}", failure.empty() ? "" : ": ", failure));
+        throw ComputationError(fmt::format("OpenMM failed to compute the energies on rank 0{}{}",
+                                           failure.empty() ? "" : ": ", failure));
     communicator_.broadcast(std::as_writable_bytes(std::span(values)));
     std::vector<EnergyTerm> terms;
     for (std::size_t i = 0; i < values.size(); ++i) terms.push_back({model_.terms[i], values[i]});
@@ -222,24 +243,33 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
 
 void OpenMmForces::forces_again(View<3> forces) {
     std::vector<Vec3> const again = rank_->forces_again();
-    for (std::int64_t k = 0; k < own_count(); ++k) forces.store(k, again[static_cast<std::size_t>(k)]);
+    for (std::int64_t k = 0; k < own_count(); ++k)
+        forces.store(k, again[static_cast<std::size_t>(k)]);
 }
 
 std::vector<std::string> OpenMmForces::description() const {
-    std::vector<std::string> lines{platform_.name() == "CPU"
-                                       ? fmt::format("{}, platform CPU, threads a rank: {}", openmm_version(), platform_.threads)
-                                       : fmt::format("{}, platform {}", openmm_version(), platform_.name())};
+    std::vector<std::string> lines{
+        platform_.name() == "CPU"
+            ? fmt::format("{}, platform CPU, threads a rank: {}", openmm_version(),
+                          platform_.threads)
+            : fmt::format("{}, platform {}", openmm_version(), platform_.name())};
     lines.push_back("terms: " + (model_.terms.empty() ? std::string("none") : join(model_.terms)));
     lines.insert(lines.end(), model_.notes.begin(), model_.notes.end());
     lines.push_back("path " + path_.text());
     int const cores = cores_of_rank(communicator_);
     if (path_.runs_on_worker() && cores < 2)
-        lines.push_back("warning: OpenMM's worker thread has no core of its own (bind ranks to two cores or more, or path: inline)");
+        lines.push_back(
+            "warning: OpenMM's worker thread has no core of its own (bind ranks to two cores or "
+            "more, or path: inline)");
     if (platform_.threads > cores)
-        lines.push_back(fmt::format("warning: {} threads share {} cores of this rank", platform_.threads, cores));
-    if (communicator_.size() > 1 && replicate_) lines.push_back("replicated: every rank computes the whole System");
-    if (communicator_.size() > 1 && !replicate_ && own_count() > 0) lines.push_back(split_text(*rank_));
-    for (auto const& failure : load_openmm_plugins()) lines.push_back("plugin not loaded: " + failure);
+        lines.push_back(fmt::format("warning: {} threads share {} cores of this rank",
+                                    platform_.threads, cores));
+    if (communicator_.size() > 1 && replicate_)
+        lines.push_back("replicated: every rank computes the whole System");
+    if (communicator_.size() > 1 && !replicate_ && own_count() > 0)
+        lines.push_back(split_text(*rank_));
+    for (auto const& failure : load_openmm_plugins())
+        lines.push_back("plugin not loaded: " + failure);
     return lines;
 }
 
@@ -259,18 +289,25 @@ void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& wh
     for (int i = 0; i < model.system->getNumForces(); ++i) {
         auto const& force = model.system->getForce(i);
         if (!can_be_split(force))
-            throw InputError(fmt::format("{} cannot be split over {} ranks", name_for_refusal(force), ranks), where,
-                             "set forces.openmm.replicate: true, so that every rank computes the whole System, or run on one rank");
+            throw InputError(
+                fmt::format("{} cannot be split over {} ranks", name_for_refusal(force), ranks),
+                where,
+                "set forces.openmm.replicate: true, so that every rank computes the whole System, "
+                "or run on one rank");
     }
 }
 
-/// What some ranks have to say, in the words of the first of them; empty where none has. Collective.
+/// What some ranks have to say, in the words of the first of them; empty where none has.
+/// Collective.
 std::string first_words(Communicator const& communicator, std::string const& own) {
     std::int64_t const own_length = std::ssize(own);
     std::vector<std::int64_t> lengths(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&own_length, 1)), std::as_writable_bytes(std::span(lengths)),
+    communicator.all_gather(std::as_bytes(std::span(&own_length, 1)),
+                            std::as_writable_bytes(std::span(lengths)),
                             std::vector<std::int64_t>(lengths.size(), sizeof(std::int64_t)));
-    std::int64_t const first = std::find_if(lengths.begin(), lengths.end(), [](std::int64_t n) { return n > 0; }) - lengths.begin();
+    std::int64_t const first =
+        std::find_if(lengths.begin(), lengths.end(), [](std::int64_t n) { return n > 0; }) -
+        lengths.begin();
     if (first == std::ssize(lengths)) return "";
     std::int64_t total = 0, begin = 0;
     for (std::int64_t r = 0; r < std::ssize(lengths); ++r) {
@@ -278,11 +315,13 @@ std::string first_words(Communicator const& communicator, std::string const& own
         if (r < first) begin += lengths[r];
     }
     std::string all(static_cast<std::size_t>(total), ' ');
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), lengths);
+    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                            lengths);
     return all.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(lengths[first]));
 }
 
-/// Throws the first rank's InputError on every rank: Contexts are made on those with beads alone. Collective.
+/// Throws the first rank's InputError on every rank: Contexts are made on those with beads alone.
+/// Collective.
 template <class Action>
 void on_all(Communicator const& communicator, Action const& action) {
     std::string error;
@@ -291,48 +330,60 @@ void on_all(Communicator const& communicator, Action const& action) {
     } catch (InputError const& e) {
         error = e.what();
     }
-    if (std::string const words = first_words(communicator, error); !words.empty()) throw InputError(words);
+    if (std::string const words = first_words(communicator, error); !words.empty())
+        throw InputError(words);
 }
 
-OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, std::string const& where) {
+OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
+                     Communicator const& communicator, std::string const& where) {
     if (beads.size() == 0)
-        throw InputError("OpenMM has nothing to act on", where, "give the scene a chain of beads, or leave forces.openmm out");
+        throw InputError("OpenMM has nothing to act on", where,
+                         "give the scene a chain of beads, or leave forces.openmm out");
     if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))
         throw InputError(fmt::format("OpenMM's forces have no builder \"{}\"", spec.builder), where,
                          "take builder: calvados2, or system: and topology:");
-    OpenMmModel model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
-    if (communicator.size() > 1 && !spec.replicate) refuse_what_cannot_be_split(model, where, communicator.size());
+    OpenMmModel model =
+        spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
+    if (communicator.size() > 1 && !spec.replicate)
+        refuse_what_cannot_be_split(model, where, communicator.size());
     return model;
 }
 
 /// OpenMM takes about a kilobyte a bead, and the chains' part of the GPU's memory is their own.
 constexpr std::int64_t most_beads_of_a_gpu = 20'000'000;
 
-/// Why ranks cannot share out the pairs of beads that all of them know; empty where they can. `why_no_device`: the same on every rank.
-std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads,
-                               std::string const& why_no_device) {
+/// Why ranks cannot share out the pairs of beads that all of them know; empty where they can.
+/// `why_no_device`: the same on every rank.
+std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& system,
+                               BeadSystem const& beads, std::string const& why_no_device) {
     if (!why_no_device.empty()) return why_no_device;
     if (spec.path != "auto" && spec.path != "device") return "path is " + spec.path;
     auto const& first = beads.first_of_rank;
     if (std::adjacent_find(first.begin(), first.end()) != first.end()) return "a rank has no beads";
     if (std::string why = why_not_by_pairs(system); !why.empty()) return why;
-    if (spec.split == "auto" && beads.size() > most_beads_of_a_gpu) return "there may be no room for so many beads on each GPU";
+    if (spec.split == "auto" && beads.size() > most_beads_of_a_gpu)
+        return "there may be no room for so many beads on each GPU";
     return cuda::why_pairs_cannot_be_shared();
 }
 
 /// Whether they do. The same on every rank. Collective.
-bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads, Communicator const& communicator,
-                   std::string const& why_no_device) {
+bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads,
+                   Communicator const& communicator, std::string const& why_no_device) {
     if (spec.replicate && spec.split != "auto")
-        throw InputError("forces.openmm.replicate leaves nothing to split", beads.scene_file + ": forces.openmm.split",
-                         "leave one of them out");
+        throw InputError("forces.openmm.replicate leaves nothing to split",
+                         beads.scene_file + ": forces.openmm.split", "leave one of them out");
     if (communicator.size() == 1 || spec.replicate || spec.split == "ghosts") return false;
-    std::string why_not = first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
-    if (why_not.empty() && !cuda::gpus_are_alike(communicator)) why_not = "their GPUs are not alike";
+    std::string why_not =
+        first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
+    if (why_not.empty() && !cuda::gpus_are_alike(communicator))
+        why_not = "their GPUs are not alike";
     if (spec.split == "pairs" && !why_not.empty())
-        throw InputError(fmt::format("ranks cannot share out OpenMM's pairs: {}", why_not), beads.scene_file + ": forces.openmm.split",
-                         "take auto or ghosts, or chains of beads, --backend cuda and pair forces with a cutoff on GPUs");
-    return why_not.empty() && (spec.split == "pairs" || cuda::gpus_may_write_to_each_other(communicator));
+        throw InputError(fmt::format("ranks cannot share out OpenMM's pairs: {}", why_not),
+                         beads.scene_file + ": forces.openmm.split",
+                         "take auto or ghosts, or chains of beads, --backend cuda and pair forces "
+                         "with a cutoff on GPUs");
+    return why_not.empty() &&
+           (spec.split == "pairs" || cuda::gpus_may_write_to_each_other(communicator));
 }
 
 /// What `action` makes; what OpenMM throws becomes an InputError.
@@ -345,12 +396,14 @@ auto accepted(std::string const& where, Action const& action) {
     } catch (std::bad_alloc const&) {
         throw;
     } catch (std::exception const& e) {  // OpenMM's exceptions have no common base below this
-        throw InputError(fmt::format("OpenMM refuses these forces: {}", scene::shown(e.what(), longest_message)), where,
-                         "mend the System, or take another platform");
+        throw InputError(
+            fmt::format("OpenMM refuses these forces: {}", scene::shown(e.what(), longest_message)),
+            where, "mend the System, or take another platform");
     }
 }
 
-std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const& beads,
+                                        Communicator const& communicator,
                                         ChainsOnDevice const& chains, std::optional<double> reach) {
     std::string const where = beads.scene_file + ": forces.openmm";
     OpenMmModel model;
@@ -359,15 +412,17 @@ std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const
         model = model_of(spec, beads, communicator, where);
         refuse_box_beyond_cutoffs(*model.system, beads.scene_file + ": box");
         if (reach) shorten_pair_forces(*model.system, *reach);
-        platform = accepted(where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
+        platform = accepted(
+            where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
     });
-    std::string const why_no_device = first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));
+    std::string const why_no_device =
+        first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));
     bool const by_pairs = goes_by_pairs(spec, *model.system, beads, communicator, why_no_device);
     std::unique_ptr<OpenMmForce> force;
     on_all(communicator, [&] {
         force = accepted(where, [&]() -> std::unique_ptr<OpenMmForce> {
-            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model), std::move(platform), why_no_device,
-                                                  by_pairs);
+            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model),
+                                                  std::move(platform), why_no_device, by_pairs);
         });
     });
     return force;
@@ -375,13 +430,14 @@ std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const
 
 }  // namespace
 
-std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads,
+                                               Communicator const& communicator,
                                                ChainsOnDevice const& chains) {
     return make_force(spec, beads, communicator, chains, std::nullopt);
 }
 
-std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
-                                                  double reach) {
+std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const& spec, BeadSystem const& beads,
+                                                  Communicator const& communicator, double reach) {
     return make_force(spec, beads, communicator, {no_gpu_asked_for, -1}, reach);
 }
 

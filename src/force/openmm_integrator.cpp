@@ -2,19 +2,19 @@
 
 #include <OpenMM.h>
 
+#include "force/platform.hpp"
 #include "scene/calvados2.hpp"
 #include "systems/model.hpp"
-#include "force/platform.hpp"
 
 namespace catena {
 namespace {
 
 int constexpr no_force = 1 << 30;  // a group that holds none
 
-class Own final : public OpenMmOwn {
+class Own final : public OpenMmIntegrator {
   public:
-    Own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OwnLinks links, OwnRun const& run,
-        std::vector<Vec3> const& positions)
+    Own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+        OwnLinks links, OwnRun const& run, std::vector<Vec3> const& positions)
         : links_(beads.links),
           model_(calvados2_model(spec, beads)),
           platform_(choose_platform(spec, beads, communicator, run.device)),
@@ -22,7 +22,8 @@ class Own final : public OpenMmOwn {
         hold(links);
         platform_.properties.erase("DeterministicForces");  // OpenMM as people run it
         integrator_.setRandomNumberSeed(static_cast<int>(run.seed));
-        context_ = std::make_unique<OpenMM::Context>(*model_.system, integrator_, *platform_.platform, platform_.properties);
+        context_ = std::make_unique<OpenMM::Context>(*model_.system, integrator_,
+                                                     *platform_.platform, platform_.properties);
         std::vector<OpenMM::Vec3> x;
         for (Vec3 const& each : positions) x.emplace_back(each[0], each[1], each[2]);
         context_->setPositions(x);
@@ -30,15 +31,21 @@ class Own final : public OpenMmOwn {
     }
     void step(int steps) override {
         integrator_.step(steps);
-        context_->getState(OpenMM::State::Energy, false, no_force);  // its kinetic energy comes after the last step
+        context_->getState(OpenMM::State::Energy, false,
+                           no_force);  // its kinetic energy comes after the last step
     }
-    double energy() override { return context_->getState(OpenMM::State::Energy).getPotentialEnergy(); }
-    double kinetic_energy() override { return context_->getState(OpenMM::State::Energy, false, no_force).getKineticEnergy(); }
+    double energy() override {
+        return context_->getState(OpenMM::State::Energy).getPotentialEnergy();
+    }
+    double kinetic_energy() override {
+        return context_->getState(OpenMM::State::Energy, false, no_force).getKineticEnergy();
+    }
     std::vector<Vec3> positions() override {
         OpenMM::State const state = context_->getState(OpenMM::State::Positions);
         std::vector<Vec3> x;
         x.reserve(state.getPositions().size());
-        for (OpenMM::Vec3 const& each : state.getPositions()) x.push_back({each[0], each[1], each[2]});
+        for (OpenMM::Vec3 const& each : state.getPositions())
+            x.push_back({each[0], each[1], each[2]});
         return x;
     }
     double link_error() override { return catena::link_error(links_, positions()); }
@@ -69,8 +76,11 @@ class Own final : public OpenMmOwn {
 
 }  // namespace
 
-std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
-                                           OwnLinks links, OwnRun const& run, std::vector<Vec3> const& positions) {
+std::unique_ptr<OpenMmIntegrator> make_openmm_integrator(OpenMmSpec const& spec,
+                                                         BeadSystem const& beads,
+                                                         Communicator const& communicator,
+                                                         OwnLinks links, OwnRun const& run,
+                                                         std::vector<Vec3> const& positions) {
     return std::make_unique<Own>(spec, beads, communicator, links, run, positions);
 }
 

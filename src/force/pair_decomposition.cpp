@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "error.hpp"
+#include "mpi/first_rank.hpp"
 #include "neighbours/ghost_lists.hpp"
 #include "systems/subset.hpp"
-#include "mpi/first_rank.hpp"
 
 namespace catena {
 
@@ -33,15 +33,19 @@ bool has_exceptions(OpenMM::NonbondedForce const& force) {
 int groups_of(OpenMM::System const& system, int rank) {
     int groups = 0;
     for (int i = 0; i < system.getNumForces(); ++i)
-        if (rank == 0 || is_of_pairs(system.getForce(i))) groups |= 1 << system.getForce(i).getForceGroup();
+        if (rank == 0 || is_of_pairs(system.getForce(i)))
+            groups |= 1 << system.getForce(i).getForceGroup();
     return groups;
 }
 
-/// What energies have for what lies beyond the cutoff is no pair's, and adds no force: rank 0 alone has it.
+/// What energies have for what lies beyond the cutoff is no pair's, and adds no force: rank 0 alone
+/// has it.
 std::shared_ptr<OpenMM::System> of_rank(std::shared_ptr<OpenMM::System> system, int rank) {
     for (int i = 0; rank > 0 && i < system->getNumForces(); ++i) {
-        if (auto* pairs = dynamic_cast<OpenMM::CustomNonbondedForce*>(&system->getForce(i))) pairs->setUseLongRangeCorrection(false);
-        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&system->getForce(i))) charges->setUseDispersionCorrection(false);
+        if (auto* pairs = dynamic_cast<OpenMM::CustomNonbondedForce*>(&system->getForce(i)))
+            pairs->setUseLongRangeCorrection(false);
+        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&system->getForce(i)))
+            charges->setUseDispersionCorrection(false);
     }
     return system;
 }
@@ -63,9 +67,11 @@ std::string why_not_by_pairs(OpenMM::System const& system) {
         if (!is_of_pairs(force)) continue;
         any = true;
         if (!std::isfinite(reach_of(force))) return name + " has no cutoff";
-        if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force); pairs && pairs->getNumInteractionGroups() > 0)
+        if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force);
+            pairs && pairs->getNumInteractionGroups() > 0)
             return name + " has interaction groups";
-        if (auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force); charges && has_exceptions(*charges))
+        if (auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force);
+            charges && has_exceptions(*charges))
             return name + " has exceptions that act";
     }
     return any ? "" : "no force acts between pairs";
@@ -78,7 +84,8 @@ PairForces::PairForces(RankPlan const& plan)
       in_single_(is_in_single(plan.platform)),
       first_of_rank_(plan.beads.first_of_rank),
       groups_(groups_of(*plan.model.system, plan.communicator.rank())),
-      context_(std::make_unique<ForceContext>(of_rank(plan.model.system, plan.communicator.rank()), plan.platform, plan.box)) {
+      context_(std::make_unique<ForceContext>(of_rank(plan.model.system, plan.communicator.rank()),
+                                              plan.platform, plan.box)) {
     std::vector<int> const particle_of_bead = particles_of_beads(plan.model.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : plan.beads.beads_of(rank)) {
@@ -99,7 +106,8 @@ PairForces::PairForces(RankPlan const& plan)
 
 void PairForces::send_in(std::span<std::int64_t const> sequence) {
     std::vector<std::int64_t> of_ranks(particle_of_all_.size());
-    communicator_.all_gather(std::as_bytes(sequence), std::as_writable_bytes(std::span(of_ranks)), bytes_of_ranks(sizeof(std::int64_t)));
+    communicator_.all_gather(std::as_bytes(sequence), std::as_writable_bytes(std::span(of_ranks)),
+                             bytes_of_ranks(sizeof(std::int64_t)));
     take_sequences(of_ranks);
 }
 
@@ -108,7 +116,8 @@ void PairForces::take_sequences(std::span<std::int64_t const> of_ranks) {
     received_.clear();
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         std::int64_t const first = first_of_rank_[static_cast<std::size_t>(rank)];
-        auto const sequence = of_ranks.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(beads_of(rank)));
+        auto const sequence = of_ranks.subspan(static_cast<std::size_t>(first),
+                                               static_cast<std::size_t>(beads_of(rank)));
         if (rank == communicator_.rank()) lists_.sent.assign(sequence.begin(), sequence.end());
         if (rank == communicator_.rank()) continue;
         for (std::int64_t const k : sequence) {
@@ -120,7 +129,8 @@ void PairForces::take_sequences(std::span<std::int64_t const> of_ranks) {
 
 std::vector<std::int64_t> PairForces::bytes_of_ranks(std::size_t of_bead) const {
     std::vector<std::int64_t> bytes;
-    for (int rank = 0; rank < communicator_.size(); ++rank) bytes.push_back(beads_of(rank) * static_cast<std::int64_t>(of_bead));
+    for (int rank = 0; rank < communicator_.size(); ++rank)
+        bytes.push_back(beads_of(rank) * static_cast<std::int64_t>(of_bead));
     return bytes;
 }
 
@@ -135,12 +145,17 @@ DevicePathPlan PairForces::plan(bool overlap) {
     return plan;
 }
 
-std::unique_ptr<DevicePath> PairForces::device_path(bool overlap) { return cuda::make_device_path(context_->context(), plan(overlap)); }
+std::unique_ptr<DevicePath> PairForces::device_path(bool overlap) {
+    return cuda::make_device_path(context_->context(), plan(overlap));
+}
 
 bool PairForces::are_used_up(bool far, std::int64_t bead) {
     double constexpr good = 0, far_away = 1, used_up = 2, trouble = 3;  // and the bead's number
     bool const renew = std::exchange(renew_, false);
-    double const state = communicator_.max(bead >= 0 ? trouble + static_cast<double>(bead) : renew ? used_up : far ? far_away : good);
+    double const state = communicator_.max(bead >= 0 ? trouble + static_cast<double>(bead)
+                                           : renew   ? used_up
+                                           : far     ? far_away
+                                                     : good);
     if (state >= trouble) throw_trouble(state - trouble, in_trouble);
     some_are_far_ = state > good;
     return state == used_up;
@@ -161,15 +176,17 @@ void PairForces::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     std::vector<Incoming> in;
     for (Message const& m : lists_.messages) {
         out.push_back({m.rank, std::as_bytes(sent)});
-        in.push_back({m.rank, std::as_writable_bytes(received.first(static_cast<std::size_t>(m.received)))});
+        in.push_back(
+            {m.rank, std::as_writable_bytes(received.first(static_cast<std::size_t>(m.received)))});
         received = received.subspan(static_cast<std::size_t>(m.received));
     }
     communicator_.exchange_all(out, in);
     note(false);
 }
 
-/// Positions go to every rank and forces come back: so many bytes, zeros that stay away among them, but the eight more a coordinate of
-/// positions that go in double precision to GPUs that compute in single (audited, or into a new order).
+/// Positions go to every rank and forces come back: so many bytes, zeros that stay away among them,
+/// but the eight more a coordinate of positions that go in double precision to GPUs that compute in
+/// single (audited, or into a new order).
 void PairForces::note(bool direct) {
     traffic_.direct = direct;
     ++traffic_.updates;
@@ -180,13 +197,16 @@ void PairForces::note(bool direct) {
 
 void PairForces::audit(std::span<Vec3 const> own_positions, std::span<Vec3 const> received) const {
     std::vector<Vec3> all(particle_of_all_.size());
-    communicator_.all_gather(std::as_bytes(own_positions), std::as_writable_bytes(std::span(all)), bytes_of_ranks(sizeof(Vec3)));
+    communicator_.all_gather(std::as_bytes(own_positions), std::as_writable_bytes(std::span(all)),
+                             bytes_of_ranks(sizeof(Vec3)));
     bool const equal =
-        std::equal(received_.begin(), received_.end(), received.begin(), received.end(), [&](std::int64_t bead, Vec3 const& there) {
-            Vec3 const& here = all[static_cast<std::size_t>(bead)];
-            return here[0] == there[0] && here[1] == there[1] && here[2] == there[2];
-        });
-    if (communicator_.sum(equal ? 0 : 1) > 0) throw SharedError("a rank computes with beads of others that are not where they are");
+        std::equal(received_.begin(), received_.end(), received.begin(), received.end(),
+                   [&](std::int64_t bead, Vec3 const& there) {
+                       Vec3 const& here = all[static_cast<std::size_t>(bead)];
+                       return here[0] == there[0] && here[1] == there[1] && here[2] == there[2];
+                   });
+    if (communicator_.sum(equal ? 0 : 1) > 0)
+        throw SharedError("a rank computes with beads of others that are not where they are");
 }
 
 std::vector<Vec3> PairForces::forces_again() {
@@ -201,13 +221,15 @@ std::vector<Vec3> PairForces::forces_again() {
     };
     std::vector<Vec3> forces = forces_on(particle_);
     std::vector<Vec3> const sent = forces_on(lists_.particle);
-    std::vector<std::vector<Vec3>> received(lists_.messages.size(), std::vector<Vec3>(forces.size()));
+    std::vector<std::vector<Vec3>> received(lists_.messages.size(),
+                                            std::vector<Vec3>(forces.size()));
     std::vector<Outgoing> out;
     std::vector<Incoming> in;
     std::size_t first = 0;
     for (std::size_t i = 0; i < lists_.messages.size(); ++i) {
         Message const& m = lists_.messages[i];
-        out.push_back({m.rank, std::as_bytes(std::span(sent).subspan(first, static_cast<std::size_t>(m.received)))});
+        out.push_back({m.rank, std::as_bytes(std::span(sent).subspan(
+                                   first, static_cast<std::size_t>(m.received)))});
         in.push_back({m.rank, std::as_writable_bytes(std::span(received[i]))});
         first += static_cast<std::size_t>(m.received);
     }
@@ -226,14 +248,19 @@ void PairForces::find_energies(DevicePath*, std::span<double> of_group) {
     std::vector<std::int64_t> const bytes(static_cast<std::size_t>(communicator_.size()),
                                           static_cast<std::int64_t>(std::span(own).size_bytes()));
     std::vector<double> all(own.size() * bytes.size());
-    communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
+    communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                             bytes);
     std::fill(of_group.begin(), of_group.end(), 0.0);
     for (std::size_t i = 0; i < all.size(); ++i) of_group[i % own.size()] += all[i];
 }
 
-void PairForces::gather(std::span<Vec3 const>) { throw ComputationError("positions stay on the GPU"); }
+void PairForces::gather(std::span<Vec3 const>) {
+    throw ComputationError("positions stay on the GPU");
+}
 void PairForces::evaluate(std::span<Vec3>) { throw ComputationError("forces stay on the GPU"); }
 
-std::unique_ptr<RankForces> make_pair_forces(RankPlan const& plan) { return std::make_unique<PairForces>(plan); }
+std::unique_ptr<RankForces> make_pair_forces(RankPlan const& plan) {
+    return std::make_unique<PairForces>(plan);
+}
 
 }  // namespace catena

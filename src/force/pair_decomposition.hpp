@@ -1,20 +1,22 @@
-// What a rank among several computes where all of them know every bead and share out the pairs: positions and forces stay on GPUs that
-// reach each other's memory. For files that see OpenMM's headers.
+// What a rank among several computes where all of them know every bead and share out the pairs:
+// positions and forces stay on GPUs that reach each other's memory. For files that see OpenMM's
+// headers.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "force/rank_forces.hpp"
 #include "neighbours/ghost_traffic.hpp"
 #include "neighbours/halo.hpp"
-#include "force/rank_forces.hpp"
 
 namespace catena {
 
-/// A million beads on four GPUs have as many ghosts as beads of their own, and pairs among ghosts are computed in vain: with every bead as
-/// a ghost no list of them is ever made again, and no pair is computed twice. What it takes is that every position and every force goes
-/// to every rank, or comes from there: 12 bytes each from GPU to GPU in single precision.
+/// A million beads on four GPUs have as many ghosts as beads of their own, and pairs among ghosts
+/// are computed in vain: with every bead as a ghost no list of them is ever made again, and no pair
+/// is computed twice. What it takes is that every position and every force goes to every rank, or
+/// comes from there: 12 bytes each from GPU to GPU in single precision.
 class PairForces final : public RankForces, public Halo {
   public:
     /// Ranks but the first take what energies have beyond cutoffs off the plan's System.
@@ -57,7 +59,8 @@ class PairForces final : public RankForces, public Halo {
   private:
     std::int64_t own() const { return std::ssize(particle_); }
     std::int64_t beads_of(int rank) const {
-        return first_of_rank_[static_cast<std::size_t>(rank) + 1] - first_of_rank_[static_cast<std::size_t>(rank)];
+        return first_of_rank_[static_cast<std::size_t>(rank) + 1] -
+               first_of_rank_[static_cast<std::size_t>(rank)];
     }
     /// In which each rank sends its beads.
     void take_sequences(std::span<std::int64_t const> of_ranks);

@@ -19,7 +19,8 @@ double median(std::vector<double> seconds) {
 
 }  // namespace
 
-PathChoice::PathChoice(std::string const& asked, bool may_compare, std::string const& why_no_device, std::string const& scene_file)
+PathChoice::PathChoice(std::string const& asked, bool may_compare, std::string const& why_no_device,
+                       std::string const& scene_file)
     : device_(why_no_device.empty() && (asked == "auto" || asked == "device")),
       trying_(asked == "auto" && may_compare && !device_),
       worker_(asked != "inline" && !device_),
@@ -27,13 +28,18 @@ PathChoice::PathChoice(std::string const& asked, bool may_compare, std::string c
       why_no_device_(why_no_device) {
     std::string const where = scene_file + ": forces.openmm.path";
     if (asked == "device" && !device_)
-        throw InputError(fmt::format("positions and forces cannot stay on a GPU: {}", why_no_device), where,
-                         "take auto, or chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
+        throw InputError(
+            fmt::format("positions and forces cannot stay on a GPU: {}", why_no_device), where,
+            "take auto, or chains of beads, --backend cuda and forces.openmm.platform: CUDA on a "
+            "machine with a GPU");
     if (asked != "auto" && asked != "device" && asked != "host" && asked != "inline")
-        throw InputError(fmt::format("OpenMM's forces have no path \"{}\"", asked), where, "take auto, device, host or inline");
+        throw InputError(fmt::format("OpenMM's forces have no path \"{}\"", asked), where,
+                         "take auto, device, host or inline");
 }
 
-bool PathChoice::runs_on_worker() const { return trying_ ? std::ssize(inline_) >= trials : worker_; }
+bool PathChoice::runs_on_worker() const {
+    return trying_ ? std::ssize(inline_) >= trials : worker_;
+}
 
 void PathChoice::note(double seconds) {
     if (trying_) (runs_on_worker() ? host_ : inline_).push_back(seconds);
@@ -48,14 +54,19 @@ void PathChoice::settle(Communicator const& communicator) {
 }
 
 std::string PathChoice::text() const {
-    std::string const no_device =
-        asked_ == "auto" && why_no_device_ != no_gpu_asked_for ? fmt::format("; not device: {}", why_no_device_) : "";
-    if (trying_) return fmt::format("auto: host or inline, whichever the first {} evaluations show to be faster{}", 2 * trials, no_device);
+    std::string const no_device = asked_ == "auto" && why_no_device_ != no_gpu_asked_for
+                                      ? fmt::format("; not device: {}", why_no_device_)
+                                      : "";
+    if (trying_)
+        return fmt::format(
+            "auto: host or inline, whichever the first {} evaluations show to be faster{}",
+            2 * trials, no_device);
     if (device_) return "device (positions and forces stay on the GPU)";
     std::string const taken = worker_ ? "host (a worker thread)" : "inline (the calling thread)";
     if (host_median_ == 0) return taken + no_device;
-    return fmt::format("{}, the faster one: from begin to end {:.3g} ms on the worker, {:.3g} ms inline{}", taken, 1e3 * host_median_,
-                       1e3 * inline_median_, no_device);
+    return fmt::format(
+        "{}, the faster one: from begin to end {:.3g} ms on the worker, {:.3g} ms inline{}", taken,
+        1e3 * host_median_, 1e3 * inline_median_, no_device);
 }
 
 }  // namespace catena

@@ -17,7 +17,8 @@ std::int64_t constexpr beads_per_thread = 500;
 
 std::vector<std::string> platforms_present() {
     std::vector<std::string> names;
-    for (int i = 0; i < OpenMM::Platform::getNumPlatforms(); ++i) names.push_back(OpenMM::Platform::getPlatform(i).getName());
+    for (int i = 0; i < OpenMM::Platform::getNumPlatforms(); ++i)
+        names.push_back(OpenMM::Platform::getPlatform(i).getName());
     return names;
 }
 
@@ -31,7 +32,8 @@ std::string refused_plugins(std::vector<std::string> const& failures) {
 
 }  // namespace
 
-OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, int device) {
+OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads,
+                               Communicator const& communicator, int device) {
     auto const& failures = load_openmm_plugins();
     auto const present = platforms_present();
     bool const on_gpu = device >= 0;
@@ -40,12 +42,14 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, 
                              : contains(present, "CPU")            ? "CPU"
                                                                    : "Reference";
     if (!contains(present, name))
-        throw InputError(fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
-                         openmm_key(beads.scene_file, "platform"),
-                         fmt::format("take one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
-    if (!spec.precision.empty() && spec.precision != "single" && spec.precision != "mixed" && spec.precision != "double")
-        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision), openmm_key(beads.scene_file, "precision"),
-                         "take single, mixed or double");
+        throw InputError(
+            fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
+            openmm_key(beads.scene_file, "platform"),
+            fmt::format("take one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
+    if (!spec.precision.empty() && spec.precision != "single" && spec.precision != "mixed" &&
+        spec.precision != "double")
+        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision),
+                         openmm_key(beads.scene_file, "precision"), "take single, mixed or double");
 
     OpenMmPlatform chosen;
     chosen.platform = &OpenMM::Platform::getPlatformByName(name);
@@ -54,7 +58,8 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, 
         if (contains(known, property)) chosen.properties[property] = value;
     };
     if (name == "CPU") {
-        auto const useful = static_cast<int>(std::min<std::int64_t>(1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
+        auto const useful = static_cast<int>(std::min<std::int64_t>(
+            1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
         require_possible_threads(spec.threads, openmm_key(beads.scene_file, "threads"));
         chosen.threads = spec.threads > 0 ? spec.threads : useful;
         set("Threads", std::to_string(chosen.threads));

@@ -20,10 +20,12 @@ struct OpenMmPlatform {
     bool on_cpu() const { return name() == "CPU" || name() == "Reference"; }
 };
 
-/// The platform that the scene names, else CUDA where it is present and the rank has its chains on GPU `device` (-1: it has not), else CPU
-/// where there is one, else Reference. CUDA takes the chains' GPU unless the scene names another. CPU threads, where the scene gives no
-/// number: the rank's cores, but one for every 500 beads at most (on two cores, a second thread slows 280 beads down by a fifth). Throws
-/// InputError listing those present.
-OpenMmPlatform choose_platform(OpenMmSpec const&, BeadSystem const&, Communicator const&, int device);
+/// The platform that the scene names, else CUDA where it is present and the rank has its chains on
+/// GPU `device` (-1: it has not), else CPU where there is one, else Reference. CUDA takes the
+/// chains' GPU unless the scene names another. CPU threads, where the scene gives no number: the
+/// rank's cores, but one for every 500 beads at most (on two cores, a second thread slows 280 beads
+/// down by a fifth). Throws InputError listing those present.
+OpenMmPlatform choose_platform(OpenMmSpec const&, BeadSystem const&, Communicator const&,
+                               int device);
 
 }  // namespace catena

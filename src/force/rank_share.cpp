@@ -17,7 +17,8 @@ std::vector<std::int64_t> all_but(std::vector<std::int64_t> beads, std::int64_t 
     std::sort(beads.begin(), beads.end());
     std::vector<std::int64_t> all(static_cast<std::size_t>(count)), rest;
     std::iota(all.begin(), all.end(), std::int64_t{0});
-    std::set_difference(all.begin(), all.end(), beads.begin(), beads.end(), std::back_inserter(rest));
+    std::set_difference(all.begin(), all.end(), beads.begin(), beads.end(),
+                        std::back_inserter(rest));
     return rest;
 }
 
@@ -31,7 +32,8 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
       own_(plan.beads.beads_of(plan.communicator.rank())),
       particle_of_bead_(particles_of_beads(plan.model.bead_of_particle)),
       ends_(std::isfinite(reach_of(*plan.model.system))),
-      ranges_(ends_ ? pair_ranges(*plan.model.system, plan.model.bead_of_particle) : std::vector<PairRange>{}),
+      ranges_(ends_ ? pair_ranges(*plan.model.system, plan.model.bead_of_particle)
+                    : std::vector<PairRange>{}),
       skin_(skin_of_reach * std::max(longest_reach(ranges_), plan.longest_reach)),
       exchanges_(can_exchange_particles(*plan.model.system)),
       energies_(plan) {
@@ -41,12 +43,14 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
         partners_ = all_but(own_, beads_.size());
         return;
     }
-    for (int const p : bonded_partners(*model_.system, particles_of(own_))) partners_.push_back(model_.bead_of_particle[p]);
+    for (int const p : bonded_partners(*model_.system, particles_of(own_)))
+        partners_.push_back(model_.bead_of_particle[p]);
     std::sort(partners_.begin(), partners_.end());
 }
 
 GhostLists::Plan SplitShare::lists(std::vector<std::uint8_t> pieces) const {
-    return {beads_.first_of_rank, beads_.by_rank, partners_, ranges_, skin_, box_, beads_.threads, std::move(pieces), beads_.number};
+    return {beads_.first_of_rank, beads_.by_rank,    partners_,    ranges_, skin_, box_,
+            beads_.threads,       std::move(pieces), beads_.number};
 }
 
 std::vector<int> SplitShare::particles_of(std::span<std::int64_t const> beads) const {
@@ -59,7 +63,8 @@ Subset SplitShare::subset_of(std::span<std::int64_t const> ghosts) const {
     Subset subset{particles_of(own_), static_cast<int>(own_.size()), 0};
     auto const particles = particles_of(ghosts);
     subset.particles.insert(subset.particles.end(), particles.begin(), particles.end());
-    subset.fixed = exchanges_ ? static_cast<int>(own_.size() + partners_.size()) : static_cast<int>(subset.particles.size());
+    subset.fixed = exchanges_ ? static_cast<int>(own_.size() + partners_.size())
+                              : static_cast<int>(subset.particles.size());
     return subset;
 }
 

@@ -1,4 +1,5 @@
-// A rank's share of a System that is split: its own beads, and what acts on them from elsewhere. For files that see OpenMM's headers.
+// A rank's share of a System that is split: its own beads, and what acts on them from elsewhere.
+// For files that see OpenMM's headers.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "neighbours/ghost_lists.hpp"
 #include "force/context.hpp"
 #include "force/energies.hpp"
 #include "force/rank_forces.hpp"
-#include "systems/subset.hpp"
+#include "neighbours/ghost_lists.hpp"
 #include "neighbours/pair_ranges.hpp"
+#include "systems/subset.hpp"
 
 namespace catena {
 
@@ -27,7 +28,9 @@ class SplitShare {
     /// `pieces`: in which others are ghosts.
     GhostLists::Plan lists(std::vector<std::uint8_t> pieces = {}) const;
     OpenMM::System const& system() const { return *model_.system; }
-    double reach() const { return ends_ ? longest_reach(ranges_) : std::numeric_limits<double>::infinity(); }
+    double reach() const {
+        return ends_ ? longest_reach(ranges_) : std::numeric_limits<double>::infinity();
+    }
     std::vector<PairRange> const& ranges() const { return ranges_; }
     double skin() const { return skin_; }
     /// Whether particles can be exchanged for others.
@@ -37,11 +40,14 @@ class SplitShare {
     /// Own beads, partners, and others, which are exchangeable where particles are.
     Subset subset_of(std::span<std::int64_t const> ghosts) const;
     /// The Context of a subset; `home` as in ForceContext.
-    std::unique_ptr<ForceContext> context_of(std::shared_ptr<OpenMM::System const> system, ForceContext* home = nullptr) const {
+    std::unique_ptr<ForceContext> context_of(std::shared_ptr<OpenMM::System const> system,
+                                             ForceContext* home = nullptr) const {
         return std::make_unique<ForceContext>(std::move(system), platform_, box_, home);
     }
     /// RankForces::find_energies with these positions.
-    void find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group) { energies_.find(own, home, of_group); }
+    void find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group) {
+        energies_.find(own, home, of_group);
+    }
     /// Of own beads in the scene, for messages.
     std::vector<std::int64_t> const& own_numbers() const { return own_numbers_; }
     std::optional<Vec3> const& box() const { return box_; }

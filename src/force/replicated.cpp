@@ -12,7 +12,10 @@ namespace {
 class WholeForces final : public RankForces {
   public:
     explicit WholeForces(RankPlan const& plan)
-        : model_(plan.model), platform_(plan.platform), communicator_(plan.communicator), box_(plan.box) {
+        : model_(plan.model),
+          platform_(plan.platform),
+          communicator_(plan.communicator),
+          box_(plan.box) {
         BeadSystem const& beads = plan.beads;
         std::vector<int> const particle_of_bead = particles_of_beads(model_.bead_of_particle);
         for (int rank = 0; rank < communicator_.size(); ++rank) {
@@ -20,14 +23,16 @@ class WholeForces final : public RankForces {
             bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
             for (std::int64_t const bead : of_rank) particle_.push_back(particle_of_bead[bead]);
         }
-        for (std::int64_t const bead : model_.bead_of_particle) number_of_particle_.push_back(beads.name(bead));
+        for (std::int64_t const bead : model_.bead_of_particle)
+            number_of_particle_.push_back(beads.name(bead));
         first_ = beads.first_of_rank[communicator_.rank()];
         if (first_ < beads.first_of_rank[communicator_.rank() + 1]) make_context();
     }
 
     void gather(std::span<Vec3 const> own) override {
         std::vector<Vec3> all(particle_.size());
-        communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)), bytes_of_rank_);
+        communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)),
+                                 bytes_of_rank_);
         positions_.resize(all.size());
         for (std::size_t i = 0; i < all.size(); ++i) positions_[particle_[i]] = all[i];
         are_set_ = false;
@@ -40,19 +45,22 @@ class WholeForces final : public RankForces {
         std::vector<Vec3> all;
         for (OpenMM::Vec3 const& f : context_->forces()) all.push_back({{f[0], f[1], f[2]}});
         check_finite(all, number_of_particle_, "OpenMM's force");
-        for (std::size_t k = 0; k < own_forces.size(); ++k) own_forces[k] = all[particle_[first_ + k]];
+        for (std::size_t k = 0; k < own_forces.size(); ++k)
+            own_forces[k] = all[particle_[first_ + k]];
     }
 
     void find_energies(DevicePath*, std::span<double> of_group) override {
         if (communicator_.rank() != 0) return;
         if (!context_) make_context();
-        if (!positions_.empty() && !are_set_) set_positions();  // where there are none they are on a GPU
+        if (!positions_.empty() && !are_set_)
+            set_positions();  // where there are none they are on a GPU
         context_->find_energies(of_group);
     }
     std::unique_ptr<DevicePath> device_path(bool overlap) override {
         DevicePathPlan plan;
         plan.particle.assign(particle_.begin(), particle_.end());
-        for (std::int64_t const particle : particle_) plan.bead.push_back(number_of_particle_[particle]);
+        for (std::int64_t const particle : particle_)
+            plan.bead.push_back(number_of_particle_[particle]);
         if (context_->placement() == Placement::wrapped) plan.box = box_;
         plan.shifted = context_->placement() == Placement::shifted;
         plan.overlap = overlap;
@@ -62,15 +70,19 @@ class WholeForces final : public RankForces {
     std::vector<Vec3> forces_again() override {
         std::vector<Vec3> own_forces;
         auto const all = context_->forces();
-        for (std::int64_t const particle : particle_) own_forces.push_back({{all[particle][0], all[particle][1], all[particle][2]}});
+        for (std::int64_t const particle : particle_)
+            own_forces.push_back({{all[particle][0], all[particle][1], all[particle][2]}});
         return own_forces;
     }
     std::int64_t largest_context() const override { return context_ ? context_->size() : 0; }
     std::int64_t contexts() const override { return context_ ? 1 : 0; }
 
   private:
-    void make_context() { context_ = std::make_unique<ForceContext>(model_.system, platform_, box_); }
-    /// Once for those gathered: places last for so many, and a run must not depend on when its energies are asked for.
+    void make_context() {
+        context_ = std::make_unique<ForceContext>(model_.system, platform_, box_);
+    }
+    /// Once for those gathered: places last for so many, and a run must not depend on when its
+    /// energies are asked for.
     void set_positions() {
         context_->set_positions(positions_, positions_.size());
         are_set_ = true;
@@ -90,14 +102,18 @@ class WholeForces final : public RankForces {
 
 }  // namespace
 
-void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> bead, char const* what) {
+void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> bead,
+                  char const* what) {
     for (std::size_t k = 0; k < vectors.size(); ++k)
         for (int c = 0; c < 3; ++c)
             if (!std::isfinite(vectors[k][c]))
-                throw ComputationError(
-                    fmt::format("{} of bead {} is not finite: take a smaller step, or a start without overlaps", what, bead[k] + 1));
+                throw ComputationError(fmt::format(
+                    "{} of bead {} is not finite: take a smaller step, or a start without overlaps",
+                    what, bead[k] + 1));
 }
 
-std::unique_ptr<RankForces> make_whole_forces(RankPlan const& plan) { return std::make_unique<WholeForces>(plan); }
+std::unique_ptr<RankForces> make_whole_forces(RankPlan const& plan) {
+    return std::make_unique<WholeForces>(plan);
+}
 
 }  // namespace catena

@@ -1,4 +1,5 @@
-// A periodic box cut into cells, so that what is near a point is found by looking into the cells around it.
+// A periodic box cut into cells, so that what is near a point is found by looking into the cells
+// around it.
 #pragma once
 
 #include <algorithm>
@@ -40,17 +41,20 @@ class Cells {
     Cells(Vec3 const& box, double width, std::size_t points) {
         double const wanted = 8.0 * static_cast<double>(points) + 64;
         double least = std::max(width, std::cbrt(box[0] * box[1] * box[2] / wanted));
-        // A box flatter than its cells has one layer of them, and with that more in all than its volume says.
+        // A box flatter than its cells has one layer of them, and with that more in all than its
+        // volume says.
         while (cut(box, least) > 16 * wanted) least *= 2;
     }
 
     std::size_t size() const { return static_cast<std::size_t>(count_[0] * count_[1] * count_[2]); }
 
     /// The cell of a point in the box.
-    std::size_t of(Vec3 const& wrapped) const { return index(at(wrapped, 0), at(wrapped, 1), at(wrapped, 2)); }
+    std::size_t of(Vec3 const& wrapped) const {
+        return index(at(wrapped, 0), at(wrapped, 1), at(wrapped, 2));
+    }
 
-    /// Calls visit(cell) for the cells that hold points within `width` of a point in the box, each once, until it returns true; whether it
-    /// did.
+    /// Calls visit(cell) for the cells that hold points within `width` of a point in the box, each
+    /// once, until it returns true; whether it did.
     template <class Visit>
     bool any_around(Vec3 const& wrapped, Visit visit) const {
         std::array<Run, 3> const run{around(wrapped, 0), around(wrapped, 1), around(wrapped, 2)};
@@ -74,7 +78,8 @@ class Cells {
     double cut(Vec3 const& box, double width) {
         double cells = 1;
         for (std::size_t i = 0; i < 3; ++i) {
-            double const edge = box[static_cast<int>(i)], along = std::max(1.0, std::floor(edge / width));
+            double const edge = box[static_cast<int>(i)],
+                         along = std::max(1.0, std::floor(edge / width));
             cells *= along;
             count_[i] = static_cast<std::int64_t>(std::min(along, 1e15));
             per_length_[i] = static_cast<double>(count_[i]) / edge;
@@ -83,7 +88,9 @@ class Cells {
     }
     std::int64_t at(Vec3 const& wrapped, std::size_t axis) const {
         // Rounding may put a point of the last cell one too far.
-        return std::min(static_cast<std::int64_t>(wrapped[static_cast<int>(axis)] * per_length_[axis]), count_[axis] - 1);
+        return std::min(
+            static_cast<std::int64_t>(wrapped[static_cast<int>(axis)] * per_length_[axis]),
+            count_[axis] - 1);
     }
     Run around(Vec3 const& wrapped, std::size_t axis) const {
         std::int64_t const middle = at(wrapped, axis), n = count_[axis];

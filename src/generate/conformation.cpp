@@ -10,7 +10,8 @@ namespace catena::scene {
 
 namespace {
 
-/// Points in cubic cells as wide as the excluded distance. The last point put in is the first taken out.
+/// Points in cubic cells as wide as the excluded distance. The last point put in is the first taken
+/// out.
 class CellStack {
   public:
     explicit CellStack(double width) : width_(width) {}
@@ -44,12 +45,15 @@ class CellStack {
   private:
     bool crowded_by(Vec3 const& point, std::int64_t k) const {
         for (; k >= 0; k = next_[static_cast<std::size_t>(k)])
-            if (k + 1 != size() && norm(points_[static_cast<std::size_t>(k)] - point) < width_) return true;
+            if (k + 1 != size() && norm(points_[static_cast<std::size_t>(k)] - point) < width_)
+                return true;
         return false;
     }
     std::uint64_t key(Vec3 const& p, int x, int y, int z) const {
         auto const cell = [&](double coordinate, int shift) {
-            return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(coordinate / width_)) + shift) & 0x1FFFFF;
+            return static_cast<std::uint64_t>(
+                       static_cast<std::int64_t>(std::floor(coordinate / width_)) + shift) &
+                   0x1FFFFF;
         };
         return cell(p[0], x) << 42 | cell(p[1], y) << 21 | cell(p[2], z);
     }
@@ -60,7 +64,9 @@ class CellStack {
     std::unordered_map<std::uint64_t, std::int64_t> heads_;
 };
 
-Vec3 inboard_of(BeadArrays const& beads, std::size_t k) { return k == 0 ? beads.anchor : beads.position[k - 1]; }
+Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {
+    return k == 0 ? beads.anchor : beads.position[k - 1];
+}
 
 }  // namespace
 
@@ -68,11 +74,13 @@ std::vector<Vec3> extended_conformation(std::int64_t points, double length) {
     std::vector<Vec3> at(static_cast<std::size_t>(points));
     double const along = std::sqrt(0.75) * length, across = 0.5 * length;
     for (std::int64_t k = 0; k < points; ++k)
-        at[static_cast<std::size_t>(k)] = {{static_cast<double>(k) * along, k % 2 == 0 ? 0.0 : across, 0}};
+        at[static_cast<std::size_t>(k)] = {
+            {static_cast<double>(k) * along, k % 2 == 0 ? 0.0 : across, 0}};
     return at;
 }
 
-std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length, double excluded, std::uint64_t seed) {
+std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length, double excluded,
+                                             std::uint64_t seed) {
     CellStack grown(excluded);
     grown.push(Vec3::zero());
     std::int64_t furthest = 1, retreat = 1;
@@ -80,7 +88,8 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
     while (grown.size() < points) {
         bool found = false;
         for (int trial = 0; trial < 64 && !found; ++trial) {
-            Vec3 const candidate = plus_scaled(grown.top(), length, Draws(seed, grown.size(), attempt++).on_sphere());
+            Vec3 const candidate =
+                plus_scaled(grown.top(), length, Draws(seed, grown.size(), attempt++).on_sphere());
             if (found = !grown.crowded(candidate); found) grown.push(candidate);
         }
         if (grown.size() > furthest) {
@@ -105,8 +114,10 @@ void take_lengths(BeadArrays& beads, Base base) {
 std::int64_t coincident_bead(BeadArrays const& beads, Base base) {
     for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k) {
         Vec3 const from = inboard_of(beads, k);
-        // Positions carry half a unit in their last place: a link shorter than some of these has no direction.
-        double const rounding = 16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(beads.position[k]));
+        // Positions carry half a unit in their last place: a link shorter than some of these has no
+        // direction.
+        double const rounding =
+            16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(beads.position[k]));
         if (!(norm(beads.position[k] - from) > rounding)) return static_cast<std::int64_t>(k);
     }
     return -1;

@@ -1,4 +1,5 @@
-// Chains of beads in a periodic box that is too crowded for places side by side: grown into it, then relaxed.
+// Chains of beads in a periodic box that is too crowded for places side by side: grown into it,
+// then relaxed.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +19,16 @@ struct Crowd {
 
     std::size_t chains() const { return first.size() - 1; }
     std::size_t movable() const { return first.back(); }
-    bool linked(std::size_t i, std::size_t j) const { return i < j ? j - i == 1 && length[j] > 0 : i - j == 1 && length[i] > 0; }
+    bool linked(std::size_t i, std::size_t j) const {
+        return i < j ? j - i == 1 && length[j] > 0 : i - j == 1 && length[i] > 0;
+    }
 };
 
-/// Puts the beads of every chain along random walks from random points of the box that keep the excluded distance from all that is there,
-/// stepping back where they are stuck; where that fails, the bead goes where it overlaps least. All chains grow at one pace, so that none
-/// finds the box full. A function of its arguments alone. Precondition: edges of 2.5 excluded distances or more; links shorter than the
-/// excluded distance, longer than half of it.
+/// Puts the beads of every chain along random walks from random points of the box that keep the
+/// excluded distance from all that is there, stepping back where they are stuck; where that fails,
+/// the bead goes where it overlaps least. All chains grow at one pace, so that none finds the box
+/// full. A function of its arguments alone. Precondition: edges of 2.5 excluded distances or more;
+/// links shorter than the excluded distance, longer than half of it.
 void grow(Crowd& crowd, std::uint64_t seed);
 
 struct Relaxed {
@@ -33,8 +37,9 @@ struct Relaxed {
     double nearest = 0;         // distance of the nearest such pair
 };
 
-/// Pushes beads that are too near apart by forces with a cap, each step followed by the projection of the links to their lengths (1e-13 of
-/// them, as far as the positions' rounding allows), until no two are nearer than the excluded distance or `most_steps` are done.
+/// Pushes beads that are too near apart by forces with a cap, each step followed by the projection
+/// of the links to their lengths (1e-13 of them, as far as the positions' rounding allows), until
+/// no two are nearer than the excluded distance or `most_steps` are done.
 Relaxed relax(Crowd& crowd, std::int64_t most_steps);
 
 }  // namespace catena::scene

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/node.hpp"
 #include "generate/random.hpp"
+#include "scene/node.hpp"
 
 namespace catena::scene {
 
@@ -14,7 +14,8 @@ class Distribution {
     enum class Kind : std::uint8_t { fixed, uniform, log_uniform, normal, choice };
 
     /// Always `value`; draws nothing.
-    Distribution(double value) : values_{value} {}  // NOLINT(google-explicit-constructor): a number is a distribution
+    Distribution(double value)
+        : values_{value} {}  // NOLINT(google-explicit-constructor): a number is a distribution
     Distribution(Kind kind, std::vector<double> values) : kind_(kind), values_(std::move(values)) {}
 
     bool is_fixed() const { return kind_ == Kind::fixed; }
@@ -23,15 +24,18 @@ class Distribution {
 
   private:
     Kind kind_ = Kind::fixed;
-    std::vector<double> values_;  // fixed: value; (log-)uniform: least, most; normal: mean, standard deviation; choice: all
+    std::vector<double> values_;  // fixed: value; (log-)uniform: least, most; normal: mean,
+                                  // standard deviation; choice: all
 };
 
-/// A number above 0, `{uniform: [a, b]}`, `{log_uniform: [a, b]}`, `{normal: [mean, sd]}` or `{choice: [a, b, ...]}`; InputError otherwise.
+/// A number above 0, `{uniform: [a, b]}`, `{log_uniform: [a, b]}`, `{normal: [mean, sd]}` or
+/// `{choice: [a, b, ...]}`; InputError otherwise.
 Distribution read_distribution(Node const& node);
 
 /// Independent streams of one body beside the one that its generator draws its geometry from.
 enum class SizeStream : std::uint64_t { mass = 1, length = 2, radius = 3 };
-inline double draw_size(Distribution const& of, std::uint64_t seed, std::int64_t body, SizeStream stream) {
+inline double draw_size(Distribution const& of, std::uint64_t seed, std::int64_t body,
+                        SizeStream stream) {
     Draws draws(seed, body, static_cast<std::uint64_t>(stream));
     return of.draw(draws);
 }

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "math/philox.hpp"
 #include "generate/conformation.hpp"
 #include "generate/random.hpp"
+#include "math/philox.hpp"
 
 namespace catena::scene {
 
@@ -25,9 +25,11 @@ BodyArrays revolute_chain(std::size_t n) {
     return bodies;
 }
 
-/// Makes body k a solid cylinder along +x, its origin in one end, and puts the next body's joint frame into the other.
+/// Makes body k a solid cylinder along +x, its origin in one end, and puts the next body's joint
+/// frame into the other.
 void set_rod(BodyArrays& bodies, std::size_t k, double mass, double length, double radius) {
-    double const along = mass * radius * radius / 2, across = mass * (3 * radius * radius + length * length) / 12;
+    double const along = mass * radius * radius / 2,
+                 across = mass * (3 * radius * radius + length * length) / 12;
     bodies.mass[k] = mass;
     bodies.com[k] = {{0.5 * length, 0, 0}};
     bodies.inertia[k] = Sym3{{along, 0, across, 0, 0, across}};
@@ -39,7 +41,8 @@ void draw_rod(BodyArrays& bodies, Rods const& rods, std::size_t k, double scale)
     auto const body = static_cast<std::int64_t>(k);
     double const mass = draw_size(rods.mass, rods.seed, body, SizeStream::mass);
     double const length = draw_size(rods.length, rods.seed, body, SizeStream::length);
-    double const radius = rods.radius ? draw_size(*rods.radius, rods.seed, body, SizeStream::radius) : 0.05 * length;
+    double const radius =
+        rods.radius ? draw_size(*rods.radius, rods.seed, body, SizeStream::radius) : 0.05 * length;
     set_rod(bodies, k, scale * scale * scale * mass, scale * length, scale * radius);
 }
 
@@ -62,13 +65,16 @@ void wind(BodyArrays& bodies, Winding const& winding, double twist) {
     bodies.q[0] = {1, 0, 0, 0};
 }
 
-/// A rotation vector with the normal density of its springs, times what the rotation group makes of it: (sin(a / 2) / (a / 2))^2.
+/// A rotation vector with the normal density of its springs, times what the rotation group makes of
+/// it: (sin(a / 2) / (a / 2))^2.
 Quat elastic_turn(ElasticRod const& rod, Vec3 const& stiffness, std::int64_t k) {
     for (std::uint64_t attempt = 0;; ++attempt) {
-        Vec3 turn = normal3(rod.seed, attempt, static_cast<std::uint64_t>(k), NoiseStage::conformation);
+        Vec3 turn =
+            normal3(rod.seed, attempt, static_cast<std::uint64_t>(k), NoiseStage::conformation);
         for (int i = 0; i < 3; ++i) turn[i] *= std::sqrt(rod.kt / stiffness[i]);
         double const half = 0.5 * norm(turn), weight = half > 0 ? std::sin(half) / half : 1;
-        if (2 * half < Draws::pi && Draws(rod.seed, k, attempt).uniform() < weight * weight) return from_rotation_vector(turn);
+        if (2 * half < Draws::pi && Draws(rod.seed, k, attempt).uniform() < weight * weight)
+            return from_rotation_vector(turn);
     }
 }
 
@@ -99,7 +105,8 @@ BodyArrays dill(Rods const& rods, Winding const& winding) {
 
 BodyArrays elastic_rod(ElasticRod const& rod) {
     BodyArrays bodies = revolute_chain(static_cast<std::size_t>(rod.bodies));
-    Vec3 const stiffness{{rod.kt * rod.twist / rod.length, rod.kt * rod.bend / rod.length, rod.kt * rod.bend / rod.length}};
+    Vec3 const stiffness{{rod.kt * rod.twist / rod.length, rod.kt * rod.bend / rod.length,
+                          rod.kt * rod.bend / rod.length}};
     bodies.axis.assign(bodies.size(), Vec3::zero());
     bodies.stiffness.assign(bodies.size(), stiffness);
     bodies.rest.assign(bodies.size(), {1, 0, 0, 0});
@@ -121,7 +128,8 @@ BodyArrays polygon(Polygon const& shape) {
     BodyArrays bodies = revolute_chain(static_cast<std::size_t>(shape.sides));
     double const turn = 2 * Draws::pi / static_cast<double>(shape.sides), half = turn / 2;
     bool const balls = shape.joint == JointType::spherical;
-    std::array<double, 4> const at_rest = balls ? std::array<double, 4>{1, 0, 0, 0} : std::array<double, 4>{0, 0, 0, 0};
+    std::array<double, 4> const at_rest =
+        balls ? std::array<double, 4>{1, 0, 0, 0} : std::array<double, 4>{0, 0, 0, 0};
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         set_rod(bodies, k, shape.mass, shape.length, shape.radius);
         bodies.joint[k] = shape.joint;
@@ -141,7 +149,8 @@ BodyArrays polygon(Polygon const& shape) {
 }
 
 BeadArrays polygon_of_beads(Polygon const& shape) {
-    double const turn = 2 * Draws::pi / static_cast<double>(shape.sides), radius = shape.length / (2 * std::sin(turn / 2));
+    double const turn = 2 * Draws::pi / static_cast<double>(shape.sides),
+                 radius = shape.length / (2 * std::sin(turn / 2));
     std::vector<Vec3> corners;
     for (std::int64_t k = 0; k < shape.sides; ++k) {
         double const angle = turn * static_cast<double>(k);
@@ -150,7 +159,8 @@ BeadArrays polygon_of_beads(Polygon const& shape) {
     return beads_at(corners, shape.length, shape.mass, Base::free, Vec3::zero());
 }
 
-BeadArrays beads_at(std::vector<Vec3> const& points, double length, double mass, Base base, Vec3 const& anchor) {
+BeadArrays beads_at(std::vector<Vec3> const& points, double length, double mass, Base base,
+                    Vec3 const& anchor) {
     std::size_t const skipped = base == Base::fixed ? 1 : 0, n = points.size() - skipped;
     BeadArrays beads;
     beads.mass.assign(n, mass);
@@ -160,7 +170,8 @@ BeadArrays beads_at(std::vector<Vec3> const& points, double length, double mass,
     beads.residue.assign(n, "UNK");
     beads.anchor = anchor;
     beads.position.reserve(n);
-    for (std::size_t k = 0; k < n; ++k) beads.position.push_back(anchor + (points[k + skipped] - points[0]));
+    for (std::size_t k = 0; k < n; ++k)
+        beads.position.push_back(anchor + (points[k + skipped] - points[0]));
     return beads;
 }
 

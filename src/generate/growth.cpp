@@ -13,7 +13,11 @@ namespace {
 class Occupied {
   public:
     Occupied(Vec3 const& box, double width, std::size_t points)
-        : images_(box), cells_(box, width, points), head_(cells_.size(), none), next_(points, none), at_(points) {}
+        : images_(box),
+          cells_(box, width, points),
+          head_(cells_.size(), none),
+          next_(points, none),
+          at_(points) {}
 
     void put(std::size_t i, Vec3 const& point) {
         at_[i] = images_.wrapped(point);
@@ -23,11 +27,13 @@ class Occupied {
     }
     void take(std::size_t i) {
         std::int32_t* link = &head_[cells_.of(at_[i])];
-        while (*link != static_cast<std::int32_t>(i)) link = &next_[static_cast<std::size_t>(*link)];
+        while (*link != static_cast<std::int32_t>(i))
+            link = &next_[static_cast<std::size_t>(*link)];
         *link = next_[i];
     }
-    /// Square of the distance from `point` to the nearest other than `passed_over` (none: -1), `most` where that is larger; where it is
-    /// `least` or smaller the search ends early, with any such number.
+    /// Square of the distance from `point` to the nearest other than `passed_over` (none: -1),
+    /// `most` where that is larger; where it is `least` or smaller the search ends early, with any
+    /// such number.
     double clearance(Vec3 const& point, std::int32_t passed_over, double least, double most) const {
         Vec3 const here = images_.wrapped(point);
         double nearest = most;
@@ -54,9 +60,14 @@ class Occupied {
 class Growth {
   public:
     Growth(Crowd& crowd, std::uint64_t seed)
-        : crowd_(crowd), seed_(seed), occupied_(crowd.box, crowd.excluded, crowd.at.size()), tips_(crowd.chains()) {
-        for (std::size_t i = crowd.movable(); i < crowd.at.size(); ++i) occupied_.put(i, crowd.at[i]);
-        for (std::size_t c = 0; c < tips_.size(); ++c) tips_[c].allowance = crowd.first[c + 1] - crowd.first[c];
+        : crowd_(crowd),
+          seed_(seed),
+          occupied_(crowd.box, crowd.excluded, crowd.at.size()),
+          tips_(crowd.chains()) {
+        for (std::size_t i = crowd.movable(); i < crowd.at.size(); ++i)
+            occupied_.put(i, crowd.at[i]);
+        for (std::size_t c = 0; c < tips_.size(); ++c)
+            tips_[c].allowance = crowd.first[c + 1] - crowd.first[c];
     }
 
     void run() {
@@ -70,35 +81,44 @@ class Growth {
   private:
     struct Tip {
         std::size_t grown = 0;
-        std::size_t allowance = 0;  // beads that the chain may still take back; at 0 it puts up with overlaps
+        std::size_t allowance =
+            0;  // beads that the chain may still take back; at 0 it puts up with overlaps
         std::uint64_t draws = 0;
     };
 
-    std::size_t size_of(std::size_t chain) const { return crowd_.first[chain + 1] - crowd_.first[chain]; }
+    std::size_t size_of(std::size_t chain) const {
+        return crowd_.first[chain + 1] - crowd_.first[chain];
+    }
 
     void grow_to(std::size_t chain, std::size_t size) {
         Tip& tip = tips_[chain];
-        std::size_t retreat = 1;  // further back each time, so that the way out of any pocket is found
+        std::size_t retreat =
+            1;  // further back each time, so that the way out of any pocket is found
         while (tip.grown < size) {
             if (extend(chain)) continue;
-            std::size_t const back = std::min({retreat, tip.grown > 0 ? tip.grown - 1 : 0, tip.allowance});
-            for (std::size_t i = 0; i < back; ++i) occupied_.take(crowd_.first[chain] + --tip.grown);
+            std::size_t const back =
+                std::min({retreat, tip.grown > 0 ? tip.grown - 1 : 0, tip.allowance});
+            for (std::size_t i = 0; i < back; ++i)
+                occupied_.take(crowd_.first[chain] + --tip.grown);
             tip.allowance = back > 0 ? tip.allowance - back : 0;
             retreat *= 2;
         }
     }
 
-    /// Adds a bead in the first place found that is free or, where the chain has no allowance left, overlaps least.
+    /// Adds a bead in the first place found that is free or, where the chain has no allowance left,
+    /// overlaps least.
     bool extend(std::size_t chain) {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;
-        std::int32_t const neighbour = tip.grown > 0 ? static_cast<std::int32_t>(i) - 1 : Occupied::none;
+        std::int32_t const neighbour =
+            tip.grown > 0 ? static_cast<std::int32_t>(i) - 1 : Occupied::none;
         double const enough = crowd_.excluded * crowd_.excluded;
         bool const choosy = tip.allowance > 0;
         double best = -1;
         for (int trial = 0; trial < 64 && best < enough; ++trial) {
             Vec3 const place = candidate(chain);
-            double const clear = occupied_.clearance(place, neighbour, choosy ? 0.999999 * enough : best, enough);
+            double const clear =
+                occupied_.clearance(place, neighbour, choosy ? 0.999999 * enough : best, enough);
             if (clear > best) best = clear, crowd_.at[i] = place;
         }
         if (choosy && best < enough) return false;
@@ -110,8 +130,10 @@ class Growth {
     Vec3 candidate(std::size_t chain) {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;
-        Draws draws(seed_of_stream(seed_, chain), static_cast<std::int64_t>(tip.grown), tip.draws++);
-        if (tip.grown > 0) return plus_scaled(crowd_.at[i - 1], crowd_.length[i], draws.on_sphere());
+        Draws draws(seed_of_stream(seed_, chain), static_cast<std::int64_t>(tip.grown),
+                    tip.draws++);
+        if (tip.grown > 0)
+            return plus_scaled(crowd_.at[i - 1], crowd_.length[i], draws.on_sphere());
         Vec3 start;
         for (int axis = 0; axis < 3; ++axis) start[axis] = draws.between(0, crowd_.box[axis]);
         return start;

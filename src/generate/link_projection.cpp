@@ -9,15 +9,19 @@ namespace {
 
 int constexpr most_sweeps = 20;
 
-double mobility_of(LinkedUnits const& units, std::size_t k) { return units.mobility.empty() ? 1 : units.mobility[k]; }
+double mobility_of(LinkedUnits const& units, std::size_t k) {
+    return units.mobility.empty() ? 1 : units.mobility[k];
+}
 
-/// Minus what the shift of a unit between two links changes the one by, where the other's lambda is 1.
+/// Minus what the shift of a unit between two links changes the one by, where the other's lambda
+/// is 1.
 double beside(LinkedUnits const& units, std::size_t between, Vec3 const& a, Vec3 const& b) {
     return -dot(a, b) * mobility_of(units, between);
 }
 
 void shift(LinkedUnits const& units, std::size_t k, double lambda, Vec3 const& along) {
-    if (double const mobility = mobility_of(units, k); mobility > 0) units.at[k] = plus_scaled(units.at[k], mobility * lambda, along);
+    if (double const mobility = mobility_of(units, k); mobility > 0)
+        units.at[k] = plus_scaled(units.at[k], mobility * lambda, along);
 }
 
 }  // namespace
@@ -32,8 +36,10 @@ bool LinkProjection::project(LinkedUnits const& units) {
     return !eliminate(units) && !is_open(units);
 }
 
-LinkProjection::Link LinkProjection::link_between(LinkedUnits const& units, std::size_t from, std::size_t to, double length) {
-    Vec3 const start = units.outboard.empty() ? units.at[from] : units.at[from] + units.outboard[from];
+LinkProjection::Link LinkProjection::link_between(LinkedUnits const& units, std::size_t from,
+                                                  std::size_t to, double length) {
+    Vec3 const start =
+        units.outboard.empty() ? units.at[from] : units.at[from] + units.outboard[from];
     Vec3 const end = units.inboard.empty() ? units.at[to] : units.at[to] + units.inboard[to];
     Vec3 const link = end - start;
     double const distance = norm(link), error = distance - length;
@@ -43,7 +49,8 @@ LinkProjection::Link LinkProjection::link_between(LinkedUnits const& units, std:
     return {distance > 0 ? (1 / distance) * link : Vec3{{1, 0, 0}}, error, wrong};
 }
 
-/// Links' directions and errors, and the elimination of the system from its first row on; false: nothing is left to correct.
+/// Links' directions and errors, and the elimination of the system from its first row on; false:
+/// nothing is left to correct.
 bool LinkProjection::eliminate(LinkedUnits const& units) {
     std::size_t const n = units.at.size();
     along_.resize(n), factor_.resize(n), lambda_.resize(n);
@@ -57,7 +64,8 @@ bool LinkProjection::eliminate(LinkedUnits const& units) {
             factor_[k] = 1 / diagonal, lambda_[k] = factor_[k] * link.error;
             continue;
         }
-        double const off = beside(units, k - 1, along_[k - 1], along_[k]), pivot = 1 / (diagonal - off * off * factor_[k - 1]);
+        double const off = beside(units, k - 1, along_[k - 1], along_[k]),
+                     pivot = 1 / (diagonal - off * off * factor_[k - 1]);
         lambda_[k] = (link.error - off * lambda_[k - 1]) * pivot;
         factor_[k] = pivot;
     }
@@ -69,7 +77,8 @@ void LinkProjection::substitute(LinkedUnits const& units) {
     std::size_t const n = units.at.size();
     if (units.closing > 0) close(units);
     for (std::size_t k = n - 1; k >= 1; --k) {
-        if (units.closing == 0 && k + 1 < n) lambda_[k] -= beside(units, k, along_[k], along_[k + 1]) * factor_[k] * lambda_[k + 1];
+        if (units.closing == 0 && k + 1 < n)
+            lambda_[k] -= beside(units, k, along_[k], along_[k + 1]) * factor_[k] * lambda_[k + 1];
         shift(units, k - 1, lambda_[k], along_[k]);
         shift(units, k, -lambda_[k], along_[k]);
     }
@@ -81,21 +90,25 @@ bool LinkProjection::is_open(LinkedUnits const& units) {
     return closing_.wrong;
 }
 
-/// The closing link borders the system: the others' lambdas without it, less what a unit of its lambda changes them by, times its lambda.
+/// The closing link borders the system: the others' lambdas without it, less what a unit of its
+/// lambda changes them by, times its lambda.
 void LinkProjection::close(LinkedUnits const& units) {
     std::size_t const n = units.at.size(), last = n - 1;
-    double const at_first = beside(units, 0, closing_.along, along_[1]), at_last = beside(units, last, along_[last], closing_.along);
+    double const at_first = beside(units, 0, closing_.along, along_[1]),
+                 at_last = beside(units, last, along_[last], closing_.along);
     response_.assign(n, 0.0);
     response_[1] += at_first, response_[last] += at_last;
     response_[1] *= factor_[1];
     auto const off = [&](std::size_t k) { return beside(units, k, along_[k], along_[k + 1]); };
-    for (std::size_t k = 2; k < n; ++k) response_[k] = (response_[k] - off(k - 1) * response_[k - 1]) * factor_[k];
+    for (std::size_t k = 2; k < n; ++k)
+        response_[k] = (response_[k] - off(k - 1) * response_[k - 1]) * factor_[k];
     for (std::size_t k = n - 2; k >= 1; --k) {
         response_[k] -= off(k) * factor_[k] * response_[k + 1];
         lambda_[k] -= off(k) * factor_[k] * lambda_[k + 1];
     }
     double const diagonal = mobility_of(units, 0) + mobility_of(units, last);
-    double const others = at_first * lambda_[1] + at_last * lambda_[last], response = at_first * response_[1] + at_last * response_[last];
+    double const others = at_first * lambda_[1] + at_last * lambda_[last],
+                 response = at_first * response_[1] + at_last * response_[last];
     double const lambda = (closing_.error - others) / (diagonal - response);
     for (std::size_t k = 1; k < n; ++k) lambda_[k] -= response_[k] * lambda;
     shift(units, last, lambda, closing_.along);

@@ -15,7 +15,8 @@ namespace {
 Vec3 edges_around(std::span<Vec3 const> points, double within) {
     Vec3 low = points[0], high = low, edges;
     for (Vec3 const& point : points)
-        for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], point[i]), high[i] = std::max(high[i], point[i]);
+        for (int i = 0; i < 3; ++i)
+            low[i] = std::min(low[i], point[i]), high[i] = std::max(high[i], point[i]);
     for (int i = 0; i < 3; ++i) edges[i] = high[i] - low[i] + 3 * within;
     return edges;
 }
@@ -24,7 +25,9 @@ Vec3 edges_around(std::span<Vec3 const> points, double within) {
 class PointsByCell {
   public:
     PointsByCell(std::span<Vec3 const> points, Images const& images, double within)
-        : cells_(images.edge(), within, points.size()), begin_(cells_.size() + 1, 0), order_(points.size()) {
+        : cells_(images.edge(), within, points.size()),
+          begin_(cells_.size() + 1, 0),
+          order_(points.size()) {
         std::vector<std::uint32_t> cell;
         for (Vec3 const& point : points) {
             wrapped_.push_back(images.wrapped(point));
@@ -33,7 +36,8 @@ class PointsByCell {
         }
         for (std::size_t c = 0; c < cells_.size(); ++c) begin_[c + 1] += begin_[c];
         std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-        for (std::size_t i = 0; i < points.size(); ++i) order_[next[cell[i]]++] = static_cast<std::uint32_t>(i);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            order_[next[cell[i]]++] = static_cast<std::uint32_t>(i);
     }
 
     Vec3 const& at(std::size_t i) const { return wrapped_[i]; }
@@ -41,7 +45,8 @@ class PointsByCell {
     template <class Visit>
     void around(std::size_t i, Visit visit) const {
         cells_.any_around(wrapped_[i], [&](std::size_t cell) {
-            for (std::uint32_t at = begin_[cell]; at < begin_[cell + 1]; ++at) visit(std::size_t{order_[at]});
+            for (std::uint32_t at = begin_[cell]; at < begin_[cell + 1]; ++at)
+                visit(std::size_t{order_[at]});
             return false;
         });
     }
@@ -67,12 +72,14 @@ void for_each_near_pair(std::span<Vec3 const> points, std::optional<Vec3> const&
         });
 }
 
-std::optional<NearPair> nearest_pair(std::span<Vec3 const> points, std::optional<Vec3> const& box, double within,
+std::optional<NearPair> nearest_pair(std::span<Vec3 const> points, std::optional<Vec3> const& box,
+                                     double within,
                                      std::function<bool(std::size_t, std::size_t)> const& counts) {
     std::optional<NearPair> nearest;
     for_each_near_pair(points, box, within, [&](std::size_t i, std::size_t j, Vec3 const& apart) {
         double const distance = norm(apart);
-        if ((!nearest || distance < nearest->distance) && counts(i, j)) nearest = NearPair{i, j, distance};
+        if ((!nearest || distance < nearest->distance) && counts(i, j))
+            nearest = NearPair{i, j, distance};
     });
     return nearest;
 }

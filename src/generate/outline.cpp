@@ -10,7 +10,8 @@ namespace {
 
 void add_carried(Outline& outline, CarriedBeads const& carried, std::size_t k, Pose const& pose) {
     if (carried.offset.empty()) return;
-    for (auto b = static_cast<std::size_t>(carried.offset[k]); b < static_cast<std::size_t>(carried.offset[k + 1]); ++b)
+    for (auto b = static_cast<std::size_t>(carried.offset[k]);
+         b < static_cast<std::size_t>(carried.offset[k + 1]); ++b)
         outline.points.push_back(pose.origin + to_matrix(pose.orientation) * carried.position[b]);
 }
 
@@ -42,7 +43,8 @@ Outline outline_of(LinkedArrays const& linked) {
         Pose const pose{{q[0], q[1], q[2], q[3]}, linked.position[k]};
         for (Vec3 const& end : {Vec3::zero(), linked.inboard[k], linked.outboard[k]})
             outline.points.push_back(pose.origin + to_matrix(pose.orientation) * end);
-        outline.link = std::max({outline.link, linked.length[k], norm(linked.inboard[k]), norm(linked.outboard[k])});
+        outline.link = std::max(
+            {outline.link, linked.length[k], norm(linked.inboard[k]), norm(linked.outboard[k])});
         add_carried(outline, linked.carried, k, pose);
     }
     return outline;
@@ -51,7 +53,9 @@ Outline outline_of(LinkedArrays const& linked) {
 }  // namespace
 
 Outline outline_of(ChainSpec const& chain) {
-    return chain.is_beads() ? outline_of(chain.beads) : chain.is_linked() ? outline_of(chain.linked) : outline_of(chain.bodies);
+    return chain.is_beads()    ? outline_of(chain.beads)
+           : chain.is_linked() ? outline_of(chain.linked)
+                               : outline_of(chain.bodies);
 }
 
 }  // namespace catena::scene

@@ -14,9 +14,11 @@ std::int64_t constexpr widest = 4096;
 /// Rounding, of distances: what is within it is tested cell by cell.
 double constexpr rounding = 1e-9;
 
-/// The smallest n from `least` on with `wanted` cells in a grid of n along each edge, where it is not longer than `limit`; else the largest
-/// of these: a long or flat box has far fewer cells than a cube.
-std::int64_t with_room_for(std::size_t wanted, std::int64_t least, std::array<std::int64_t, 3> const& limit) {
+/// The smallest n from `least` on with `wanted` cells in a grid of n along each edge, where it is
+/// not longer than `limit`; else the largest of these: a long or flat box has far fewer cells than
+/// a cube.
+std::int64_t with_room_for(std::size_t wanted, std::int64_t least,
+                           std::array<std::int64_t, 3> const& limit) {
     auto const has_room = [&](std::int64_t n) {
         double cells = 1;
         for (std::int64_t const most : limit) cells *= static_cast<double>(std::min(n, most));
@@ -33,7 +35,8 @@ std::int64_t with_room_for(std::size_t wanted, std::int64_t least, std::array<st
 
 }  // namespace
 
-PlaceGrid::PlaceGrid(std::vector<Sphere> const& placed, double width, std::optional<Vec3> const& box)
+PlaceGrid::PlaceGrid(std::vector<Sphere> const& placed, double width,
+                     std::optional<Vec3> const& box)
     : placed_(placed), width_(width), box_(box) {
     for (std::size_t i = 0; i < placed.size(); ++i) {
         reach_.push_back(0.5 * width + placed[i].radius + 0.5 * placed[i].gap);
@@ -45,11 +48,13 @@ std::vector<Vec3> PlaceGrid::find(std::size_t wanted) {
     Counts const limit = most();
     std::int64_t const largest = *std::max_element(limit.begin(), limit.end());
     std::vector<Vec3> cells;
-    // The coarsest grid that has room, so that few chains spread over the box and a lone one lies in its middle.
-    for (std::int64_t n = with_room_for(wanted, smallest_of_use(wanted), limit); cells.size() < wanted;
-         n = work_ < patience ? n + 1 : 2 * n) {
+    // The coarsest grid that has room, so that few chains spread over the box and a lone one lies
+    // in its middle.
+    for (std::int64_t n = with_room_for(wanted, smallest_of_use(wanted), limit);
+         cells.size() < wanted; n = work_ < patience ? n + 1 : 2 * n) {
         if (!box_ && n > widest && !placed_.empty()) return beside(wanted);
-        cells = clear_cells({std::min(n, limit[0]), std::min(n, limit[1]), std::min(n, limit[2])}, wanted);
+        cells = clear_cells({std::min(n, limit[0]), std::min(n, limit[1]), std::min(n, limit[2])},
+                            wanted);
         if (n >= largest || work_ > end_of_patience) break;
     }
     return cells.size() < wanted && !box_ ? beside(wanted) : cells;
@@ -58,7 +63,8 @@ std::vector<Vec3> PlaceGrid::find(std::size_t wanted) {
 PlaceGrid::Counts PlaceGrid::most() const {
     Counts limit{INT64_MAX, INT64_MAX, INT64_MAX};
     for (int i = 0; i < 3 && box_; ++i)
-        limit[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::floor(std::min((*box_)[i] / width_, 1e15)));
+        limit[static_cast<std::size_t>(i)] =
+            static_cast<std::int64_t>(std::floor(std::min((*box_)[i] / width_, 1e15)));
     return limit;
 }
 
@@ -70,7 +76,8 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
         double const sum = std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]);
         double const under = sum * sum - 3 * (dot(c, c) - reach_[i] * reach_[i]);
         if (under <= sum * sum) continue;
-        double const half = (std::sqrt(under) - sum) / 3 * (1 - rounding);  // of a cube whose farthest corner the sphere reaches
+        double const half = (std::sqrt(under) - sum) / 3 *
+                            (1 - rounding);  // of a cube whose farthest corner the sphere reaches
         n = std::max(n, std::floor(2 * half / width_) + 1);
     }
     return static_cast<std::int64_t>(std::min(n, 1e15));
@@ -79,30 +86,37 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
 std::vector<Vec3> PlaceGrid::clear_cells(Counts const& n, std::size_t wanted) {
     std::vector<Vec3> cells;
     if (n[0] == 0 || n[1] == 0) return cells;  // layers and rows without cells may be very many
-    for (std::int64_t z = 0; z < n[2] && cells.size() < wanted && work_ <= end_of_patience; ++z) add_layer(z, n, wanted, cells);
+    for (std::int64_t z = 0; z < n[2] && cells.size() < wanted && work_ <= end_of_patience; ++z)
+        add_layer(z, n, wanted, cells);
     return cells;
 }
 
-void PlaceGrid::add_layer(std::int64_t z, Counts const& n, std::size_t wanted, std::vector<Vec3>& cells) {
+void PlaceGrid::add_layer(std::int64_t z, Counts const& n, std::size_t wanted,
+                          std::vector<Vec3>& cells) {
     select(all_, coordinate(z, 2, n), 2, layer_);
     for (Near const& near : layer_) {
         Vec3 const& centre = placed_[near.sphere].centre;
         double square = near.square;
         for (int i = 0; i < 2; ++i) {
-            double const farthest = box_ ? 0.5 * (*box_)[i] : std::abs(centre[i]) + std::abs(coordinate(0, i, n));
+            double const farthest =
+                box_ ? 0.5 * (*box_)[i] : std::abs(centre[i]) + std::abs(coordinate(0, i, n));
             square += farthest * farthest;
         }
-        if (std::sqrt(square) < reach_[near.sphere] * (1 - rounding)) return;  // it covers the layer
+        if (std::sqrt(square) < reach_[near.sphere] * (1 - rounding))
+            return;  // it covers the layer
     }
-    for (std::int64_t y = 0; y < n[1] && cells.size() < wanted && work_ <= end_of_patience; ++y) add_row(y, z, n, wanted, cells);
+    for (std::int64_t y = 0; y < n[1] && cells.size() < wanted && work_ <= end_of_patience; ++y)
+        add_row(y, z, n, wanted, cells);
 }
 
-void PlaceGrid::add_row(std::int64_t y, std::int64_t z, Counts const& n, std::size_t wanted, std::vector<Vec3>& cells) {
+void PlaceGrid::add_row(std::int64_t y, std::int64_t z, Counts const& n, std::size_t wanted,
+                        std::vector<Vec3>& cells) {
     Vec3 cell{{0, coordinate(y, 1, n), coordinate(z, 2, n)}};
     select(layer_, cell[1], 1, row_);
     full_.clear();
     for (Near const& near : row_) add_surely_full(near, n[0]);
-    std::sort(full_.begin(), full_.end(), [](Run const& a, Run const& b) { return a.first < b.first; });
+    std::sort(full_.begin(), full_.end(),
+              [](Run const& a, Run const& b) { return a.first < b.first; });
     auto next = full_.begin();
     for (std::int64_t x = 0; x < n[0] && cells.size() < wanted; ++x) {
         for (; next != full_.end() && next->first <= x; ++next) x = std::max(x, next->last + 1);
@@ -113,26 +127,33 @@ void PlaceGrid::add_row(std::int64_t y, std::int64_t z, Counts const& n, std::si
     }
 }
 
-void PlaceGrid::select(std::vector<Near> const& among, double at, int axis, std::vector<Near>& reaching) {
+void PlaceGrid::select(std::vector<Near> const& among, double at, int axis,
+                       std::vector<Near>& reaching) {
     reaching.clear();
     work_ += static_cast<double>(among.size()) + 1;
     for (Near const& near : among) {
         double const distance = apart(at, placed_[near.sphere].centre[axis], axis);
         double const square = near.square + distance * distance;
-        if (std::sqrt(square) < reach_[near.sphere] * (1 + rounding)) reaching.push_back({near.sphere, square});
+        if (std::sqrt(square) < reach_[near.sphere] * (1 + rounding))
+            reaching.push_back({near.sphere, square});
     }
 }
 
-/// The cells of the row that lie within the sphere whatever rounding does, which leaves one at each end to the exact test.
+/// The cells of the row that lie within the sphere whatever rounding does, which leaves one at each
+/// end to the exact test.
 void PlaceGrid::add_surely_full(Near const& near, std::int64_t count) {
-    double const reach = reach_[near.sphere], half = std::sqrt(std::max(0.0, reach * reach - near.square)) * (1 - rounding);
+    double const reach = reach_[near.sphere],
+                 half = std::sqrt(std::max(0.0, reach * reach - near.square)) * (1 - rounding);
     double const centre = placed_[near.sphere].centre[0], n = static_cast<double>(count);
-    if (!box_) return add_run((centre - half) / width_ + 0.5 * (n - 1), (centre + half) / width_ + 0.5 * (n - 1), count);
+    if (!box_)
+        return add_run((centre - half) / width_ + 0.5 * (n - 1),
+                       (centre + half) / width_ + 0.5 * (n - 1), count);
     double const edge = (*box_)[0], a_cell = edge / n;
     if (2 * half > edge * (1 + rounding)) return add_run(-2, n + 1, count);
     double const wrapped = centre - edge * std::floor(centre / edge);
     for (int image = -1; image <= 1; ++image)
-        add_run((wrapped + image * edge - half) / a_cell - 0.5, (wrapped + image * edge + half) / a_cell - 0.5, count);
+        add_run((wrapped + image * edge - half) / a_cell - 0.5,
+                (wrapped + image * edge + half) / a_cell - 0.5, count);
 }
 
 void PlaceGrid::add_run(double first, double last, std::int64_t count) {
@@ -145,13 +166,15 @@ void PlaceGrid::add_run(double first, double last, std::int64_t count) {
 bool PlaceGrid::is_clear(Vec3 const& cell) const {
     return std::none_of(row_.begin(), row_.end(), [&](Near const& near) {
         Vec3 const& centre = placed_[near.sphere].centre;
-        Vec3 const difference{{apart(cell[0], centre[0], 0), apart(cell[1], centre[1], 1), apart(cell[2], centre[2], 2)}};
+        Vec3 const difference{{apart(cell[0], centre[0], 0), apart(cell[1], centre[1], 1),
+                               apart(cell[2], centre[2], 2)}};
         return norm(difference) < reach_[near.sphere];
     });
 }
 
 double PlaceGrid::coordinate(std::int64_t index, int axis, Counts const& n) const {
-    double const count = static_cast<double>(n[static_cast<std::size_t>(axis)]), at = static_cast<double>(index);
+    double const count = static_cast<double>(n[static_cast<std::size_t>(axis)]),
+                 at = static_cast<double>(index);
     return box_ ? (at + 0.5) * (*box_)[axis] / count : (at - 0.5 * (count - 1)) * width_;
 }
 
@@ -162,14 +185,16 @@ double PlaceGrid::apart(double from, double to, int axis) const {
 
 /// A cubic grid next to the sphere that reaches farthest along x.
 std::vector<Vec3> PlaceGrid::beside(std::size_t wanted) const {
-    auto const n = static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(wanted)) - 1e-9));
+    auto const n =
+        static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(wanted)) - 1e-9));
     Counts const counts{n, n, n};
     double right = 0;
-    for (std::size_t i = 0; i < placed_.size(); ++i) right = std::max(right, placed_[i].centre[0] + reach_[i]);
+    for (std::size_t i = 0; i < placed_.size(); ++i)
+        right = std::max(right, placed_[i].centre[0] + reach_[i]);
     std::vector<Vec3> cells;
     for (std::int64_t k = 0; cells.size() < wanted; ++k)
-        cells.push_back(
-            {{right + static_cast<double>(k % n) * width_, coordinate(k / n % n, 1, counts), coordinate(k / (n * n), 2, counts)}});
+        cells.push_back({{right + static_cast<double>(k % n) * width_,
+                          coordinate(k / n % n, 1, counts), coordinate(k / (n * n), 2, counts)}});
     return cells;
 }
 

@@ -1,4 +1,5 @@
-// Free places for chains: the cells of a grid that are clear of spheres around what has a place already.
+// Free places for chains: the cells of a grid that are clear of spheres around what has a place
+// already.
 #pragma once
 
 #include <array>
@@ -17,14 +18,15 @@ struct Sphere {
     double gap = 0;  // two links
 };
 
-/// Cubic cells `width` wide, in a periodic box stretched to fill it. A cell is clear where its middle is half a width, the radius and half
-/// of the gap or more from every sphere.
+/// Cubic cells `width` wide, in a periodic box stretched to fill it. A cell is clear where its
+/// middle is half a width, the radius and half of the gap or more from every sphere.
 class PlaceGrid {
   public:
     PlaceGrid(std::vector<Sphere> const& placed, double width, std::optional<Vec3> const& box);
 
-    /// Middles of clear cells of the coarsest cubic grid that has `wanted` of them, x running fastest; in a box that has no room, all that
-    /// were found. Without a box the grid is centred on the origin; where it would become too large, it lies beside the spheres.
+    /// Middles of clear cells of the coarsest cubic grid that has `wanted` of them, x running
+    /// fastest; in a box that has no room, all that were found. Without a box the grid is centred
+    /// on the origin; where it would become too large, it lies beside the spheres.
     std::vector<Vec3> find(std::size_t wanted);
 
   private:
@@ -43,7 +45,8 @@ class PlaceGrid {
     std::int64_t smallest_of_use(std::size_t wanted) const;
     std::vector<Vec3> clear_cells(Counts const& n, std::size_t wanted);
     void add_layer(std::int64_t z, Counts const& n, std::size_t wanted, std::vector<Vec3>& cells);
-    void add_row(std::int64_t y, std::int64_t z, Counts const& n, std::size_t wanted, std::vector<Vec3>& cells);
+    void add_row(std::int64_t y, std::int64_t z, Counts const& n, std::size_t wanted,
+                 std::vector<Vec3>& cells);
     std::vector<Vec3> beside(std::size_t wanted) const;
 
     double coordinate(std::int64_t index, int axis, Counts const& n) const;

@@ -1,4 +1,5 @@
-// Random numbers of the generators: a stream for each body, so that body k is the same whatever the length of its chain.
+// Random numbers of the generators: a stream for each body, so that body k is the same whatever the
+// length of its chain.
 #pragma once
 
 #include <cmath>
@@ -10,7 +11,8 @@
 
 namespace catena::scene {
 
-/// Names independent streams of one seed: copies of a chain, chains of a scene. Stream 0 is the seed itself.
+/// Names independent streams of one seed: copies of a chain, chains of a scene. Stream 0 is the
+/// seed itself.
 inline std::uint64_t seed_of_stream(std::uint64_t seed, std::uint64_t stream) {
     std::uint64_t z = stream * 0x9E3779B97F4A7C15u;  // splitmix64's finaliser, 0 to 0
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
@@ -27,7 +29,9 @@ class Draws {
     double uniform() {
         if (count_ % 2 == 0) refill();
         std::uint32_t const* const w = block_.word + 2 * (count_++ % 2);
-        return (static_cast<double>(((static_cast<std::uint64_t>(w[0]) << 32) | w[1]) >> 11) + 0.5) * 0x1p-53;
+        return (static_cast<double>(((static_cast<std::uint64_t>(w[0]) << 32) | w[1]) >> 11) +
+                0.5) *
+               0x1p-53;
     }
     double between(double low, double high) { return low + (high - low) * uniform(); }
     Vec3 in_cube(double half) {
@@ -51,9 +55,11 @@ class Draws {
   private:
     void refill() {
         std::uint32_t constexpr tag = 64;  // apart from those of the stages of normal3
-        block_ = philox({{static_cast<std::uint32_t>(body_), static_cast<std::uint32_t>(body_ >> 32) | (tag << 16),
-                          static_cast<std::uint32_t>(count_ / 2), static_cast<std::uint32_t>(attempt_)}},
-                        static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32));
+        block_ =
+            philox({{static_cast<std::uint32_t>(body_),
+                     static_cast<std::uint32_t>(body_ >> 32) | (tag << 16),
+                     static_cast<std::uint32_t>(count_ / 2), static_cast<std::uint32_t>(attempt_)}},
+                   static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32));
     }
 
     std::uint64_t seed_, body_, attempt_, count_ = 0;

@@ -15,18 +15,21 @@ Sym3 rotated_inertia(Vec3 const& principal, Quat const& orientation) {
     Sym3 j;
     for (int a = 0; a < 3; ++a)
         for (int b = 0; b <= a; ++b)
-            j(a, b) = r(a, 0) * principal[0] * r(b, 0) + r(a, 1) * principal[1] * r(b, 1) + r(a, 2) * principal[2] * r(b, 2);
+            j(a, b) = r(a, 0) * principal[0] * r(b, 0) + r(a, 1) * principal[1] * r(b, 1) +
+                      r(a, 2) * principal[2] * r(b, 2);
     return j;
 }
 
 Sym3 random_inertia(Draws& draws, RandomChain const& chain, double mass) {
-    double const x = chain.inertia.draw(draws), y = chain.inertia.draw(draws), z = chain.inertia.draw(draws);
+    double const x = chain.inertia.draw(draws), y = chain.inertia.draw(draws),
+                 z = chain.inertia.draw(draws);
     return rotated_inertia({{mass * (y + z), mass * (z + x), mass * (x + y)}}, draws.rotation());
 }
 
 JointType type_of(RandomJoint joint, Draws& draws) {
-    static constexpr JointType all[] = {JointType::revolute,  JointType::universal, JointType::spherical,
-                                        JointType::prismatic, JointType::helical,   JointType::weld};
+    static constexpr JointType all[] = {JointType::revolute,  JointType::universal,
+                                        JointType::spherical, JointType::prismatic,
+                                        JointType::helical,   JointType::weld};
     switch (joint) {
         case RandomJoint::planar:
         case RandomJoint::revolute:
@@ -69,7 +72,9 @@ class RandomJoints {
         bodies_.joint.push_back(joint);
         Vec3 const axis = axis_of(draws, joint);
         bodies_.axis.push_back(axis);
-        if (axes_) bodies_.first_axis.push_back(joint == JointType::universal ? across(draws, axis) : Vec3::zero());
+        if (axes_)
+            bodies_.first_axis.push_back(joint == JointType::universal ? across(draws, axis)
+                                                                       : Vec3::zero());
         if (pitches_) bodies_.pitch.push_back(joint == JointType::helical ? pitch(draws) : 0);
         bodies_.q.push_back(position(draws, joint));
         int const count = joint == JointType::weld ? 0 : rates(joint);
@@ -79,7 +84,9 @@ class RandomJoints {
 
   private:
     static int rates(JointType joint) {
-        return joint == JointType::universal ? 2 : joint == JointType::spherical || joint == JointType::free ? 3 : 1;
+        return joint == JointType::universal                               ? 2
+               : joint == JointType::spherical || joint == JointType::free ? 3
+                                                                           : 1;
     }
     Vec3 axis_of(Draws& draws, JointType joint) const {
         if (rates(joint) == 3 || joint == JointType::weld) return Vec3::zero();
@@ -132,9 +139,10 @@ void random_frame(BodyArrays& bodies, Draws& draws, JointType joint, RandomChain
     double const distance = chain.length.draw(draws);
     bodies.translation.push_back(distance * draws.on_sphere());
     bool const first = bodies.rotation.empty();
-    bodies.rotation.push_back(chain.joint == RandomJoint::planar && !first
-                                  ? to_matrix(from_axis_angle(Vec3{{0, 0, 1}}, draws.between(-Draws::pi, Draws::pi)))
-                                  : to_matrix(draws.rotation()));
+    bodies.rotation.push_back(
+        chain.joint == RandomJoint::planar && !first
+            ? to_matrix(from_axis_angle(Vec3{{0, 0, 1}}, draws.between(-Draws::pi, Draws::pi)))
+            : to_matrix(draws.rotation()));
 }
 
 template <class... Array>
@@ -181,7 +189,8 @@ void add_bead(LinkedArrays& linked, LinkEnd const& end) {
     linked.position.push_back(end.position);
     linked.velocity.push_back(end.velocity);
     linked.orientation.push_back({1, 0, 0, 0});
-    for (auto* const zero : {&linked.omega, &linked.inboard, &linked.outboard}) zero->push_back(Vec3::zero());
+    for (auto* const zero : {&linked.omega, &linked.inboard, &linked.outboard})
+        zero->push_back(Vec3::zero());
     linked.carried.position.push_back(Vec3::zero());
     linked.carried.mass.push_back(linked.mass.back());
     linked.carried.residue.emplace_back("UNK");
@@ -191,8 +200,8 @@ void add_bead(LinkedArrays& linked, LinkEnd const& end) {
 
 BodyArrays random_bodies(RandomChain const& chain) {
     BodyArrays bodies;
-    reserve(chain.bodies, bodies.mass, bodies.com, bodies.inertia, bodies.joint, bodies.axis, bodies.rotation, bodies.translation, bodies.q,
-            bodies.qd, bodies.torque, bodies.wrench);
+    reserve(chain.bodies, bodies.mass, bodies.com, bodies.inertia, bodies.joint, bodies.axis,
+            bodies.rotation, bodies.translation, bodies.q, bodies.qd, bodies.torque, bodies.wrench);
     RandomJoints joints(bodies, chain.joint);
     for (std::int64_t k = 0; k < chain.bodies; ++k) {
         Draws draws(chain.seed, k);
@@ -228,8 +237,9 @@ BeadArrays random_beads(RandomChain const& chain) {
 
 LinkedArrays random_linked(RandomChain const& chain) {
     LinkedArrays linked;
-    reserve(chain.bodies, linked.mass, linked.inertia, linked.position, linked.velocity, linked.orientation, linked.omega, linked.inboard,
-            linked.outboard, linked.length, linked.carried.offset);
+    reserve(chain.bodies, linked.mass, linked.inertia, linked.position, linked.velocity,
+            linked.orientation, linked.omega, linked.inboard, linked.outboard, linked.length,
+            linked.carried.offset);
     linked.anchor = chain.anchor;
     linked.carried.offset.push_back(0);
     LinkEnd end{chain.anchor, Vec3::zero()};
@@ -237,7 +247,8 @@ LinkedArrays random_linked(RandomChain const& chain) {
         Draws draws(chain.seed, k);
         linked.mass.push_back(chain.mass.draw(draws));
         linked.length.push_back(end.step(draws, chain, k > 0 || chain.base == Base::fixed));
-        draws.uniform() < chain.rigid ? add_rigid(linked, draws, chain, end) : add_bead(linked, end);
+        draws.uniform() < chain.rigid ? add_rigid(linked, draws, chain, end)
+                                      : add_bead(linked, end);
         linked.carried.offset.push_back(static_cast<std::int64_t>(linked.carried.size()));
     }
     if (linked.carried.size() == 0) linked.carried = {};

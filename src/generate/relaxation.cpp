@@ -11,13 +11,15 @@ namespace catena::scene {
 
 namespace {
 
-double constexpr push_reach = 1.02;  // excluded distances: pushing a little further ends in finitely many steps
-double constexpr skin = 0.2;         // excluded distances: pairs are listed anew when beads have moved half as far
-double constexpr stiffness = 0.4;    // of an overlap that each bead of a pair gives way in one step
-double constexpr cap = 0.1;          // excluded distances: the furthest that a bead is pushed in one step
+double constexpr push_reach =
+    1.02;  // excluded distances: pushing a little further ends in finitely many steps
+double constexpr skin =
+    0.2;  // excluded distances: pairs are listed anew when beads have moved half as far
+double constexpr stiffness = 0.4;  // of an overlap that each bead of a pair gives way in one step
+double constexpr cap = 0.1;  // excluded distances: the furthest that a bead is pushed in one step
 
-/// Pairs of points that may come within the reach before beads have moved by half the skin; link neighbours and pairs of points that
-/// stand still are left out.
+/// Pairs of points that may come within the reach before beads have moved by half the skin; link
+/// neighbours and pairs of points that stand still are left out.
 class Pairs {
   public:
     void list(Crowd const& crowd) {
@@ -70,7 +72,8 @@ class Relaxation {
     /// Overlaps as they are, and what pushes them apart.
     Relaxed look() {
         if (moved() > 0.5 * skin * crowd_.excluded) relist();
-        double const reach = push_reach * crowd_.excluded, enough = crowd_.excluded * crowd_.excluded;
+        double const reach = push_reach * crowd_.excluded,
+                     enough = crowd_.excluded * crowd_.excluded;
         push_.assign(crowd_.at.size(), Vec3::zero());
         Relaxed found;
         double nearest = enough;
@@ -94,11 +97,14 @@ class Relaxation {
         double const furthest = cap * crowd_.excluded;
         for (std::size_t i = 0; i < crowd_.movable(); ++i) {
             double const way = norm(push_[i]);
-            if (way > 0) crowd_.at[i] = plus_scaled(crowd_.at[i], way > furthest ? furthest / way : 1, push_[i]);
+            if (way > 0)
+                crowd_.at[i] =
+                    plus_scaled(crowd_.at[i], way > furthest ? furthest / way : 1, push_[i]);
         }
         for (std::size_t c = 0; c < crowd_.chains(); ++c) {
             std::size_t const begin = crowd_.first[c], beads = crowd_.first[c + 1] - begin;
-            links_.project({std::span(crowd_.at).subspan(begin, beads), std::span(crowd_.length).subspan(begin, beads)});
+            links_.project({std::span(crowd_.at).subspan(begin, beads),
+                            std::span(crowd_.length).subspan(begin, beads)});
         }
     }
 

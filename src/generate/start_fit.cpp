@@ -21,7 +21,9 @@ double constexpr as_near = 0.01;
 /// Links: beads that are no neighbours overlap below.
 double constexpr overlap = 0.66;
 
-Vec3 inboard_of(BeadArrays const& beads, std::size_t k) { return k == 0 ? beads.anchor : beads.position[k - 1]; }
+Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {
+    return k == 0 ? beads.anchor : beads.position[k - 1];
+}
 std::size_t first_link(Base base) { return base == Base::fixed ? 0 : 1; }
 
 std::vector<double> distances_of(StartFit::Chain const& chain) {
@@ -32,11 +34,14 @@ std::vector<double> distances_of(StartFit::Chain const& chain) {
 }
 
 /// The two ends of link k.
-std::string ends_of(std::size_t k) { return k == 0 ? "the anchor and bead 1" : fmt::format("beads {} and {}", k, k + 1); }
+std::string ends_of(std::size_t k) {
+    return k == 0 ? "the anchor and bead 1" : fmt::format("beads {} and {}", k, k + 1);
+}
 /// The same where the link may be the tip's, which comes after the others.
 std::string ends_of(StartFit::Chain const& chain, std::size_t k) {
     if (k < chain.beads.size()) return ends_of(k);
-    return chain.tip->ring ? fmt::format("beads {} and 1", k) : fmt::format("bead {} and the tip's anchor", k);
+    return chain.tip->ring ? fmt::format("beads {} and 1", k)
+                           : fmt::format("bead {} and the tip's anchor", k);
 }
 
 double longest_uncut(StartFit::Chain const& chain, Vec3 const& edge) {
@@ -50,7 +55,8 @@ double longest_uncut(StartFit::Chain const& chain, Vec3 const& edge) {
     return longest;
 }
 
-/// A chain's beads and domains as units of LinkProjection; of a fixed base the anchor comes first and is held.
+/// A chain's beads and domains as units of LinkProjection; of a fixed base the anchor comes first
+/// and is held.
 class Units {
   public:
     explicit Units(StartFit::Chain const& chain) : chain_(chain) {
@@ -60,24 +66,28 @@ class Units {
         for (std::size_t k = 0; k < beads.size(); ++k) {
             std::size_t last = k;
             if (domain != chain.rigid.end() && domain->first == k) last = (domain++)->last;
-            add(beads.position[k], beads.position[last] - beads.position[k], beads.length[k], 1 / static_cast<double>(last - k + 1));
+            add(beads.position[k], beads.position[last] - beads.position[k], beads.length[k],
+                1 / static_cast<double>(last - k + 1));
             first_.push_back(k);
             k = last;
         }
-        if (chain.tip && !chain.tip->ring) add(*chain.tip->anchor, Vec3::zero(), chain.tip->length, 0);
+        if (chain.tip && !chain.tip->ring)
+            add(*chain.tip->anchor, Vec3::zero(), chain.tip->length, 0);
         given_ = at_;
     }
 
     /// Whether the links got their lengths. The beads move with their units.
     bool project() {
         double const closing = chain_.tip && chain_.tip->ring ? chain_.tip->length : 0;
-        bool const closed = LinkProjection().project({at_, length_, mobility_, inboard_, outboard_, closing});
+        bool const closed =
+            LinkProjection().project({at_, length_, mobility_, inboard_, outboard_, closing});
         std::size_t const anchors = chain_.base == Base::fixed ? 1 : 0;
         for (std::size_t u = 0; u < first_.size(); ++u) {
             Vec3 const shift = at_[u + anchors] - given_[u + anchors];
             std::size_t const end = u + 1 < first_.size() ? first_[u + 1] : chain_.beads.size();
             chain_.beads.position[first_[u]] = at_[u + anchors];
-            for (std::size_t k = first_[u] + 1; k < end; ++k) chain_.beads.position[k] = chain_.beads.position[k] + shift;
+            for (std::size_t k = first_[u] + 1; k < end; ++k)
+                chain_.beads.position[k] = chain_.beads.position[k] + shift;
         }
         return closed;
     }
@@ -101,17 +111,20 @@ void StartFit::make_whole(Chain const& chain, bool as_given) {
     Images const images(*scene_.box);
     double const usual = as_given ? longest_uncut(chain, images.edge()) : 0;
     std::vector<Vec3>& position = chain.beads.position;
-    Vec3 before = chain.base == Base::fixed ? chain.beads.anchor : position[0];  // the inboard end as the file has it
+    Vec3 before = chain.base == Base::fixed ? chain.beads.anchor
+                                            : position[0];  // the inboard end as the file has it
     Vec3 shift = Vec3::zero();
     std::int64_t cut = 0;
     for (std::size_t k = first_link(chain.base); k < chain.beads.size(); ++k) {
         Vec3 const link = position[k] - before, image = images.shortest(link);
         before = position[k];
         bool const is_cut = as_given ? norm(image) < norm(link) && norm(image) <= most_usual * usual
-                                     : std::abs(norm(image) - chain.beads.length[k]) < std::abs(norm(link) - chain.beads.length[k]);
+                                     : std::abs(norm(image) - chain.beads.length[k]) <
+                                           std::abs(norm(link) - chain.beads.length[k]);
         if (is_cut) {
             shift = shift - images.whole_edges(link);
-            if (cut_links_ + cut == 0) first_cut_ = fmt::format("{} of chain `{}`", ends_of(k), shown(chain.name));
+            if (cut_links_ + cut == 0)
+                first_cut_ = fmt::format("{} of chain `{}`", ends_of(k), shown(chain.name));
             ++cut;
         }
         for (int i = 0; i < 3; ++i)
@@ -137,14 +150,19 @@ void StartFit::project(Chain const& chain, Change const& worst) {
     std::vector<Vec3> const given = chain.beads.position;
     bool closed = Units(chain).project();
     for (std::size_t k = 1; k < given.size(); ++k)
-        closed = closed && dot(given[k] - given[k - 1], chain.beads.position[k] - chain.beads.position[k - 1]) > 0;
+        closed = closed && dot(given[k] - given[k - 1],
+                               chain.beads.position[k] - chain.beads.position[k - 1]) > 0;
     if (!closed)
-        fail(from_, fmt::format("no small change of the positions of chain `{}` gives its links their lengths", shown(chain.name)),
+        fail(from_,
+             fmt::format(
+                 "no small change of the positions of chain `{}` gives its links their lengths",
+                 shown(chain.name)),
              remedy_);
     record(chain, worst, given);
 }
 
-StartFit::Change StartFit::largest_change(Chain const& chain, std::vector<double> const& before) const {
+StartFit::Change StartFit::largest_change(Chain const& chain,
+                                          std::vector<double> const& before) const {
     Change worst;
     for (std::size_t k = first_link(chain.base); k < before.size(); ++k) {
         double const length = chain.beads.length[k], part = std::abs(before[k] - length) / length;
@@ -153,9 +171,11 @@ StartFit::Change StartFit::largest_change(Chain const& chain, std::vector<double
     return worst;
 }
 
-void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<double> const& before) const {
+void StartFit::refuse(Chain const& chain, Change const& worst,
+                      std::vector<double> const& before) const {
     auto const too_much = [&](double from, double to) {
-        return from > to ? from - to > most_shortened() * to : !scene_.relax && to - from > most_ * to;
+        return from > to ? from - to > most_shortened() * to
+                         : !scene_.relax && to - from > most_ * to;
     };
     Change named = worst;
     std::size_t links = 0;
@@ -166,42 +186,54 @@ void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<doubl
         if (links++ == 0 || part > named.part) named = {part, before[k], length, k};
     }
     if (links == 0) return;
-    std::string what = fmt::format("{} of chain `{}` are {:.4g} {} apart, their link is {:.4g} {} long", ends_of(named.link),
-                                   shown(chain.name), named.from, unit(), named.to, unit());
+    std::string what =
+        fmt::format("{} of chain `{}` are {:.4g} {} apart, their link is {:.4g} {} long",
+                    ends_of(named.link), shown(chain.name), named.from, unit(), named.to, unit());
     if (links > 1)
         what += fmt::format(", and {} would change by more than {:.0f} %",
-                            links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * most_shortened());
+                            links == 2 ? "another link" : fmt::format("{} other links", links - 1),
+                            100 * most_shortened());
     what += nearest_text(chain);
     std::string remedy = remedy_;
     bool const mended = named.from < named.to || named.from - named.to <= relaxed_ * named.to;
     if (mended && !scene_.relax) remedy += ", or `relax: true`";
-    if (named.from > named.to && !scene_.box) remedy += " (of a chain wrapped into a box: give `box`)";
+    if (named.from > named.to && !scene_.box)
+        remedy += " (of a chain wrapped into a box: give `box`)";
     fail_at(from_, "bead", static_cast<std::int64_t>(named.link) + 1, what, remedy);
 }
 
 /// Of an overlap beside what else is wrong.
 std::string StartFit::nearest_text(Chain const& chain) const {
-    double const within = overlap * *std::max_element(chain.beads.length.begin(), chain.beads.length.end());
+    double const within =
+        overlap * *std::max_element(chain.beads.length.begin(), chain.beads.length.end());
     std::vector<Vec3> const& position = chain.beads.position;
-    // Beads next but one bound the search, whose time goes with the pairs that it meets: a table in another unit has all within a link.
+    // Beads next but one bound the search, whose time goes with the pairs that it meets: a table in
+    // another unit has all within a link.
     double bound = within;
     std::size_t nearest = 0;
     for (std::size_t k = 2; k < position.size(); ++k)
-        if (double const apart = norm(position[k] - position[k - 2]); apart < bound) bound = apart, nearest = k;
+        if (double const apart = norm(position[k] - position[k - 2]); apart < bound)
+            bound = apart, nearest = k;
     if (nearest > 0 && bound <= rounding * within)
-        return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", nearest - 1, nearest + 1, bound, unit());
+        return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", nearest - 1, nearest + 1,
+                           bound, unit());
     auto const counts = [](std::size_t i, std::size_t j) { return j > i + 1; };
-    std::optional<NearPair> const near = nearest_pair(position, scene_.box, bound * (1 + rounding), counts);
+    std::optional<NearPair> const near =
+        nearest_pair(position, scene_.box, bound * (1 + rounding), counts);
     if (!near) return "";
-    // Where many are as near, as in a hairpin, those in their midst feel more than those at the ends.
+    // Where many are as near, as in a hairpin, those in their midst feel more than those at the
+    // ends.
     std::vector<NearPair> pairs;
-    for_each_near_pair(position, scene_.box, std::max(near->distance * (1 + as_near), rounding * within),
+    for_each_near_pair(position, scene_.box,
+                       std::max(near->distance * (1 + as_near), rounding * within),
                        [&](std::size_t i, std::size_t j, Vec3 const& apart) {
                            if (counts(i, j)) pairs.push_back({i, j, norm(apart)});
                        });
     NearPair const& worst = pairs[pairs.size() / 2];
-    std::string const others = pairs.size() < 2 ? "" : fmt::format(", and {} more pairs as near", pairs.size() - 1);
-    return fmt::format("; beads {} and {} overlap: {:.3g} {} apart{}", worst.first + 1, worst.second + 1, worst.distance, unit(), others);
+    std::string const others =
+        pairs.size() < 2 ? "" : fmt::format(", and {} more pairs as near", pairs.size() - 1);
+    return fmt::format("; beads {} and {} overlap: {:.3g} {} apart{}", worst.first + 1,
+                       worst.second + 1, worst.distance, unit(), others);
 }
 
 void StartFit::record(Chain const& chain, Change const& worst, std::vector<Vec3> const& given) {
@@ -210,15 +242,19 @@ void StartFit::record(Chain const& chain, Change const& worst, std::vector<Vec3>
     std::size_t furthest = 0;
     double moved = 0;
     for (std::size_t k = 0; k < given.size(); ++k)
-        if (double const way = norm(chain.beads.position[k] - given[k]); way > moved) moved = way, furthest = k;
+        if (double const way = norm(chain.beads.position[k] - given[k]); way > moved)
+            moved = way, furthest = k;
     if (worst.part > rounding) {
         std::string const text =
-            fmt::format("chain `{}`, {}: {:.6g} to {:.6g} {}", shown(chain.name), ends_of(chain, worst.link), worst.from, worst.to, unit());
-        if (double const change = std::abs(worst.from - worst.to); change > start.link) start.link = change, start.link_at = text;
+            fmt::format("chain `{}`, {}: {:.6g} to {:.6g} {}", shown(chain.name),
+                        ends_of(chain, worst.link), worst.from, worst.to, unit());
+        if (double const change = std::abs(worst.from - worst.to); change > start.link)
+            start.link = change, start.link_at = text;
         if (worst.part > largest_) largest_ = worst.part, link_ = text;
     }
     if (moved > rounding * *links) {
-        std::string const text = fmt::format("chain `{}`, bead {}", shown(chain.name), furthest + 1);
+        std::string const text =
+            fmt::format("chain `{}`, bead {}", shown(chain.name), furthest + 1);
         if (moved >= *links) moved_far_ = true;
         if (moved > start.position) start.position = moved, start.moved_at = text;
         if (moved > most_moved_) most_moved_ = moved, moved_ = text;
@@ -228,13 +264,17 @@ void StartFit::record(Chain const& chain, Change const& worst, std::vector<Vec3>
 void StartFit::note() const {
     if (cut_links_ > 0) {
         std::string const links = cut_links_ == 1 ? "1 link" : fmt::format("{} links", cut_links_);
-        std::string const chains = cut_chains_ == 1 ? "1 chain" : fmt::format("{} chains", cut_chains_);
-        scene_.note(fmt::format("{} of {} {} cut by the sides of the periodic box, the first between {}: made whole by nearest images",
-                                links, chains, cut_links_ == 1 ? "is" : "are", first_cut_));
+        std::string const chains =
+            cut_chains_ == 1 ? "1 chain" : fmt::format("{} chains", cut_chains_);
+        scene_.note(
+            fmt::format("{} of {} {} cut by the sides of the periodic box, the first between {}: "
+                        "made whole by nearest images",
+                        links, chains, cut_links_ == 1 ? "is" : "are", first_cut_));
     }
     if (largest_ >= noted_link_change || moved_far_)
         scene_.note(
-            fmt::format("the start's positions were moved so that links have their lengths: the largest change of a link is {:.2g} % "
+            fmt::format("the start's positions were moved so that links have their lengths: the "
+                        "largest change of a link is {:.2g} % "
                         "({}), the largest displacement of a bead {:.3g} {} ({})",
                         100 * largest_, link_, most_moved_, unit(), moved_));
 }

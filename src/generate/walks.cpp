@@ -19,26 +19,32 @@ BeadArrays drawn_sizes(Walk const& walk) {
     for (std::int64_t k = 0; k < walk.beads; ++k) {
         beads.mass.push_back(draw_size(walk.mass, walk.seed, k, SizeStream::mass));
         bool const linked = k > 0 || walk.base == Base::fixed;
-        beads.length.push_back(linked ? draw_size(walk.length, walk.seed, k, SizeStream::length) : 0);
+        beads.length.push_back(linked ? draw_size(walk.length, walk.seed, k, SizeStream::length)
+                                      : 0);
     }
     return beads;
 }
 
 /// A unit vector at the angle acos(`cosine`) to the unit vector `axis`, at `azimuth` about it.
 Vec3 tilted(Vec3 const& axis, double cosine, double azimuth) {
-    int const least = std::abs(axis[0]) < std::abs(axis[1]) ? (std::abs(axis[0]) < std::abs(axis[2]) ? 0 : 2)
-                                                            : (std::abs(axis[1]) < std::abs(axis[2]) ? 1 : 2);
+    int const least = std::abs(axis[0]) < std::abs(axis[1])
+                          ? (std::abs(axis[0]) < std::abs(axis[2]) ? 0 : 2)
+                          : (std::abs(axis[1]) < std::abs(axis[2]) ? 1 : 2);
     Vec3 other = Vec3::zero();
     other[least] = 1;
     Vec3 side = cross(axis, other);
     side = (1 / norm(side)) * side;
     double const sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
-    Vec3 const direction = cosine * axis + sine * (std::cos(azimuth) * side + std::sin(azimuth) * cross(axis, side));
+    Vec3 const direction =
+        cosine * axis + sine * (std::cos(azimuth) * side + std::sin(azimuth) * cross(axis, side));
     return (1 / norm(direction)) * direction;
 }
 
-/// 1 - cos of an angle with weight exp(kappa cos theta) on the sphere: the distribution's inverse at `u` in (0, 1).
-double versine(double kappa, double u) { return kappa < 1e-9 ? 2 * u : -std::log1p(u * std::expm1(-2 * kappa)) / kappa; }
+/// 1 - cos of an angle with weight exp(kappa cos theta) on the sphere: the distribution's inverse
+/// at `u` in (0, 1).
+double versine(double kappa, double u) {
+    return kappa < 1e-9 ? 2 * u : -std::log1p(u * std::expm1(-2 * kappa)) / kappa;
+}
 
 /// Puts the beads along `next(k, direction before)`.
 template <class Next>
@@ -59,7 +65,8 @@ double bending_of(double ratio) {
     double const c = std::exp(-ratio), rest = -std::expm1(-ratio);  // rest = 1 - c
     if (c < 1e-3) return 3 * c * (1 + 0.6 * c * c);
     double kappa = c * (3 - c * c) / (rest * (1 + c));
-    // Newton on 1 / kappa - 2 / (exp(2 kappa) - 1) = 1 - c, which keeps its digits where c is near 1.
+    // Newton on 1 / kappa - 2 / (exp(2 kappa) - 1) = 1 - c, which keeps its digits where c is
+    // near 1.
     for (int i = 0; i < 50; ++i) {
         double const e = std::expm1(2 * kappa), f = 1 / kappa - 2 / e - rest;
         double const slope = -1 / (kappa * kappa) + (std::isinf(e) ? 0 : 4 * (e + 1) / (e * e));
@@ -75,8 +82,9 @@ BeadArrays freely_jointed(Walk const& walk) {
     BeadArrays beads = drawn_sizes(walk);
     // Point k of the walk, the anchor included, is drawn from stream k.
     std::int64_t const first = walk.base == Base::fixed ? 1 : 0;
-    follow(beads, walk.base,
-           [&](std::size_t k, Vec3 const&) { return Draws(walk.seed, static_cast<std::int64_t>(k) + first).on_sphere(); });
+    follow(beads, walk.base, [&](std::size_t k, Vec3 const&) {
+        return Draws(walk.seed, static_cast<std::int64_t>(k) + first).on_sphere();
+    });
     return beads;
 }
 

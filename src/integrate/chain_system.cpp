@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "chain/gather.hpp"
+#include "cuda/device/gpu.hpp"
 #include "cuda/dynamics.hpp"
 #include "cuda/space/memory.hpp"
-#include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "mpi/thread_limit.hpp"
 
@@ -18,16 +18,20 @@ namespace {
 constexpr std::int64_t gpu_reserve = std::int64_t{128} << 20;
 /// Of a thread of their sweeps' kernels, bytes (ptxas: 15,512 at most on sm_90).
 constexpr std::int64_t stack_of_articulated_handles = 16 << 10;
-constexpr char const* without_gpu = "use auto, another backend, or a build with CUDA on a machine with a GPU";
-constexpr char const* without_memory = "use more GPUs (ranks on several hosts), another backend, or fewer bodies";
+constexpr char const* without_gpu =
+    "use auto, another backend, or a build with CUDA on a machine with a GPU";
+constexpr char const* without_memory =
+    "use more GPUs (ranks on several hosts), another backend, or fewer bodies";
 
 /// Ends all ranks together, with the words of the first that has a reason. Collective.
 template <class Error = InputError>
-void refuse_cuda(Communicator const& communicator, std::string const& backend, std::string const& reason, char const* remedy) {
+void refuse_cuda(Communicator const& communicator, std::string const& backend,
+                 std::string const& reason, char const* remedy) {
     std::string own = reason, all(static_cast<std::size_t>(communicator.size()) * 200, ' ');
     own.resize(200, ' ');
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), 200));
+    communicator.all_gather(
+        std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+        std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), 200));
     auto const found = all.find_first_not_of(' ');
     if (found == std::string::npos) return;
     std::string text = all.substr(found, 200 - found % 200);
@@ -36,15 +40,21 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
     throw Error(text, "solver.backend: " + backend, remedy);
 }
 
-void update(JointDynamics& group, bool to_solve_once) { to_solve_once ? group.update_to_solve_once() : group.update_configuration(); }
+void update(JointDynamics& group, bool to_solve_once) {
+    to_solve_once ? group.update_to_solve_once() : group.update_configuration();
+}
 
 /// Whose chains have links or closed tips the scene's validation has refused.
 void refuse_articulated(ChainGroup const& group, bool implicit) {
-    if (!group.beads && !group.linked && !group.has_tips() && group.axes == Axes::joint && !implicit) return;
-    throw InputError(implicit                    ? "articulated handles and implicit joints"
-                     : group.axes == Axes::joint ? "articulated handles and chains with links or closed tips"
-                                                 : "articulated handles and absolute coordinates",
-                     "solver.handles: articulated", "use integrator rk4, dormand-prince or velocity-verlet, or handles projected or full");
+    if (!group.beads && !group.linked && !group.has_tips() && group.axes == Axes::joint &&
+        !implicit)
+        return;
+    throw InputError(
+        implicit                    ? "articulated handles and implicit joints"
+        : group.axes == Axes::joint ? "articulated handles and chains with links or closed tips"
+                                    : "articulated handles and absolute coordinates",
+        "solver.handles: articulated",
+        "use integrator rk4, dormand-prince or velocity-verlet, or handles projected or full");
 }
 
 }  // namespace
@@ -52,12 +62,14 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
     if (std::string const why = scene.dynamics.why_host_alone(); uses_gpu(asked) && !why.empty())
-        throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
+        throw InputError(why, "solver.backend: " + std::string(name_of(asked)),
+                         "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (tests/bench/README.md).
     std::int64_t constexpr worth_threads = 4096;
-    return openmp_is_built() && choose_threads(scene, communicator) > 1 && scene.bodies() / communicator.size() >= worth_threads
+    return openmp_is_built() && choose_threads(scene, communicator) > 1 &&
+                   scene.bodies() / communicator.size() >= worth_threads
                ? Backend::openmp
                : Backend::segments;
 }
@@ -72,25 +84,30 @@ SimdLevel choose_simd_level(Scene const& scene, Communicator const& communicator
     std::vector<SimdLevel> const here = simd_levels();
     SimdLevel const asked = scene.solver.simd.value_or(here.back());
     bool const missing = std::find(here.begin(), here.end(), asked) == here.end();
-    int const weakest = -static_cast<int>(communicator.max(-static_cast<double>(missing ? SimdLevel::off : asked)));
+    int const weakest =
+        -static_cast<int>(communicator.max(-static_cast<double>(missing ? SimdLevel::off : asked)));
     if (communicator.max(missing ? 1 : 0) > 0)
         throw InputError(std::string(name_of(asked)) + " cannot run here", "solver.simd",
                          "use auto, or one of those that catena --version names");
     return static_cast<SimdLevel>(weakest);
 }
 
-ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator, double implicit_step, dca::Shares const& shares)
+ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator,
+                         double implicit_step, dca::Shares const& shares)
     : scene_(scene),
       communicator_(communicator),
       axes_(axes),
       backend_(choose_backend(scene, communicator)),
       implicit_step_(implicit_step) {
-    if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator), without_gpu);
+    if (uses_gpu(backend_))
+        refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator),
+                    without_gpu);
     bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
     SimdLevel const simd = choose_simd_level(scene, communicator);
-    executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
-    groups_ =
-        make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, {implicit_step > 0, shares, *executor_});
+    executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd)
+                        : serial_executor(simd);
+    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator,
+                          {implicit_step > 0, shares, *executor_});
     if (scene.solver.handles == Handles::articulated)
         for (auto const& group : groups_) refuse_articulated(*group, implicit_step > 0);
     if (uses_gpu(backend_)) require_gpu_memory();
@@ -114,10 +131,13 @@ bool ChainSystem::is_current() noexcept {
 /// Before anything is there.
 void ChainSystem::require_gpu_memory() const {
     std::int64_t needed = gpu_reserve;
-    if (scene_.solver.handles == Handles::articulated) needed += cuda::stacks(stack_of_articulated_handles);
-    for (auto const& group : groups_) needed += cuda::memory_needed(*group, scene_, backend_, communicator_).sum();
-    refuse_cuda<cuda::TooLittleMemory>(communicator_, name_of(backend_), cuda::too_little_memory(needed, cuda::free_memory(communicator_)),
-                                       without_memory);
+    if (scene_.solver.handles == Handles::articulated)
+        needed += cuda::stacks(stack_of_articulated_handles);
+    for (auto const& group : groups_)
+        needed += cuda::memory_needed(*group, scene_, backend_, communicator_).sum();
+    refuse_cuda<cuda::TooLittleMemory>(
+        communicator_, name_of(backend_),
+        cuda::too_little_memory(needed, cuda::free_memory(communicator_)), without_memory);
 }
 
 void ChainSystem::make_current() {
@@ -129,16 +149,21 @@ std::unique_ptr<AbsoluteDynamics> ChainSystem::make_absolute(ChainGroup const& g
         auto const make = group.beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics;
         return make(group, scene_, *executor_, communicator_);
     }
-    if (group.beads) return make_bead_dynamics(group, scene_, *executor_, communicator_, make_solver(group));
-    return make_rigid_dynamics(group, scene_, *executor_, communicator_, make_solver(group), implicit_step_);
+    if (group.beads)
+        return make_bead_dynamics(group, scene_, *executor_, communicator_, make_solver(group));
+    return make_rigid_dynamics(group, scene_, *executor_, communicator_, make_solver(group),
+                               implicit_step_);
 }
 std::unique_ptr<JointDynamics> ChainSystem::make_joint(ChainGroup const& group) const {
-    if (backend_ == Backend::cuda) return cuda::make_joint_dynamics(group, scene_, *executor_, communicator_);
-    return make_joint_dynamics(group, scene_, *executor_, communicator_, make_solver(group), implicit_step_);
+    if (backend_ == Backend::cuda)
+        return cuda::make_joint_dynamics(group, scene_, *executor_, communicator_);
+    return make_joint_dynamics(group, scene_, *executor_, communicator_, make_solver(group),
+                               implicit_step_);
 }
 std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) const {
     if (backend_ == Backend::cuda_levels)
-        return dca::make_level_solver(group, communicator_, scene_.solver.levels_on_gpu(), cuda::make_levels, dca::host_levels(*executor_));
+        return dca::make_level_solver(group, communicator_, scene_.solver.levels_on_gpu(),
+                                      cuda::make_levels, dca::host_levels(*executor_));
     return make_tree_solver(group, *executor_, communicator_);
 }
 
@@ -146,7 +171,8 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     double const start = seconds_now();
     auto const note = [&](char const* name, char const* lane, double begin, double end) {
         // Of several groups of chains the last may be done before the first.
-        if (timeline) timeline->phases.push_back({name, lane, begin - start, std::max(begin, end) - start});
+        if (timeline)
+            timeline->phases.push_back({name, lane, begin - start, std::max(begin, end) - start});
     };
     if (openmm_) begin_openmm(timeline != nullptr);
     double const begun = seconds_now();
@@ -171,16 +197,20 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
         if (clock.openmm.end == 0) return;  // this rank has no beads
         note("matrix sweep", "catena", clock.chains.begin, clock.chains.end);
         note("forces", "openmm", clock.openmm.begin, clock.openmm.end);
-        if (communicator_.size() > 1) note("exchange of positions", "messages", clock.exchange.begin, clock.exchange.end);
+        if (communicator_.size() > 1)
+            note("exchange of positions", "messages", clock.exchange.begin, clock.exchange.end);
         return;
     }
     note("matrix sweep", "catena", begun, assembled);
     note_overlap(start, begun, assembled, simple, finished);
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
-    // On path inline the forces are computed before begin_openmm() returns: what comes before them is the handing over.
-    note("hand over positions", "catena", start, ran.end <= begun ? std::clamp(ran.begin, start, begun) : begun);
-    if (communicator_.size() > 1) note("exchange of positions", "messages", brought.begin, brought.end);
+    // On path inline the forces are computed before begin_openmm() returns: what comes before them
+    // is the handing over.
+    note("hand over positions", "catena", start,
+         ran.end <= begun ? std::clamp(ran.begin, start, begun) : begun);
+    if (communicator_.size() > 1)
+        note("exchange of positions", "messages", brought.begin, brought.end);
     note("wait for forces", "catena", simple, finished);
     note("forces", "openmm", ran.begin, ran.end);
 }
@@ -233,15 +263,19 @@ void ChainSystem::close_tips(int corrections) {
     for (auto const& group : joint_) group->close_tips(corrections);
 }
 
-/// Positions are handed over from `start` to `begun`, matrices assembled until `assembled`, forces waited for from `waits` to `finished`.
-void ChainSystem::note_overlap(double start, double begun, double assembled, double waits, double finished) {
+/// Positions are handed over from `start` to `begun`, matrices assembled until `assembled`, forces
+/// waited for from `waits` to `finished`.
+void ChainSystem::note_overlap(double start, double begun, double assembled, double waits,
+                               double finished) {
     matrix_seconds_ += assembled - begun;
     seconds_["matrix sweep"] += assembled - begun;
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
     double const exchange = communicator_.size() > 1 ? brought.end - brought.begin : 0.0;
-    bool const beside = openmm_->leaves_a_core() || uses_gpu(backend_);  // what shares the forces' core makes them wait
-    if (beside) hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
+    bool const beside = openmm_->leaves_a_core() ||
+                        uses_gpu(backend_);  // what shares the forces' core makes them wait
+    if (beside)
+        hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
     seconds_["forces"] += ran.end - ran.begin;
     seconds_["waiting for forces"] += (finished - waits) + (begun - start) - exchange;
     if (communicator_.size() > 1) seconds_["exchange"] += exchange;
@@ -249,7 +283,8 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
 
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
-    bool const at_once = !project && solves_once() && !scene_.dynamics.fixman;  // whose forces need the matrices
+    bool const at_once =
+        !project && solves_once() && !scene_.dynamics.fixman;  // whose forces need the matrices
     for (auto const& group : joint_) update(*group, at_once);
     if (at_once)
         for (auto const& group : absolute_) group->set_simple_forces();
@@ -278,8 +313,8 @@ double ChainSystem::residual() {
     return worst;
 }
 
-// Each merge adds rounding of a few eps of its terms, and terms pass through at most `depth` merges. c = 32 covers the
-// constants of 6x6 handles (factorisation, two triangular solves, leaf).
+// Each merge adds rounding of a few eps of its terms, and terms pass through at most `depth`
+// merges. c = 32 covers the constants of 6x6 handles (factorisation, two triangular solves, leaf).
 double ChainSystem::residual_bound() const {
     std::int64_t depth = 1;
     for (SolverReport const& r : solver_reports()) depth = std::max(depth, r.depth);

@@ -4,8 +4,8 @@
 
 #include "cuda/device/gpu.hpp"
 #include "error.hpp"
-#include "integrate/scene_beads.hpp"
 #include "integrate/chain_system.hpp"
+#include "integrate/scene_beads.hpp"
 
 namespace catena {
 
@@ -19,18 +19,24 @@ void ChainSystem::order_beads_by_rank() {
         first_of_chain.push_back(beads);
         beads += static_cast<std::int64_t>(chain.bead_count());
     }
-    auto const bead_of = [&](int chain, std::int64_t body) {  // first of a body's; body = size: one past the chain's last
-        ChainSpec const& spec = scene_.chains[chain];
-        if (spec.is_beads()) return first_of_chain[chain] + body;
-        return first_of_chain[chain] + (spec.bead_count() == 0 ? 0 : spec.carried().offset[static_cast<std::size_t>(body)]);
-    };
+    auto const bead_of =
+        [&](int chain,
+            std::int64_t body) {  // first of a body's; body = size: one past the chain's last
+            ChainSpec const& spec = scene_.chains[chain];
+            if (spec.is_beads()) return first_of_chain[chain] + body;
+            return first_of_chain[chain] +
+                   (spec.bead_count() == 0 ? 0
+                                           : spec.carried().offset[static_cast<std::size_t>(body)]);
+        };
     std::vector<std::int64_t> order;
     bead_system_.first_of_rank = {0};
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         for (ChainGroup const* group : bead_groups_)
             for (dca::Piece const& piece : dca::pieces_of(group->partition, rank)) {
                 int const chain = group->chain[piece.chain];
-                for (std::int64_t i = bead_of(chain, piece.body); i < bead_of(chain, piece.body + piece.count); ++i) order.push_back(i);
+                for (std::int64_t i = bead_of(chain, piece.body);
+                     i < bead_of(chain, piece.body + piece.count); ++i)
+                    order.push_back(i);
             }
         bead_system_.first_of_rank.push_back(static_cast<std::int64_t>(order.size()));
     }
@@ -41,23 +47,28 @@ void ChainSystem::order_beads_by_rank() {
 void ChainSystem::find_bead_groups() {
     for (bool const absolute : {true, false})
         for (auto const& group : groups_)
-            if (is_absolute(*group) == absolute && (group->beads || group->carried_in_scene)) bead_groups_.push_back(group.get());
+            if (is_absolute(*group) == absolute && (group->beads || group->carried_in_scene))
+                bead_groups_.push_back(group.get());
 }
 
-/// Before anything of the chains is on a GPU: where OpenMM computes there, they live in its context.
+/// Before anything of the chains is on a GPU: where OpenMM computes there, they live in its
+/// context.
 void ChainSystem::make_openmm() {
     find_bead_groups();
     if (bead_groups_.empty())
-        throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
+        throw InputError("OpenMM computes forces on beads and the scene has none",
+                         scene_.file + ": forces.openmm",
                          "add a bead chain, beads on bodies, or remove forces.openmm");
     describe_beads();
     order_beads_by_rank();
-    std::int64_t const own = bead_system_.first_of_rank[communicator_.rank() + 1] - bead_system_.first_of_rank[communicator_.rank()];
+    std::int64_t const own = bead_system_.first_of_rank[communicator_.rank() + 1] -
+                             bead_system_.first_of_rank[communicator_.rank()];
     bead_position_ = Field<3>(own);
     openmm_force_ = Field<3>(own);
     ChainsOnDevice chains{no_gpu_asked_for, -1};
     if (backend_ == Backend::cuda) {
-        bool const beads = std::all_of(bead_groups_.begin(), bead_groups_.end(), [](ChainGroup const* group) { return group->beads; });
+        bool const beads = std::all_of(bead_groups_.begin(), bead_groups_.end(),
+                                       [](ChainGroup const* group) { return group->beads; });
         chains = {beads ? "" : "some beads are carried by rigid bodies", cuda::chosen_device()};
     }
     openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_, chains);
@@ -68,9 +79,11 @@ void ChainSystem::find_bead_hosts() {
     std::vector<BeadHost*> hosts;
     for (auto const& group : absolute_) hosts.push_back(group.get());
     for (auto const& group : joint_) hosts.push_back(group.get());
-    std::copy_if(hosts.begin(), hosts.end(), std::back_inserter(bead_hosts_), [&](BeadHost const* host) {
-        return std::find(bead_groups_.begin(), bead_groups_.end(), &host->group()) != bead_groups_.end();
-    });
+    std::copy_if(hosts.begin(), hosts.end(), std::back_inserter(bead_hosts_),
+                 [&](BeadHost const* host) {
+                     return std::find(bead_groups_.begin(), bead_groups_.end(), &host->group()) !=
+                            bead_groups_.end();
+                 });
     if (!openmm_->device_path()) return;
     for (BeadHost* host : bead_hosts_) device_beads_.push_back(host->on_device());
 }
@@ -79,7 +92,8 @@ ConstView<3> ChainSystem::own_bead_positions() {
     std::int64_t next = 0;
     for (BeadHost* host : bead_hosts_) {
         ConstView<3> const positions = host->bead_positions();
-        for (std::int64_t k = 0; k < positions.size; ++k) bead_position_.set(next++, positions.load(k));
+        for (std::int64_t k = 0; k < positions.size; ++k)
+            bead_position_.set(next++, positions.load(k));
     }
     return std::as_const(bead_position_).view();
 }
@@ -108,19 +122,25 @@ void ChainSystem::go_on_openmm() {
 
 DevicePath::Clock ChainSystem::read_device_clock() {
     clock_is_due_ = false;
-    double const weight = static_cast<double>(std::exchange(evaluations_since_clock_, 0));  // it stands for those before it
+    double const weight = static_cast<double>(
+        std::exchange(evaluations_since_clock_, 0));  // it stands for those before it
     DevicePath::Clock const clock = openmm_->device_path()->clock();
-    auto const length = [weight](double begin, double end) { return weight * std::max(0.0, end - begin); };
+    auto const length = [weight](double begin, double end) {
+        return weight * std::max(0.0, end - begin);
+    };
     double const matrices = length(clock.chains.begin, clock.chains.end);
     bool const exchanges = communicator_.size() > 1;
-    // Ghosts come, or the host asks how far beads are, then OpenMM computes: the sweep runs beside both.
+    // Ghosts come, or the host asks how far beads are, then OpenMM computes: the sweep runs beside
+    // both.
     double const begin = clock.exchange.end > 0 ? clock.exchange.begin : clock.openmm.begin;
     matrix_seconds_ += matrices;
-    hidden_seconds_ += length(std::max(clock.chains.begin, begin), std::min(clock.chains.end, clock.openmm.end));
+    hidden_seconds_ +=
+        length(std::max(clock.chains.begin, begin), std::min(clock.chains.end, clock.openmm.end));
     if (exchanges) seconds_["exchange"] += length(clock.exchange.begin, clock.exchange.end);
     seconds_["matrix sweep"] += matrices;
     seconds_["forces"] += length(clock.openmm.begin, clock.openmm.end);
-    seconds_["waiting for forces"] += length(std::max(clock.chains.end, exchanges ? clock.exchange.end : 0.0), clock.openmm.end);
+    seconds_["waiting for forces"] +=
+        length(std::max(clock.chains.end, exchanges ? clock.exchange.end : 0.0), clock.openmm.end);
     return clock;
 }
 
@@ -134,7 +154,8 @@ void ChainSystem::finish_openmm() {
     std::int64_t next = 0;
     for (BeadHost* host : bead_hosts_) {
         View<3> const forces = host->bead_forces();
-        for (std::int64_t k = 0; k < forces.size; ++k) forces.store(k, forces.load(k) + openmm_force_[next++]);
+        for (std::int64_t k = 0; k < forces.size; ++k)
+            forces.store(k, forces.load(k) + openmm_force_[next++]);
     }
 }
 

@@ -20,7 +20,8 @@ std::vector<double> flat(std::vector<Vec3> const& values) {
 }
 std::vector<Vec3> triples(std::vector<double> const& values) {
     std::vector<Vec3> out(values.size() / 3);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
     return out;
 }
 
@@ -28,35 +29,45 @@ std::vector<Vec3> triples(std::vector<double> const& values) {
 std::vector<double> at_starts(ChainGroup const& group, Field<3> const& of_piece) {
     std::vector<Vec3> of_body(static_cast<std::size_t>(group.size), Vec3::zero());
     for (std::size_t p = 0; p < group.pieces.size(); ++p)
-        if (group.pieces[p].starts) of_body[static_cast<std::size_t>(group.pieces[p].local)] = of_piece[static_cast<std::int64_t>(p)];
+        if (group.pieces[p].starts)
+            of_body[static_cast<std::size_t>(group.pieces[p].local)] =
+                of_piece[static_cast<std::int64_t>(p)];
     return flat(of_body);
 }
 Field<3> of_starts(ChainGroup const& group, std::vector<Vec3> const& of_body) {
     Field<3> of_piece(std::ssize(group.pieces));
     for (std::size_t p = 0; p < group.pieces.size(); ++p)
-        of_piece.set(static_cast<std::int64_t>(p), of_body[static_cast<std::size_t>(group.pieces[p].local)]);
+        of_piece.set(static_cast<std::int64_t>(p),
+                     of_body[static_cast<std::size_t>(group.pieces[p].local)]);
     return of_piece;
 }
 
 }  // namespace
 
 std::size_t ChainSystem::index_of(ChainGroup const& group) const {
-    auto const found = std::find_if(groups_.begin(), groups_.end(), [&](auto const& g) { return g.get() == &group; });
+    auto const found = std::find_if(groups_.begin(), groups_.end(),
+                                    [&](auto const& g) { return g.get() == &group; });
     return static_cast<std::size_t>(found - groups_.begin());
 }
 
-/// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega, joint force, joint position and rate.
+/// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega,
+/// joint force, joint position and rate.
 ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_states) {
-    bool const turning = std::any_of(groups_.begin(), groups_.end(), [](auto const& group) { return !group->beads; });
-    OwnBodies own{turning, joint_forces, joint_states, std::vector<std::vector<double>>(groups_.size())};
+    bool const turning = std::any_of(groups_.begin(), groups_.end(),
+                                     [](auto const& group) { return !group->beads; });
+    OwnBodies own{turning, joint_forces, joint_states,
+                  std::vector<std::vector<double>>(groups_.size())};
     std::vector<BodyResults> const found = joint_forces ? results() : std::vector<BodyResults>();
     std::size_t result = 0;
-    auto const add = [&](ChainGroup const& group, auto const& row, JointState const* joints = nullptr) {
+    auto const add = [&](ChainGroup const& group, auto const& row,
+                         JointState const* joints = nullptr) {
         std::vector<double>& rows = own.rows[index_of(group)];
         rows.resize(static_cast<std::size_t>(group.size * own.width()));
         executor_->for_each(group.size, [&](std::int64_t k) {
             double* to = rows.data() + k * own.width();
-            auto const put = [&to](double const* numbers, int count) { to = std::copy_n(numbers, count, to); };
+            auto const put = [&to](double const* numbers, int count) {
+                to = std::copy_n(numbers, count, to);
+            };
             row(k, put);
             if (joint_forces) put(found[result].joint_force[static_cast<std::size_t>(k)].data, 6);
             if (!joint_states || joints == nullptr) return;
@@ -69,7 +80,8 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_sta
         bool const beads = group->group().beads;
         std::vector<StateArray> const observed = group->observed_state();
         auto const of = [&](char const* name) { return array_named(observed, name).values.data(); };
-        double const *x = of("position"), *v = of("velocity"), *q = beads ? nullptr : of("orientation"), *w = beads ? nullptr : of("omega");
+        double const *x = of("position"), *v = of("velocity"),
+                     *q = beads ? nullptr : of("orientation"), *w = beads ? nullptr : of("omega");
         add(group->group(), [&](std::int64_t k, auto const& put) {
             static constexpr double at_rest[] = {1, 0, 0, 0, 0, 0, 0};
             put(x + 3 * k, 3);
@@ -102,8 +114,8 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_sta
 
 namespace {
 
-ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first, std::span<double const> values,
-                              Executor const& executor) {
+ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first,
+                              std::span<double const> values, Executor const& executor) {
     ChainSystem::Bodies bodies;
     bodies.first = first;
     ChainSystem::Snapshot& motion = bodies.motion;
@@ -128,7 +140,8 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
             motion.orientation[k] = Quat{next(), next(), next(), next()};
             motion.omega[k] = three();
         }
-        if (own.joint_forces) bodies.joint_force[k] = {{next(), next(), next(), next(), next(), next()}};
+        if (own.joint_forces)
+            bodies.joint_force[k] = {{next(), next(), next(), next(), next(), next()}};
         if (!own.joint_states) return;
         bodies.joint_position[k] = {next(), next(), next(), next()};
         bodies.joint_rate[k] = three();
@@ -138,26 +151,33 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
 
 }  // namespace
 
-void ChainSystem::pass_bodies(OwnBodies const& own, std::function<void(Bodies const&)> const& take) const {
-    SceneWindows(communicator_, groups_).pass(own.width(), own.rows, [&](std::int64_t first, std::span<double const> values) {
-        take(bodies_of(own, first, values, *executor_));
-    });
+void ChainSystem::pass_bodies(OwnBodies const& own,
+                              std::function<void(Bodies const&)> const& take) const {
+    SceneWindows(communicator_, groups_)
+        .pass(own.width(), own.rows, [&](std::int64_t first, std::span<double const> values) {
+            take(bodies_of(own, first, values, *executor_));
+        });
 }
 
-void ChainSystem::pass_own_bodies(OwnBodies const& own, std::function<void(std::vector<Bodies> const&)> const& take) const {
-    SceneWindows(communicator_, groups_).pass_own(own.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
-        std::vector<Bodies> bodies(round.size());
-        executor_->for_each_of_many_or_few(std::ssize(round), [&](std::int64_t i, Executor const& within) {
-            auto const& [first, values] = round[static_cast<std::size_t>(i)];
-            bodies[static_cast<std::size_t>(i)] = bodies_of(own, first, values, within);
+void ChainSystem::pass_own_bodies(
+    OwnBodies const& own, std::function<void(std::vector<Bodies> const&)> const& take) const {
+    SceneWindows(communicator_, groups_)
+        .pass_own(own.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
+            std::vector<Bodies> bodies(round.size());
+            executor_->for_each_of_many_or_few(
+                std::ssize(round), [&](std::int64_t i, Executor const& within) {
+                    auto const& [first, values] = round[static_cast<std::size_t>(i)];
+                    bodies[static_cast<std::size_t>(i)] = bodies_of(own, first, values, within);
+                });
+            take(bodies);
         });
-        take(bodies);
-    });
 }
 
 ChainSystem::Snapshot ChainSystem::snapshot() {
     Snapshot all;
-    auto const append = [](auto& to, auto const& from) { to.insert(to.end(), from.begin(), from.end()); };
+    auto const append = [](auto& to, auto const& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
     pass_bodies(false, [&](Bodies const& bodies) {
         append(all.position, bodies.motion.position);
         append(all.velocity, bodies.motion.velocity);
@@ -170,7 +190,8 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
 /// Nothing but OpenMM's forces acts on the beads, and no Fixman potential.
 bool ChainSystem::is_free_of_potentials() const {
     return norm(scene_.forces.gravity) == 0 && !scene_.dynamics.fixman &&
-           std::all_of(groups_.begin(), groups_.end(), [](auto const& group) { return group->beads; });
+           std::all_of(groups_.begin(), groups_.end(),
+                       [](auto const& group) { return group->beads; });
 }
 
 std::vector<EnergyTerm> ChainSystem::potential_energy() {
@@ -186,12 +207,15 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
     };
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
     if (scene_.dynamics.fixman) terms.push_back({"fixman", 0.0});
-    if (on_device() || !is_free_of_potentials()) {  // there it settles the forces, whose place OpenMM's energies take
+    if (on_device() || !is_free_of_potentials()) {  // there it settles the forces, whose place
+                                                    // OpenMM's energies take
         for (auto const& group : absolute_) add(group->group(), group->potential());
         for (auto const& group : joint_) add(group->group(), group->potential());
-        SceneWindows(communicator_, groups_).pass(width, own, [&](std::int64_t, std::span<double const> values) {
-            for (std::size_t i = 0; i < values.size(); ++i) terms[i % static_cast<std::size_t>(width)].value += values[i];
-        });
+        SceneWindows(communicator_, groups_)
+            .pass(width, own, [&](std::int64_t, std::span<double const> values) {
+                for (std::size_t i = 0; i < values.size(); ++i)
+                    terms[i % static_cast<std::size_t>(width)].value += values[i];
+            });
     }
     if (openmm_)
         for (EnergyTerm const& term : openmm_->energies()) terms.push_back(term);
@@ -205,15 +229,18 @@ std::vector<BodyResults> ChainSystem::results() const {
     return all;
 }
 
-std::vector<Vector<double, 6>> ChainSystem::joint_forces(std::vector<BodyResults> const& results) const {
-    std::vector<double> all(communicator_.rank() == 0 ? static_cast<std::size_t>(6 * scene_.bodies()) : 0);
+std::vector<Vector<double, 6>> ChainSystem::joint_forces(
+    std::vector<BodyResults> const& results) const {
+    std::vector<double> all(
+        communicator_.rank() == 0 ? static_cast<std::size_t>(6 * scene_.bodies()) : 0);
     auto const add = [&](ChainGroup const& group, BodyResults const& r) {
         std::vector<double> own;
         for (Vector<double, 6> const& w : r.joint_force) own.insert(own.end(), w.data, w.data + 6);
         gather_to_scene(communicator_, group, 6, own, all);
     };
     for (std::size_t i = 0; i < absolute_.size(); ++i) add(absolute_[i]->group(), results[i]);
-    for (std::size_t i = 0; i < joint_.size(); ++i) add(joint_[i]->group(), results[absolute_.size() + i]);
+    for (std::size_t i = 0; i < joint_.size(); ++i)
+        add(joint_[i]->group(), results[absolute_.size() + i]);
     std::vector<Vector<double, 6>> forces(all.size() / 6);
     for (std::size_t i = 0; i < all.size(); ++i) forces[i / 6][static_cast<int>(i % 6)] = all[i];
     return forces;
@@ -225,7 +252,8 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     std::vector<std::int64_t> bytes;
     for (int rank = 0; rank < communicator_.size(); ++rank)
         bytes.push_back((first[rank + 1] - first[rank]) * static_cast<std::int64_t>(sizeof(Vec3)));
-    std::vector<Vec3> own, all(communicator_.rank() == 0 ? static_cast<std::size_t>(bead_system_.size()) : 0);
+    std::vector<Vec3> own,
+        all(communicator_.rank() == 0 ? static_cast<std::size_t>(bead_system_.size()) : 0);
     Field<3> again;
     if (on_device()) {
         again = Field<3>(openmm_force_.size());
@@ -233,26 +261,33 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     }
     Field<3> const& force = on_device() ? again : openmm_force_;
     for (std::int64_t k = 0; k < force.size(); ++k) own.push_back(force[k]);
-    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
+    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                         bytes);
     if (bead_system_.by_rank.empty()) return all;
     std::vector<Vec3> ordered(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) ordered[static_cast<std::size_t>(bead_system_.by_rank[i])] = all[i];
+    for (std::size_t i = 0; i < all.size(); ++i)
+        ordered[static_cast<std::size_t>(bead_system_.by_rank[i])] = all[i];
     return ordered;
 }
 
 std::vector<TipForce> ChainSystem::tip_forces(std::vector<BodyResults> const& results) const {
     std::vector<TipForce> own;
-    for (BodyResults const& r : results) own.insert(own.end(), r.tip_force.begin(), r.tip_force.end());
+    for (BodyResults const& r : results)
+        own.insert(own.end(), r.tip_force.begin(), r.tip_force.end());
     auto const ranks = static_cast<std::size_t>(communicator_.size());
     auto const bytes = static_cast<std::int64_t>(own.size() * sizeof(TipForce));
     std::vector<std::int64_t> of_rank(ranks);
-    communicator_.all_gather(std::as_bytes(std::span(&bytes, 1)), std::as_writable_bytes(std::span(of_rank)),
+    communicator_.all_gather(std::as_bytes(std::span(&bytes, 1)),
+                             std::as_writable_bytes(std::span(of_rank)),
                              std::vector<std::int64_t>(ranks, sizeof(bytes)));
     std::int64_t total = 0;
     for (std::int64_t const b : of_rank) total += b;
-    std::vector<TipForce> all(communicator_.rank() == 0 ? static_cast<std::size_t>(total) / sizeof(TipForce) : 0);
-    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), of_rank);
-    std::sort(all.begin(), all.end(), [](TipForce const& a, TipForce const& b) { return a.chain < b.chain; });
+    std::vector<TipForce> all(
+        communicator_.rank() == 0 ? static_cast<std::size_t>(total) / sizeof(TipForce) : 0);
+    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                         of_rank);
+    std::sort(all.begin(), all.end(),
+              [](TipForce const& a, TipForce const& b) { return a.chain < b.chain; });
     return all;
 }
 
@@ -266,46 +301,56 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
     std::vector<BodyResults> const found = results();
     for (std::size_t i = 0; i < absolute_.size(); ++i) {
         add(absolute_[i]->group(), found[i]);
-        gather_to_scene(communicator_, absolute_[i]->group(), 3, flat(found[i].acceleration), joint);
+        gather_to_scene(communicator_, absolute_[i]->group(), 3, flat(found[i].acceleration),
+                        joint);
     }
     for (std::size_t i = 0; i < joint_.size(); ++i) {
         ChainGroup const& group = joint_[i]->group();
         add(group, found[absolute_.size() + i]);
         JointRates const rates = joint_[i]->rates();
-        gather_to_scene(communicator_, group, 3, to_array<3>("", rates.qdd.view(), *executor_).values, joint);
+        gather_to_scene(communicator_, group, 3,
+                        to_array<3>("", rates.qdd.view(), *executor_).values, joint);
         gather_to_scene(communicator_, group, 3, at_starts(group, rates.base_acceleration), base);
     }
-    return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces(found), tip_forces(found)};
+    return {triples(joint), triples(body),       bead_forces(),    triples(alpha),
+            triples(base),  joint_forces(found), tip_forces(found)};
 }
 
-void ChainSystem::require_arrays(std::map<std::string, std::vector<double>> const& arrays, std::map<std::string, int> const& widths) const {
+void ChainSystem::require_arrays(std::map<std::string, std::vector<double>> const& arrays,
+                                 std::map<std::string, int> const& widths) const {
     on_first_rank(communicator_, [&] {
         for (auto const& [name, width] : widths)
             if (auto const found = arrays.find(name);
-                found == arrays.end() || found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
-                throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart",
-                                 "take a checkpoint of this scene and integrator");
+                found == arrays.end() ||
+                found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
+                throw InputError("the checkpoint lacks the array " + name + " for this scene",
+                                 "--restart", "take a checkpoint of this scene and integrator");
     });
 }
 
-std::vector<std::vector<double>> ChainSystem::own_part(std::map<std::string, std::vector<double>> const& arrays, std::string const& name,
-                                                       int width) const {
-    std::span<double const> const whole = communicator_.rank() == 0 ? std::span(arrays.at(name)) : std::span<double const>();
+std::vector<std::vector<double>> ChainSystem::own_part(
+    std::map<std::string, std::vector<double>> const& arrays, std::string const& name,
+    int width) const {
+    std::span<double const> const whole =
+        communicator_.rank() == 0 ? std::span(arrays.at(name)) : std::span<double const>();
     return SceneWindows(communicator_, groups_).hand_out(width, whole);
 }
 
-void ChainSystem::add_part(ChainGroup const& group, std::vector<double> own, int width, std::string const& name, OwnState& state) const {
+void ChainSystem::add_part(ChainGroup const& group, std::vector<double> own, int width,
+                           std::string const& name, OwnState& state) const {
     OwnArray& array = state[name];
     array.width = width;
     array.of_group.resize(groups_.size());
     array.of_group[index_of(group)] = std::move(own);
-    for (std::size_t g = 0; g < groups_.size(); ++g) array.of_group[g].resize(static_cast<std::size_t>(groups_[g]->size * width));
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        array.of_group[g].resize(static_cast<std::size_t>(groups_[g]->size * width));
 }
 
 ChainSystem::OwnState ChainSystem::own_state() const {
     OwnState own;
     for (auto const& group : absolute_)
-        for (StateArray& a : group->state()) add_part(group->group(), std::move(a.values), a.width, a.name, own);
+        for (StateArray& a : group->state())
+            add_part(group->group(), std::move(a.values), a.width, a.name, own);
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         JointState const s = dynamics->state();
@@ -322,36 +367,46 @@ void ChainSystem::add_rates(ChainGroup const& group, JointRates const& rates, Ow
     add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", own);
 }
 
-void ChainSystem::pass_array(OwnArray const& array, std::function<void(ArrayPart const&)> const& take) const {
-    SceneWindows(communicator_, groups_).pass(array.width, array.of_group, [&](std::int64_t first, std::span<double const> values) {
-        take({first * array.width, values});
-    });
+void ChainSystem::pass_array(OwnArray const& array,
+                             std::function<void(ArrayPart const&)> const& take) const {
+    SceneWindows(communicator_, groups_)
+        .pass(array.width, array.of_group, [&](std::int64_t first, std::span<double const> values) {
+            take({first * array.width, values});
+        });
 }
 
-void ChainSystem::pass_own_array(OwnArray const& array, std::function<void(std::vector<ArrayPart> const&)> const& take) const {
-    SceneWindows(communicator_, groups_).pass_own(array.width, array.of_group, [&](std::vector<SceneWindows::Own> const& round) {
-        std::vector<ArrayPart> parts;
-        for (SceneWindows::Own const& run : round) parts.push_back({run.first * array.width, run.values});
-        take(parts);
-    });
+void ChainSystem::pass_own_array(
+    OwnArray const& array, std::function<void(std::vector<ArrayPart> const&)> const& take) const {
+    SceneWindows(communicator_, groups_)
+        .pass_own(array.width, array.of_group, [&](std::vector<SceneWindows::Own> const& round) {
+            std::vector<ArrayPart> parts;
+            for (SceneWindows::Own const& run : round)
+                parts.push_back({run.first * array.width, run.values});
+            take(parts);
+        });
 }
 
 std::map<std::string, std::vector<double>> ChainSystem::gathered(OwnState const& own) const {
     std::map<std::string, std::vector<double>> arrays;
     for (auto const& [name, array] : own) {
         std::vector<double>& whole = arrays[name];
-        pass_array(array, [&](ArrayPart const& part) { whole.insert(whole.end(), part.values.begin(), part.values.end()); });
+        pass_array(array, [&](ArrayPart const& part) {
+            whole.insert(whole.end(), part.values.begin(), part.values.end());
+        });
     }
     return arrays;
 }
 
-std::vector<JointRates> ChainSystem::own_rates(std::map<std::string, std::vector<double>> const& arrays) const {
+std::vector<JointRates> ChainSystem::own_rates(
+    std::map<std::string, std::vector<double>> const& arrays) const {
     require_arrays(arrays, {{"qdd", 3}, {"base_acceleration", 3}});
-    auto qdd = own_part(arrays, "qdd", 3), base_acceleration = own_part(arrays, "base_acceleration", 3);
+    auto qdd = own_part(arrays, "qdd", 3),
+         base_acceleration = own_part(arrays, "base_acceleration", 3);
     std::vector<JointRates> all;
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
-        JointRates rates{Field<3>(group.size), of_starts(group, triples(base_acceleration[index_of(group)]))};
+        JointRates rates{Field<3>(group.size),
+                         of_starts(group, triples(base_acceleration[index_of(group)]))};
         from_array<3>({"qdd", 3, std::move(qdd[index_of(group)])}, rates.qdd.view(), *executor_);
         all.push_back(std::move(rates));
     }
@@ -370,7 +425,8 @@ void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& ar
         }
     }
     std::map<std::string, int> widths = absolute_widths;
-    if (!joint_.empty()) widths.insert({{"q", 4}, {"qd", 3}, {"base_position", 3}, {"base_velocity", 3}});
+    if (!joint_.empty())
+        widths.insert({{"q", 4}, {"qd", 3}, {"base_position", 3}, {"base_velocity", 3}});
     require_arrays(arrays, widths);
 
     for (auto const& [name, width] : absolute_widths) {
@@ -379,7 +435,8 @@ void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& ar
             for (StateArray& a : absolute[g])
                 if (a.name == name) a.values = std::move(own[index_of(absolute_[g]->group())]);
     }
-    for (std::size_t g = 0; g < absolute_.size(); ++g) absolute_[g]->set_state(std::exchange(absolute[g], {}));
+    for (std::size_t g = 0; g < absolute_.size(); ++g)
+        absolute_[g]->set_state(std::exchange(absolute[g], {}));
 
     std::vector<JointState> joint;
     for (auto const& dynamics : joint_) joint.emplace_back(dynamics->group());
@@ -392,12 +449,18 @@ void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& ar
         }
     };
     using Own = std::vector<double>;
-    set("q", 4, [this](JointState& s, ChainGroup const&, Own own) { from_array<4>({"q", 4, std::move(own)}, s.q.view(), *executor_); });
-    set("qd", 3, [this](JointState& s, ChainGroup const&, Own own) { from_array<3>({"qd", 3, std::move(own)}, s.qd.view(), *executor_); });
-    set("base_position", 3,
-        [](JointState& s, ChainGroup const& group, Own const& own) { s.base_position = of_starts(group, triples(own)); });
-    set("base_velocity", 3,
-        [](JointState& s, ChainGroup const& group, Own const& own) { s.base_velocity = of_starts(group, triples(own)); });
+    set("q", 4, [this](JointState& s, ChainGroup const&, Own own) {
+        from_array<4>({"q", 4, std::move(own)}, s.q.view(), *executor_);
+    });
+    set("qd", 3, [this](JointState& s, ChainGroup const&, Own own) {
+        from_array<3>({"qd", 3, std::move(own)}, s.qd.view(), *executor_);
+    });
+    set("base_position", 3, [](JointState& s, ChainGroup const& group, Own const& own) {
+        s.base_position = of_starts(group, triples(own));
+    });
+    set("base_velocity", 3, [](JointState& s, ChainGroup const& group, Own const& own) {
+        s.base_velocity = of_starts(group, triples(own));
+    });
     for (std::size_t g = 0; g < joint.size(); ++g) joint_[g]->set_state(joint[g]);
 }
 

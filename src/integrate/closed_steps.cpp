@@ -7,30 +7,33 @@
 #include <utility>
 #include <vector>
 
-#include "error.hpp"
 #include "dynamics/rigid_start.hpp"
 #include "dynamics/stays_open.hpp"
+#include "error.hpp"
 #include "integrate/step_failure.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
 namespace {
 
-/// Where sweeps alone do not close a step's joints its drifts are taken in up to so many times as many parts, each with its own matrices.
+/// Where sweeps alone do not close a step's joints its drifts are taken in up to so many times as
+/// many parts, each with its own matrices.
 constexpr int most_times = 64;
 
 }  // namespace
 
 ClosedSteps::ClosedSteps(ChainSystem& system, ConstrainedIntegrator& integrator, double tolerance)
     : system_(system), integrator_(integrator), tolerance_(tolerance) {
-    for (AbsoluteDynamics* const group : system.absolute()) groups_.push_back({&closing_drifts_of(*group), group->group().beads});
+    for (AbsoluteDynamics* const group : system.absolute())
+        groups_.push_back({&closing_drifts_of(*group), group->group().beads});
 }
 
 void ClosedSteps::note(std::int64_t n) {
     if (uses_gpu(system_.backend())) return;
     bool const looks_at_bodies = n < first_steps || n % every_of_bodies == 0;
     for (Group const& group : groups_)
-        if (looks_at_bodies || group.beads) worst_since_ = larger(worst_since_, group.drifts->own_error_beyond(tolerance_));
+        if (looks_at_bodies || group.beads)
+            worst_since_ = larger(worst_since_, group.drifts->own_error_beyond(tolerance_));
 }
 
 double ClosedSteps::error() {
@@ -41,10 +44,13 @@ double ClosedSteps::error() {
         worst = larger(worst, group.drifts->agreed_error());
     }
     system_.check_forces();
-    return system_.communicator().max(trouble_.empty() ? worst : std::numeric_limits<double>::quiet_NaN());
+    return system_.communicator().max(trouble_.empty() ? worst
+                                                       : std::numeric_limits<double>::quiet_NaN());
 }
 
-bool ClosedSteps::can_keep(std::int64_t n) const { return !uses_gpu(system_.backend()) || n < first_steps; }
+bool ClosedSteps::can_keep(std::int64_t n) const {
+    return !uses_gpu(system_.backend()) || n < first_steps;
+}
 
 double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
     double now = error();
@@ -55,7 +61,8 @@ double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
     }
     if (std::isnan(now))
         on_every_rank(system_.communicator(), [&] {
-            if (!trouble_.empty()) throw ComputationError(failure_in_step(n, trouble_, system_.scene(), n > 0));
+            if (!trouble_.empty())
+                throw ComputationError(failure_in_step(n, trouble_, system_.scene(), n > 0));
         });
     kept_ = can_keep(n) ? std::optional(Start{n, integrator_.keep()}) : std::nullopt;
     worst_since_ = 0;
@@ -63,7 +70,8 @@ double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
 }
 
 bool ClosedSteps::mend(std::int64_t n, std::function<void()> const& prepare) {
-    if (!can_repeat(n) || larger(system_.communicator().max(worst_since_), error()) <= tolerance_) return false;
+    if (!can_repeat(n) || larger(system_.communicator().max(worst_since_), error()) <= tolerance_)
+        return false;
     repeat(n, prepare);
     return true;
 }
@@ -98,7 +106,8 @@ void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {
         prepare();
         integrator_.set_parts(parts * times);
         try {
-            most_sweeps_ = std::max(most_sweeps_, integrator_.sweeps() + integrator_.step_closing(n, rounding));
+            most_sweeps_ = std::max(most_sweeps_,
+                                    integrator_.sweeps() + integrator_.step_closing(n, rounding));
             break;
         } catch (StaysOpen const&) {
             if (times == most_times) throw;
@@ -118,11 +127,14 @@ double ClosedSteps::rounding_at(ConstrainedIntegrator::Kept const& kept) const {
     for (std::size_t g = 0; g < groups.size(); ++g) {
         ChainGroup const& group = groups[g]->group();
         double largest = 0, shortest = infinity;
-        for (double const x : array_named(kept.state[g], "position").values) largest = std::max(largest, std::abs(x));
+        for (double const x : array_named(kept.state[g], "position").values)
+            largest = std::max(largest, std::abs(x));
         bool const links = group.beads || group.linked;  // bodies on joints have no lengths
         for (std::int64_t k = 0; links && k < group.size; ++k)
-            if (double const length = group.length.view().at(k, 0); length > 0) shortest = std::min(shortest, length);
-        double const length = links ? -communicator.max(-shortest) : reach_of_joints(group, communicator);
+            if (double const length = group.length.view().at(k, 0); length > 0)
+                shortest = std::min(shortest, length);
+        double const length =
+            links ? -communicator.max(-shortest) : reach_of_joints(group, communicator);
         largest = communicator.max(largest);
         if (length > 0) worst = std::max(worst, largest / length);
     }
@@ -136,8 +148,9 @@ nlohmann::json ClosedSteps::summary() const {
 
 std::string ClosedSteps::text() const {
     if (steps_ == 0) return "";
-    return std::to_string(steps_) + (steps_ == 1 ? " step" : " steps") + " from step " + std::to_string(first_) + " on took up to " +
-           std::to_string(most_sweeps_) + " projection sweeps to close the joints";
+    return std::to_string(steps_) + (steps_ == 1 ? " step" : " steps") + " from step " +
+           std::to_string(first_) + " on took up to " + std::to_string(most_sweeps_) +
+           " projection sweeps to close the joints";
 }
 
 }  // namespace catena

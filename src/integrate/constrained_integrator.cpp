@@ -19,16 +19,23 @@ struct ClosingParts {
     int most = 0;
     void update_configuration() { dynamics.update_configuration(); }
     void assemble_matrices() { dynamics.assemble_matrices(); }
-    void thermalise(Thermostat const& thermostat, std::uint64_t step) { dynamics.thermalise(thermostat, step); }
+    void thermalise(Thermostat const& thermostat, std::uint64_t step) {
+        dynamics.thermalise(thermostat, step);
+    }
     void kick(double h) { dynamics.kick(h); }
-    void drift(double h, int sweeps) { most = std::max(most, drifts.drift_closing(h, sweeps, closing)); }
+    void drift(double h, int sweeps) {
+        most = std::max(most, drifts.drift_closing(h, sweeps, closing));
+    }
 };
 
 }  // namespace
 
-ClosingDrifts& closing_drifts_of(AbsoluteDynamics& group) { return dynamic_cast<ClosingDrifts&>(group); }
+ClosingDrifts& closing_drifts_of(AbsoluteDynamics& group) {
+    return dynamic_cast<ClosingDrifts&>(group);
+}
 
-ConstrainedIntegrator::ConstrainedIntegrator(ConstrainedScheme const& scheme, std::vector<AbsoluteDynamics*> const& groups)
+ConstrainedIntegrator::ConstrainedIntegrator(ConstrainedScheme const& scheme,
+                                             std::vector<AbsoluteDynamics*> const& groups)
     : scheme_(scheme), groups_(groups) {}
 
 ConstrainedStep ConstrainedIntegrator::step_of(std::int64_t n) const {
@@ -83,7 +90,9 @@ void ConstrainedIntegrator::observe() {
 
 /// The first drift of a step from the state of now, or as fast as a thermostat will have it.
 void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps, bool thermal) const {
-    if (thermal) group.draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group.group().chain.size(), true));
+    if (thermal)
+        group.draw_velocities(scheme_.kt, scheme_.seed,
+                              std::vector<bool>(group.group().chain.size(), true));
     group.kick(pending_ * scheme_.step);
     group.drift(scheme_.step / drifts(), sweeps);
 }
@@ -137,9 +146,11 @@ void ConstrainedIntegrator::choose_sweeps() {
         return;
     }
     std::ostringstream line;
-    line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance << " within " << most_sweeps
-         << " sweeps of a step of " << scheme_.step << " (error " << last_error_
-         << "): " << (last_error_ < 1e-13 ? "that is rounding, ask for no less than 1e-12" : "choose a smaller dynamics.step");
+    line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance
+         << " within " << most_sweeps << " sweeps of a step of " << scheme_.step << " (error "
+         << last_error_ << "): "
+         << (last_error_ < 1e-13 ? "that is rounding, ask for no less than 1e-12"
+                                 : "choose a smaller dynamics.step");
     throw ComputationError(line.str());
 }
 

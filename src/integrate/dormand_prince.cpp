@@ -3,8 +3,8 @@
 #include <limits>
 #include <sstream>
 
-#include "integrate/checkpoint_values.hpp"
 #include "dynamics/joint/embedded_steps.hpp"
+#include "integrate/checkpoint_values.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
 #include "mpi/first_rank.hpp"
@@ -20,7 +20,8 @@ class DormandPrinceSteps final : public JointIntegrator {
   public:
     DormandPrinceSteps(ChainSystem& system, double tolerance, double step)
         : system_(system), groups_(system.joint()), tolerance_(tolerance), control_(step) {
-        has_tips_ = std::any_of(groups_.begin(), groups_.end(), [](JointDynamics const* g) { return g->group().has_tips(); });
+        has_tips_ = std::any_of(groups_.begin(), groups_.end(),
+                                [](JointDynamics const* g) { return g->group().has_tips(); });
     }
     /// Tips that are closed leave the rates at the step's end behind.
     bool carries_rates() const override { return !has_tips_; }
@@ -28,10 +29,12 @@ class DormandPrinceSteps final : public JointIntegrator {
     std::optional<SweepsAStep> last_step() const override { return last_; }
     StepControl const* control() const override { return tolerance_ > 0 ? &control_ : nullptr; }
     void save(Checkpoint& c) const override {
-        if (tolerance_ > 0) c.arrays[name_of_state] = {control_.state().length, control_.state().previous};
+        if (tolerance_ > 0)
+            c.arrays[name_of_state] = {control_.state().length, control_.state().previous};
     }
     void restored(Checkpoint const& c) override {
-        if (std::vector<double> const kept = few_numbers_of(c, name_of_state, 2); !kept.empty()) control_.restore({kept[0], kept[1]});
+        if (std::vector<double> const kept = few_numbers_of(c, name_of_state, 2); !kept.empty())
+            control_.restore({kept[0], kept[1]});
         ready_ = carries_rates();
     }
     void prepare() override {
@@ -49,13 +52,18 @@ class DormandPrinceSteps final : public JointIntegrator {
             if (done > 0) begin_at(start + done);
             double const left = h - done;
             for (InnerStep inner;; inner.again = true) {
-                if (tries++ == most_inner_steps) refuse(start + done, control_.state().length, "100,000 inner steps are not enough");
+                if (tries++ == most_inner_steps)
+                    refuse(start + done, control_.state().length,
+                           "100,000 inner steps are not enough");
                 inner.length = tolerance_ > 0 ? control_.length(left) : h;
                 bool const reaches = inner.length == left;
                 inner.end = start + (reaches ? h : done + inner.length);
-                if (inner.length <= 16 * eps * std::max(inner.end, h)) refuse(start + done, inner.length, "no shorter step is a step");
+                if (inner.length <= 16 * eps * std::max(inner.end, h))
+                    refuse(start + done, inner.length, "no shorter step is a step");
                 bool const there = advance(inner);
-                if (tolerance_ > 0 && !control_.accepts(inner.length, there ? error(inner.length) : HUGE_VAL)) continue;
+                if (tolerance_ > 0 &&
+                    !control_.accepts(inner.length, there ? error(inner.length) : HUGE_VAL))
+                    continue;
                 done = reaches ? h : done + inner.length;
                 break;
             }
@@ -94,9 +102,9 @@ class DormandPrinceSteps final : public JointIntegrator {
         for (JointDynamics* const group : groups_) worst = larger(worst, group->wildness(length));
         return !(system_.communicator().max(worst) < 1);
     }
-    /// Over what is allowed, the largest of all coordinates: maxima are exact in any order. Angles count by a radian, lengths by the reach
-    /// of the longest chain, velocities by the largest of their kind; what is below the rounding of coordinates within the step is no
-    /// error.
+    /// Over what is allowed, the largest of all coordinates: maxima are exact in any order. Angles
+    /// count by a radian, lengths by the reach of the longest chain, velocities by the largest of
+    /// their kind; what is below the rounding of coordinates within the step is no error.
     double error(double length) {
         Speeds fastest;
         double reach = 0;
@@ -108,16 +116,20 @@ class DormandPrinceSteps final : public JointIntegrator {
         Communicator const& all = system_.communicator();
         fastest = {all.max(fastest.angular), all.max(fastest.linear)};
         double const turning = std::max(tolerance_ * fastest.angular, 16 * eps / length);
-        double const sliding = std::max(tolerance_ * std::max(fastest.linear, reach * fastest.angular), 16 * eps * reach / length);
+        double const sliding =
+            std::max(tolerance_ * std::max(fastest.linear, reach * fastest.angular),
+                     16 * eps * reach / length);
         AllowedErrors const allowed{tolerance_, tolerance_ * reach, {turning, sliding}};
         double worst = 0;
-        for (JointDynamics* const group : groups_) worst = larger(worst, group->embedded_error(length, allowed));
+        for (JointDynamics* const group : groups_)
+            worst = larger(worst, group->embedded_error(length, allowed));
         return all.max(worst);
     }
     /// Every rank knows.
     [[noreturn]] void refuse(double time, double length, char const* why) const {
         std::ostringstream line;
-        line << why << " for dynamics.tolerance " << tolerance_ << " at time " << time << " (the last asked for is " << length
+        line << why << " for dynamics.tolerance " << tolerance_ << " at time " << time
+             << " (the last asked for is " << length
              << " long): raise the tolerance, or look at the forces and joints there";
         throw SharedError(line.str());
     }
@@ -128,12 +140,14 @@ class DormandPrinceSteps final : public JointIntegrator {
     StepControl control_;
     bool has_tips_ = false, ready_ = false;
     int corrections_ = JointDynamics::usual_corrections;
-    SweepsAStep now_{0, 0, 0}, last_;  // now_: of the step that is under way, from what it is prepared by on
+    SweepsAStep now_{0, 0, 0},
+        last_;  // now_: of the step that is under way, from what it is prepared by on
 };
 
 }  // namespace
 
-std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem& system, double tolerance, double step) {
+std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem& system, double tolerance,
+                                                     double step) {
     return std::make_unique<DormandPrinceSteps>(system, tolerance, step);
 }
 

@@ -5,12 +5,14 @@
 namespace catena {
 
 bool has_jointed_tips(Scene const& scene) {
-    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+    return std::any_of(scene.chains.begin(), scene.chains.end(),
+                       [](ChainSpec const& c) { return c.tip == Tip::jointed; });
 }
 
 SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {
     if (d.integrator == Integrator::rk4) return {4, 4};
-    if (d.integrator == Integrator::dormand_prince) return tips ? SweepsAStep{7, 7} : SweepsAStep{6, 6};
+    if (d.integrator == Integrator::dormand_prince)
+        return tips ? SweepsAStep{7, 7} : SweepsAStep{6, 6};
     if (d.integrator == Integrator::velocity_verlet) return {1, 1};
     return is_langevin(d.integrator) && d.friction > 0 ? SweepsAStep{2, 3} : SweepsAStep{1, 2};
 }
@@ -26,7 +28,8 @@ std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem& system, Dyna
         case Integrator::staggered:
             return make_kicks(system, {});
         default:
-            return make_kicks(system, {d.friction, system.scene().boltzmann() * d.temperature, d.seed});
+            return make_kicks(system,
+                              {d.friction, system.scene().boltzmann() * d.temperature, d.seed});
     }
 }
 

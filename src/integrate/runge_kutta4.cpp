@@ -20,6 +20,8 @@ class RungeKutta4 final : public JointIntegrator {
 
 }  // namespace
 
-std::unique_ptr<JointIntegrator> make_runge_kutta4(ChainSystem& system) { return std::make_unique<RungeKutta4>(system); }
+std::unique_ptr<JointIntegrator> make_runge_kutta4(ChainSystem& system) {
+    return std::make_unique<RungeKutta4>(system);
+}
 
 }  // namespace catena

@@ -9,7 +9,8 @@ namespace {
 
 /// The carried bead that stands at a point of body k (from its centre of mass, B); -1: none does.
 std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& point) {
-    double constexpr rounding = 1e-9;  // of positions that a file holds in decimals, turned into the body's axes
+    double constexpr rounding =
+        1e-9;  // of positions that a file holds in decimals, turned into the body's axes
     for (std::int64_t i = linked.carried.offset[k]; i < linked.carried.offset[k + 1]; ++i) {
         Vec3 const at = linked.carried.position[static_cast<std::size_t>(i)];
         if (norm(at - point) <= rounding * (norm(at) + norm(point))) return i;
@@ -20,10 +21,12 @@ std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& poin
 void add_beads(BeadSystem& system, ChainSpec const& chain) {
     std::int64_t const first = system.size();
     system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
-    system.residue.insert(system.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
+    system.residue.insert(system.residue.end(), chain.beads.residue.begin(),
+                          chain.beads.residue.end());
     auto const beads = static_cast<std::int64_t>(chain.size());
     for (std::int64_t k = 1; k < beads; ++k)
-        system.links.push_back({first + k - 1, first + k, chain.beads.length[static_cast<std::size_t>(k)]});
+        system.links.push_back(
+            {first + k - 1, first + k, chain.beads.length[static_cast<std::size_t>(k)]});
     if (chain.is_ring()) system.links.push_back({first, first + beads - 1, chain.tip_joint.length});
 }
 
@@ -41,19 +44,26 @@ void add_carried(BeadSystem& system, ChainSpec const& chain) {
             std::int64_t const from = bead_at(chain.linked, before, chain.linked.outboard[before]);
             std::int64_t const to = bead_at(chain.linked, k, chain.linked.inboard[k]);
             double const length = k == 0 ? chain.tip_joint.length : chain.linked.length[k];
-            if (from >= 0 && to >= 0) system.links.push_back({first + std::min(from, to), first + std::max(from, to), length});
+            if (from >= 0 && to >= 0)
+                system.links.push_back(
+                    {first + std::min(from, to), first + std::max(from, to), length});
         } else if (end > begin && begin > carried.offset[k - 1]) {
             system.neighbours.emplace_back(first + begin - 1, first + begin);
         }
     }
-    bool const both_ends = carried.offset[1] > 0 && carried.offset[chain.size()] > carried.offset[chain.size() - 1];
-    if (chain.is_ring() && !chain.is_linked() && both_ends && chain.size() > 2)  // two are neighbours already
-        system.neighbours.emplace_back(first, first + static_cast<std::int64_t>(carried.size()) - 1);
+    bool const both_ends =
+        carried.offset[1] > 0 && carried.offset[chain.size()] > carried.offset[chain.size() - 1];
+    if (chain.is_ring() && !chain.is_linked() && both_ends &&
+        chain.size() > 2)  // two are neighbours already
+        system.neighbours.emplace_back(first,
+                                       first + static_cast<std::int64_t>(carried.size()) - 1);
 }
 
-void add_positions(std::vector<Vec3>& positions, CarriedBeads const& carried, std::size_t body, scene::Pose const& pose) {
+void add_positions(std::vector<Vec3>& positions, CarriedBeads const& carried, std::size_t body,
+                   scene::Pose const& pose) {
     Mat3 const turn = to_matrix(pose.orientation);
-    for (auto b = static_cast<std::size_t>(carried.offset[body]); b < static_cast<std::size_t>(carried.offset[body + 1]); ++b)
+    for (auto b = static_cast<std::size_t>(carried.offset[body]);
+         b < static_cast<std::size_t>(carried.offset[body + 1]); ++b)
         positions.push_back(pose.origin + turn * carried.position[b]);
 }
 

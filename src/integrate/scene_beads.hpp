@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "math/linear.hpp"
 #include "force/openmm_force.hpp"
+#include "math/linear.hpp"
 #include "scene/scene.hpp"
 
 namespace catena {

@@ -5,9 +5,12 @@
 namespace catena {
 namespace {
 
-class Kicks final : public JointIntegrator {
+class SplittingIntegrator final : public JointIntegrator {
   public:
-    Kicks(ChainSystem& system, JointThermostat const& thermostat) : system_(system), thermostat_(thermostat) { system.keep_matrices(); }
+    SplittingIntegrator(ChainSystem& system, JointThermostat const& thermostat)
+        : system_(system), thermostat_(thermostat) {
+        system.keep_matrices();
+    }
     void set_origin(double time) override { origin_ = time; }
     bool carries_rates() const override { return true; }
     void restored(Checkpoint const&) override { ready_ = true; }
@@ -21,11 +24,14 @@ class Kicks final : public JointIntegrator {
     void step(double h) override {
         prepare();
         for (JointDynamics* const group : system_.joint()) {
-            auto const number = static_cast<std::uint64_t>(std::llround((group->time() - origin_) / h));
+            auto const number =
+                static_cast<std::uint64_t>(std::llround((group->time() - origin_) / h));
             group->kick_by_carried(0.5 * h);
             group->drift(is_warm() ? 0.5 * h : h);
             if (!is_warm()) continue;
-            group->thermalise(thermostat_of(std::exp(-thermostat_.friction * h), thermostat_.kt, thermostat_.seed), number);
+            group->thermalise(thermostat_of(std::exp(-thermostat_.friction * h), thermostat_.kt,
+                                            thermostat_.seed),
+                              number);
             group->drift(0.5 * h);
         }
         accelerate(0.5 * h);
@@ -33,8 +39,8 @@ class Kicks final : public JointIntegrator {
 
   private:
     bool is_warm() const { return thermostat_.friction > 0; }
-    /// Velocities and accelerations at a kick's middle, where it has `before` of it behind it; the velocities so far are those at its
-    /// start.
+    /// Velocities and accelerations at a kick's middle, where it has `before` of it behind it; the
+    /// velocities so far are those at its start.
     void accelerate(double before) {
         system_.solve_joint_groups();
         for (JointDynamics* const group : system_.joint()) group->kick(before);
@@ -53,8 +59,9 @@ class Kicks final : public JointIntegrator {
 
 }  // namespace
 
-std::unique_ptr<JointIntegrator> make_kicks(ChainSystem& system, JointThermostat const& thermostat) {
-    return std::make_unique<Kicks>(system, thermostat);
+std::unique_ptr<JointIntegrator> make_kicks(ChainSystem& system,
+                                            JointThermostat const& thermostat) {
+    return std::make_unique<SplittingIntegrator>(system, thermostat);
 }
 
 }  // namespace catena

@@ -7,8 +7,9 @@ namespace catena {
 namespace {
 
 constexpr double safety = 0.9, least_factor = 0.2, most_factor = 5;
-constexpr double least_error = 1e-4;  // that the controller remembers: one lucky step is no reason for a short one
-constexpr double slack = 1.01;        // a hundredth longer rather than one step more
+constexpr double least_error =
+    1e-4;  // that the controller remembers: one lucky step is no reason for a short one
+constexpr double slack = 1.01;  // a hundredth longer rather than one step more
 
 /// x^(1/2^times)
 double root(double x, int times) {
@@ -25,7 +26,8 @@ double StepControl::length(double left) const {
 
 bool StepControl::accepts(double length, double error) {
     if (!(error <= 1)) {
-        double const factor = std::isfinite(error) ? safety / (root(error, 3) * root(error, 4)) : 0.0;
+        double const factor =
+            std::isfinite(error) ? safety / (root(error, 3) * root(error, 4)) : 0.0;
         state_.length = length * std::max(factor, least_factor);
         ++counts_.rejected;
         after_rejection_ = true;
@@ -33,7 +35,9 @@ bool StepControl::accepts(double length, double error) {
     }
     double const e = std::max(error, 1e-10);
     double const most = after_rejection_ ? 1.0 : most_factor;
-    double const next = length * std::clamp(safety * root(state_.previous, 4) / (root(e, 3) * root(e, 5)), least_factor, most);
+    double const next =
+        length * std::clamp(safety * root(state_.previous, 4) / (root(e, 3) * root(e, 5)),
+                            least_factor, most);
     // A step far below what was proposed, since the way was at its end, says nothing against that.
     bool const cut = length < 0.5 * state_.length;
     state_.length = std::min(longest_, cut ? std::max(state_.length, next) : next);

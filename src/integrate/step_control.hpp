@@ -5,9 +5,11 @@
 
 namespace catena {
 
-/// A PI controller (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.4; Gustafsson, ACM TOMS 17, 533, 1991) for
-/// errors of fifth order: the next step is the last one's times 0.9 e^(-5/32) f^(1/16), at least a fifth and at most five times it; e, f:
-/// the error over what is allowed, of this step and of the one before. Only square roots are taken: these round the same everywhere.
+/// A PI controller (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.4;
+/// Gustafsson, ACM TOMS 17, 533, 1991) for errors of fifth order: the next step is the last one's
+/// times 0.9 e^(-5/32) f^(1/16), at least a fifth and at most five times it; e, f: the error over
+/// what is allowed, of this step and of the one before. Only square roots are taken: these round
+/// the same everywhere.
 class StepControl {
   public:
     /// Of the next run, and of a restart.

@@ -19,7 +19,8 @@ std::string stiffest_spring(Scene const& scene) {
             double const own = std::max({stiffness[k][0], stiffness[k][1], stiffness[k][2]});
             if (own <= most) continue;
             most = own;
-            place = fmt::format(" (the stiffest spring, {:.6g}, is that of chain `{}`, body {})", own, chain.name, k + 1);
+            place = fmt::format(" (the stiffest spring, {:.6g}, is that of chain `{}`, body {})",
+                                own, chain.name, k + 1);
         }
     }
     return place;
@@ -27,12 +28,14 @@ std::string stiffest_spring(Scene const& scene) {
 
 }  // namespace
 
-std::string failure_in_step(std::int64_t step, std::string const& what, Scene const& scene, bool has_started) {
+std::string failure_in_step(std::int64_t step, std::string const& what, Scene const& scene,
+                            bool has_started) {
     std::string text = "at step " + std::to_string(step) + ": " + what;
     std::string const cause = dca::cause_of_lost_matrix;
     auto const at = text.find(cause);
     if (!has_started || at == std::string::npos) return text;
-    return text.insert(at, fmt::format("dynamics.step = {:.6g} is too long for forces and speeds there{}: choose a smaller one; else ",
+    return text.insert(at, fmt::format("dynamics.step = {:.6g} is too long for forces and speeds "
+                                       "there{}: choose a smaller one; else ",
                                        scene.dynamics.step, stiffest_spring(scene)));
 }
 

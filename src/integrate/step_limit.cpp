@@ -18,30 +18,40 @@ namespace {
 constexpr std::size_t most_chains = 4, most_bodies = 400;
 constexpr int most_iterations = 400, least_iterations = 50;
 constexpr double settled = 1e-4;  // change of the frequency from one iteration to the next
-/// Of the limit, and said: at 0.71 of it, where four steps are a period of the stiffest mode, energy grows by resonance.
+/// Of the limit, and said: at 0.71 of it, where four steps are a period of the stiffest mode,
+/// energy grows by resonance.
 constexpr double near = 0.65;
 
 /// Of h times the largest frequency, undamped.
 double reach_of(Integrator integrator) {
-    return integrator == Integrator::rk4 ? 2.8284 : integrator == Integrator::dormand_prince ? 3.3 : 2.0;
+    return integrator == Integrator::rk4              ? 2.8284
+           : integrator == Integrator::dormand_prince ? 3.3
+                                                      : 2.0;
 }
 
 bool has_springs(ChainSpec const& chain) {
     auto const& k = chain.bodies.stiffness;
-    return std::any_of(k.begin(), k.end(), [](Vec3 const& stiffness) { return norm(stiffness) > 0; });
+    return std::any_of(k.begin(), k.end(),
+                       [](Vec3 const& stiffness) { return norm(stiffness) > 0; });
 }
 
 template <class T>
 void cut(std::vector<T>& list, std::size_t size) {
-    if (list.size() > size) list.erase(list.begin() + static_cast<std::ptrdiff_t>(size), list.end());
+    if (list.size() > size)
+        list.erase(list.begin() + static_cast<std::ptrdiff_t>(size), list.end());
 }
 void cut(ChainSpec& chain, std::size_t size) {
     BodyArrays& b = chain.bodies;
     if (b.size() <= size) return;
-    cut(b.mass, size), cut(b.com, size), cut(b.inertia, size), cut(b.joint, size), cut(b.axis, size), cut(b.rotation, size);
-    cut(b.translation, size), cut(b.q, size), cut(b.qd, size), cut(b.first_axis, size), cut(b.pitch, size), cut(b.torque, size);
-    cut(b.stiffness, size), cut(b.damping, size), cut(b.rest, size), cut(b.wrench, size), cut(b.drag, size);
-    std::erase_if(b.driven, [&](DrivenJoint const& joint) { return joint.body >= static_cast<std::int64_t>(size); });
+    cut(b.mass, size), cut(b.com, size), cut(b.inertia, size), cut(b.joint, size),
+        cut(b.axis, size), cut(b.rotation, size);
+    cut(b.translation, size), cut(b.q, size), cut(b.qd, size), cut(b.first_axis, size),
+        cut(b.pitch, size), cut(b.torque, size);
+    cut(b.stiffness, size), cut(b.damping, size), cut(b.rest, size), cut(b.wrench, size),
+        cut(b.drag, size);
+    std::erase_if(b.driven, [&](DrivenJoint const& joint) {
+        return joint.body >= static_cast<std::int64_t>(size);
+    });
     chain.tip = Tip::free;
 }
 
@@ -81,10 +91,12 @@ class Displacements {
         unmoved_ = accelerations();
         std::int64_t i = 0;
         each([&](Vec3&, Vec3& along) {  // no mode is orthogonal to numbers without a pattern
-            for (int c = 0; c < 3; ++c) along[c] = std::sin(1.0 + 12.9898 * static_cast<double>(++i));
+            for (int c = 0; c < 3; ++c)
+                along[c] = std::sin(1.0 + 12.9898 * static_cast<double>(++i));
         });
     }
-    /// Replaces the displacement by what it does to the accelerations. Returns how much longer that is.
+    /// Replaces the displacement by what it does to the accelerations. Returns how much longer that
+    /// is.
     double iterate() {
         scale(1 / length());
         for (std::size_t g = 0; g < start_.size(); ++g) {
@@ -116,13 +128,18 @@ class Displacements {
         }
         return all;
     }
-    /// action(change of the acceleration per displacement, displacement) of every coordinate's three numbers.
+    /// action(change of the acceleration per displacement, displacement) of every coordinate's
+    /// three numbers.
     template <class Action>
     void each(Action const& action) {
         for (std::size_t g = 0; g < along_.size(); ++g)
-            for (Field<3> JointRates::* const part : {&JointRates::qdd, &JointRates::base_acceleration})
+            for (Field<3> JointRates::* const part :
+                 {&JointRates::qdd, &JointRates::base_acceleration})
                 for (std::int64_t k = 0; k < (along_[g].*part).size(); ++k) {
-                    Vec3 change = moved_.empty() ? Vec3::zero() : (1 / small) * ((moved_[g].*part)[k] - (unmoved_[g].*part)[k]);
+                    Vec3 change =
+                        moved_.empty()
+                            ? Vec3::zero()
+                            : (1 / small) * ((moved_[g].*part)[k] - (unmoved_[g].*part)[k]);
                     Vec3 along = (along_[g].*part)[k];
                     action(change, along);
                     (along_[g].*part).set(k, along);
@@ -173,14 +190,16 @@ std::optional<StepLimit> estimate_step_limit(Scene const& scene) {
     if (part.chains.empty()) return std::nullopt;
     double const frequency = largest_frequency(part);
     if (frequency == 0) return std::nullopt;
-    bool const whole = std::all_of(scene.chains.begin(), scene.chains.end(),
-                                   [](ChainSpec const& chain) { return !has_springs(chain) || chain.bodies.size() <= most_bodies; });
+    bool const whole =
+        std::all_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
+            return !has_springs(chain) || chain.bodies.size() <= most_bodies;
+        });
     return StepLimit{frequency, reach_of(d.integrator) / frequency, whole};
 }
 
 std::string text_of(StepLimit const& limit, Scene const& scene) {
-    return fmt::format("{:.3g} {}, {:.3g} / the largest frequency of the joints' springs", limit.step, scene.si ? "s" : "ps",
-                       reach_of(scene.dynamics.integrator));
+    return fmt::format("{:.3g} {}, {:.3g} / the largest frequency of the joints' springs",
+                       limit.step, scene.si ? "s" : "ps", reach_of(scene.dynamics.integrator));
 }
 
 std::string note_of_step(Scene const& scene, std::optional<StepLimit> const& limit) {
@@ -188,7 +207,8 @@ std::string note_of_step(Scene const& scene, std::optional<StepLimit> const& lim
     if (!limit || step <= near * limit->step) return "";
     std::string const longest = "the longest stable one, " + text_of(*limit, scene);
     if (step > limit->step && limit->whole)
-        throw InputError(fmt::format("a step of {:.4g} is longer than {}", step, longest), scene.file + ": dynamics.step",
+        throw InputError(fmt::format("a step of {:.4g} is longer than {}", step, longest),
+                         scene.file + ": dynamics.step",
                          "choose a smaller one, or an implicit integrator");
     return fmt::format("dynamics.step = {:.4g} is {} {}: half of that keeps energy better", step,
                        step > limit->step ? "longer than" : "near", longest);

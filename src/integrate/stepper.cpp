@@ -18,13 +18,17 @@ using nlohmann::json;
 class JointStepper final : public Stepper {
   public:
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
-        : system_(system), h_(d.step), tolerance_(d.tolerance), integrator_(make_joint_integrator(system, d)) {
+        : system_(system),
+          h_(d.step),
+          tolerance_(d.tolerance),
+          integrator_(make_joint_integrator(system, d)) {
         sweeps_ = sweeps_a_step(d, has_tips());
         system.close_tips();
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
-    /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at the step's end.
-    void observe(Asked const& asked) override {
+    /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at
+    /// the step's end.
+    void observe(ObservedQuantities const& asked) override {
         if (!asked.joint_forces && !(asked.energies && system_.openmm())) return;
         system_.evaluate();
         for (int i = 0; i < system_.scene().solver.refine; ++i) system_.refine();
@@ -37,12 +41,15 @@ class JointStepper final : public Stepper {
         set_time(n + 1);  // as a restart has it: sums of inner steps round
         system_.close_tips(corrections_);
         sum_.add(solved(), has_tips() ? corrections_ + 1 : 0);
-        if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
+        if (timeline)
+            timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
-    /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is finite.
+    /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is
+    /// finite.
     double constraint_error() override {
         double worst = 0;
-        for (JointDynamics* const group : system_.joint()) worst = larger(worst, group->closure_error());
+        for (JointDynamics* const group : system_.joint())
+            worst = larger(worst, group->closure_error());
         return worst;
     }
     /// One more correction of jointed tips.
@@ -60,7 +67,8 @@ class JointStepper final : public Stepper {
     }
     void save(ChainSystem::OwnState& own) const override {
         if (!integrator_->carries_rates()) return;
-        for (JointDynamics const* const group : system_.joint()) system_.add_rates(group->group(), group->carried_rates(), own);
+        for (JointDynamics const* const group : system_.joint())
+            system_.add_rates(group->group(), group->carried_rates(), own);
     }
     void branch(Checkpoint const& c) override {
         origin_ = number_in(c, array_of_origin, 0);
@@ -79,9 +87,11 @@ class JointStepper final : public Stepper {
     }
     json describe() const override {
         int const more = has_tips() ? corrections_ + 1 : 0;
-        json found = {{"matrix_sweeps_a_step", sweeps_.matrices + more}, {"bias_sweeps_a_step", sweeps_.biases + more}};
+        json found = {{"matrix_sweeps_a_step", sweeps_.matrices + more},
+                      {"bias_sweeps_a_step", sweeps_.biases + more}};
         if (integrator_->control() && sum_.steps > 0)
-            found = {{"matrix_sweeps_a_step", sum_.a_step(sum_.matrices)}, {"bias_sweeps_a_step", sum_.a_step(sum_.biases)}};
+            found = {{"matrix_sweeps_a_step", sum_.a_step(sum_.matrices)},
+                     {"bias_sweeps_a_step", sum_.a_step(sum_.biases)}};
         if (has_tips()) found["corrections_of_tips"] = corrections_;
         return found;
     }
@@ -89,17 +99,20 @@ class JointStepper final : public Stepper {
         StepControl const* const control = integrator_->control();
         if (!control) return nullptr;
         StepControl::Counts const& n = control->counts();
-        return {{"tolerance", tolerance_}, {"taken", n.taken},     {"rejected", n.rejected},
-                {"shortest", n.shortest},  {"longest", n.longest}, {"evaluations", sum_.evaluations}};
+        return {{"tolerance", tolerance_}, {"taken", n.taken},
+                {"rejected", n.rejected},  {"shortest", n.shortest},
+                {"longest", n.longest},    {"evaluations", sum_.evaluations}};
     }
 
   private:
     void set_time(std::int64_t step) {
-        for (JointDynamics* const group : system_.joint()) group->set_time(origin_ + static_cast<double>(step) * h_);
+        for (JointDynamics* const group : system_.joint())
+            group->set_time(origin_ + static_cast<double>(step) * h_);
     }
     bool has_tips() const {
         auto const groups = system_.joint();
-        return std::any_of(groups.begin(), groups.end(), [](JointDynamics const* g) { return g->group().has_tips(); });
+        return std::any_of(groups.begin(), groups.end(),
+                           [](JointDynamics const* g) { return g->group().has_tips(); });
     }
 
     /// Of all steps so far.
@@ -111,7 +124,9 @@ class JointStepper final : public Stepper {
             matrices += s.matrices + s.closings * a_closing;
             biases += s.biases + s.closings * a_closing;
         }
-        double a_step(std::int64_t n) const { return static_cast<double>(n) / static_cast<double>(steps); }
+        double a_step(std::int64_t n) const {
+            return static_cast<double>(n) / static_cast<double>(steps);
+        }
     };
 
     static constexpr int most_corrections = 10;
@@ -127,7 +142,8 @@ class ConstrainedStepper final : public Stepper {
   public:
     ConstrainedStepper(ChainSystem& system, DynamicsSpec const& d)
         : system_(system),
-          integrator_({d.integrator, d.step, d.friction, system.scene().boltzmann() * d.temperature, d.seed, d.constraint_tolerance},
+          integrator_({d.integrator, d.step, d.friction, system.scene().boltzmann() * d.temperature,
+                       d.seed, d.constraint_tolerance},
                       system.absolute()),
           closed_(system, integrator_, d.constraint_tolerance) {
         for (AbsoluteDynamics* group : system.absolute()) group->update_configuration();
@@ -139,7 +155,7 @@ class ConstrainedStepper final : public Stepper {
         offset_ = seconds_now() - begin;
         if (integrator_.sweeps() == 0) integrator_.choose_sweeps();
     }
-    void observe(Asked const& asked) override {
+    void observe(ObservedQuantities const& asked) override {
         integrator_.observe();
         if (!asked.joint_forces) return;
         for (AbsoluteDynamics* group : system_.absolute()) group->evaluate();
@@ -147,7 +163,9 @@ class ConstrainedStepper final : public Stepper {
     void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();
         integrator_.step(n);
-        if (timeline) timeline->phases.push_back({"projections and drift", "catena", offset_, offset_ + seconds_now() - start});
+        if (timeline)
+            timeline->phases.push_back(
+                {"projections and drift", "catena", offset_, offset_ + seconds_now() - start});
     }
     double constraint_error() override { return closed_.error(); }
     void note_error(std::int64_t n) override { closed_.note(n); }
@@ -171,7 +189,8 @@ class ConstrainedStepper final : public Stepper {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
         // A branch with a shorter step that was not taken yet owes more.
-        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(std::clamp(2 * integrator_.pending(), 0.0, 2.0));
+        c.integers["pending_half_kicks"] =
+            static_cast<std::int64_t>(std::clamp(2 * integrator_.pending(), 0.0, 2.0));
         c.arrays[array_of_kick] = {integrator_.pending()};
     }
     /// The half kick that ends the last step is of that step's length.
@@ -181,9 +200,11 @@ class ConstrainedStepper final : public Stepper {
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
     void restore(Checkpoint const& c) override {
-        integrator_.set_sweeps(counter_of(c, "sweeps_a_drift", 0, ConstrainedIntegrator::most_sweeps));
+        integrator_.set_sweeps(
+            counter_of(c, "sweeps_a_drift", 0, ConstrainedIntegrator::most_sweeps));
         if (c.integers.contains("parts_a_drift"))
-            integrator_.set_parts(counter_of(c, "parts_a_drift", 1, ConstrainedIntegrator::most_parts));
+            integrator_.set_parts(
+                counter_of(c, "parts_a_drift", 1, ConstrainedIntegrator::most_parts));
         integrator_.set_pending(pending_in(c));
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
@@ -192,17 +213,21 @@ class ConstrainedStepper final : public Stepper {
                       {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
                       {"sweeps_a_drift", integrator_.sweeps()}};
         if (integrator_.parts() > 1) found["parts_a_drift"] = integrator_.parts();
-        if (json const further = closed_.summary(); !further.is_null()) found["steps_closed_further"] = further;
+        if (json const further = closed_.summary(); !further.is_null())
+            found["steps_closed_further"] = further;
         return found;
     }
 
   private:
-    static double pending_in(Checkpoint const& c) { return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2)); }
+    static double pending_in(Checkpoint const& c) {
+        return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2));
+    }
     void draw_velocities(DynamicsSpec const& d) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             std::vector<bool> thermal;
             for (int const chain : group->group().chain)
-                thermal.push_back(system_.scene().chains[chain].velocities == StartVelocities::thermal);
+                thermal.push_back(system_.scene().chains[chain].velocities ==
+                                  StartVelocities::thermal);
             if (std::find(thermal.begin(), thermal.end(), true) == thermal.end()) continue;
             group->assemble_matrices();
             group->draw_velocities(system_.scene().boltzmann() * d.temperature, d.seed, thermal);
@@ -219,7 +244,8 @@ class ConstrainedStepper final : public Stepper {
 double number_in(Checkpoint const& c, char const* array, double otherwise) {
     auto const found = c.arrays.find(array);
     if (found == c.arrays.end() || found->second.empty()) return otherwise;
-    if (!std::isfinite(found->second.front())) refuse_checkpoint(std::string(array) + " is not finite");
+    if (!std::isfinite(found->second.front()))
+        refuse_checkpoint(std::string(array) + " is not finite");
     return found->second.front();
 }
 
@@ -231,7 +257,8 @@ bool Stepper::adapt(SweepWatch& watch, double error, double tolerance) {
 json Stepper::inner_steps() const { return nullptr; }
 
 std::unique_ptr<Stepper> make_stepper(ChainSystem& system, DynamicsSpec const& dynamics) {
-    if (uses_joint_coordinates(dynamics.integrator)) return std::make_unique<JointStepper>(system, dynamics);
+    if (uses_joint_coordinates(dynamics.integrator))
+        return std::make_unique<JointStepper>(system, dynamics);
     return std::make_unique<ConstrainedStepper>(system, dynamics);
 }
 

@@ -11,14 +11,17 @@
 
 namespace catena {
 
-/// What an observer asks for beside positions and velocities; `energies`: ChainSystem::potential_energy().
-struct Asked {
+/// What an observer asks for beside positions and velocities; `energies`:
+/// ChainSystem::potential_energy().
+struct ObservedQuantities {
     bool joint_forces = false, energies = false;
 };
 
-/// Arrays of one number in checkpoints: the length of a step, the time at step 0 where it is not 0 (of branches with another step), and the
-/// kick that is due, in steps, where it is no whole number of halves.
-inline constexpr char const *array_of_step = "step_length", *array_of_origin = "time_origin", *array_of_kick = "pending_kick";
+/// Arrays of one number in checkpoints: the length of a step, the time at step 0 where it is not 0
+/// (of branches with another step), and the kick that is due, in steps, where it is no whole number
+/// of halves.
+inline constexpr char const *array_of_step = "step_length", *array_of_origin = "time_origin",
+                            *array_of_kick = "pending_kick";
 /// The number in one of them, else `otherwise`.
 double number_in(Checkpoint const&, char const* array, double otherwise);
 
@@ -28,21 +31,23 @@ class Stepper {
     virtual ~Stepper() = default;
     /// Forces, matrices and whatever else is needed at the present step. Collective.
     virtual void prepare(StepTimeline*) = 0;
-    /// Velocities as an observer sees them, and what else is asked for; after prepare(). Collective.
-    virtual void observe(Asked const&) = 0;
+    /// Velocities as an observer sees them, and what else is asked for; after prepare().
+    /// Collective.
+    virtual void observe(ObservedQuantities const&) = 0;
     virtual void step(std::int64_t n, StepTimeline*) = 0;
     virtual double constraint_error() = 0;
     /// After step n: how far joints are open is noted where that costs next to nothing.
     virtual void note_error(std::int64_t /*n*/) {}
-    /// constraint_error() at step n, after prepare(). Steps since the last call that left joints open beyond the tolerance are taken again
-    /// first, with further sweeps. Collective.
+    /// constraint_error() at step n, after prepare(). Steps since the last call that left joints
+    /// open beyond the tolerance are taken again first, with further sweeps. Collective.
     virtual double look(std::int64_t /*n*/) { return constraint_error(); }
-    /// After a prepare() at step n that failed on all ranks alike: takes steps since the last look() that left joints open again, and
-    /// prepares. False where there are none. Collective.
+    /// After a prepare() at step n that failed on all ranks alike: takes steps since the last
+    /// look() that left joints open again, and prepares. False where there are none. Collective.
     virtual bool mend(std::int64_t /*n*/) { return false; }
     /// What there is to say of that in the end; empty: nothing.
     virtual std::string note_of_sweeps() const { return ""; }
-    /// One more projection sweep from now on where `watch` says that one is due and there is one to add. Returns whether it was added.
+    /// One more projection sweep from now on where `watch` says that one is due and there is one to
+    /// add. Returns whether it was added.
     bool adapt(SweepWatch& watch, double error, double tolerance);
     /// Of a drift; in joint coordinates corrections of jointed tips.
     virtual int sweeps() const = 0;
@@ -57,7 +62,8 @@ class Stepper {
     virtual void save(ChainSystem::OwnState&) const {}
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;
-    /// As restore(), for a run that goes on from there in another way: nothing of how the checkpoint's run stepped is kept.
+    /// As restore(), for a run that goes on from there in another way: nothing of how the
+    /// checkpoint's run stepped is kept.
     virtual void branch(Checkpoint const&) = 0;
 
   protected:

@@ -32,6 +32,8 @@ class VelocityVerlet final : public JointIntegrator {
 
 }  // namespace
 
-std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem& system) { return std::make_unique<VelocityVerlet>(system); }
+std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem& system) {
+    return std::make_unique<VelocityVerlet>(system);
+}
 
 }  // namespace catena

@@ -1,6 +1,7 @@
-// All ranks by parallel HDF5. A write that fails on one rank leaves the others waiting within HDF5, and at times that rank as well: MPI
-// tells of it before HDF5 does, and there the program ends. So the failure to be expected, a full disk, is looked for before: rank 0 takes
-// the room for a frame or a checkpoint from the system before anybody writes, and all ranks end in good order.
+// All ranks by parallel HDF5. A write that fails on one rank leaves the others waiting within HDF5,
+// and at times that rank as well: MPI tells of it before HDF5 does, and there the program ends. So
+// the failure to be expected, a full disk, is looked for before: rank 0 takes the room for a frame
+// or a checkpoint from the system before anybody writes, and all ranks end in good order.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -17,12 +18,14 @@
 namespace catena::hdf5 {
 namespace {
 
-/// Open MPI's own way to files (OMPIO, 4.1) keeps quiet about writes that fail; its other one is everybody's ROMIO (mpi_communicator.cpp).
+/// Open MPI's own way to files (OMPIO, 4.1) keeps quiet about writes that fail; its other one is
+/// everybody's ROMIO (mpi_communicator.cpp).
 bool is_quiet_about_failures() {
     if (!message_passing_library().starts_with("Open MPI")) return false;
     char const* const chosen = std::getenv("OMPI_MCA_io");
     std::string_view const word = chosen != nullptr ? chosen : "";
-    return !word.starts_with("romio") && !(word.starts_with("^") && word.find("ompio") != word.npos);
+    return !word.starts_with("romio") &&
+           !(word.starts_with("^") && word.find("ompio") != word.npos);
 }
 
 /// Files whose failure ends the program, while their writers live.
@@ -37,12 +40,14 @@ std::vector<Watched>& watched() {
     return all;
 }
 
-/// Rank 0 has the first word, and the others are ended before they would have theirs, on a busy machine too.
+/// Rank 0 has the first word, and the others are ended before they would have theirs, on a busy
+/// machine too.
 void end_all(MPI_File* file, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's signature
     char text[MPI_MAX_ERROR_STRING] = "";
     int length = 0;
     MPI_Error_string(*code, text, &length);
-    auto const failed = std::find_if(watched().rbegin(), watched().rend(), [&](Watched const& one) { return one.file == *file; });
+    auto const failed = std::find_if(watched().rbegin(), watched().rend(),
+                                     [&](Watched const& one) { return one.file == *file; });
     if (failed == watched().rend()) {
         std::fprintf(stderr, "catena: cannot write a file: %s\n", text);
         MPI_Abort(MPI_COMM_WORLD, 1);
@@ -55,7 +60,8 @@ void end_all(MPI_File* file, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's
 
 class AllWriters final : public Writers {
   public:
-    explicit AllWriters(Communicator const& communicator) : communicator_(communicator), transfer_(H5Pcreate(H5P_DATASET_XFER)) {
+    explicit AllWriters(Communicator const& communicator)
+        : communicator_(communicator), transfer_(H5Pcreate(H5P_DATASET_XFER)) {
         if (!transfer_ || H5Pset_dxpl_mpio(transfer_.get(), H5FD_MPIO_COLLECTIVE) < 0)
             throw ComputationError("cannot write together: " + cause());
     }
@@ -66,7 +72,8 @@ class AllWriters final : public Writers {
     }
     bool are_several() const override { return true; }
     bool is_first() const override { return communicator_.rank() == 0; }
-    void prepare(Properties const& access, std::string const& file, std::string const& doing) const override {
+    void prepare(Properties const& access, std::string const& file,
+                 std::string const& doing) const override {
         check(H5Pset_fapl_mpio(access.get(), handle_of(communicator_), MPI_INFO_NULL), file, doing);
         check(H5Pset_coll_metadata_write(access.get(), true), file, doing);
     }
@@ -74,7 +81,8 @@ class AllWriters final : public Writers {
         void* opened = nullptr;
         check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &opened), file, doing);
         MPI_File const file_of_mpi = *static_cast<MPI_File const*>(opened);
-        watched().push_back({this, file_of_mpi, &communicator_, "cannot " + doing + " (" + file + ")"});
+        watched().push_back(
+            {this, file_of_mpi, &communicator_, "cannot " + doing + " (" + file + ")"});
         MPI_Errhandler handler = MPI_ERRHANDLER_NULL;
         check_mpi(MPI_File_create_errhandler(end_all, &handler), "MPI_File_create_errhandler");
         check_mpi(MPI_File_set_errhandler(file_of_mpi, handler), "MPI_File_set_errhandler");
@@ -83,22 +91,27 @@ class AllWriters final : public Writers {
     hid_t transfer() const override { return transfer_.get(); }
     std::int64_t sum(std::int64_t value) const override { return communicator_.sum(value); }
 
-    void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing) override {
+    void make_room(File const&, hsize_t more, std::string const& file,
+                   std::string const& doing) override {
         grown_ += static_cast<off_t>(more);
         on_first_rank(communicator_, [&] { reserve(file, doing); });
     }
-    void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) const override {
+    void flush_to_disk(File const& handle, std::string const& file,
+                       std::string const& doing) const override {
         check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);  // MPI_File_sync is part of it
     }
-    /// Metadata are in HDF5's memory alone, data of frames that they do not tell of harm nobody: what is never closed stays as it is.
+    /// Metadata are in HDF5's memory alone, data of frames that they do not tell of harm nobody:
+    /// what is never closed stays as it is.
     bool leave_as_flushed(File const&) const override { return false; }
 
   private:
     void reserve(std::string const& file, std::string const& doing) {
         Descriptor const opened(file, O_RDWR, file, doing);
-        // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left it.
+        // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left
+        // it.
         if (reserved_ == 0) reserved_ = first_ = ::lseek(opened.get(), 0, SEEK_END);
-        off_t const wanted = first_ + grown_ + grown_ / 64 + (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
+        off_t const wanted = first_ + grown_ + grown_ / 64 +
+                             (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
         if (wanted <= reserved_) return;
         take_from_system(opened.get(), reserved_, wanted - reserved_, file, doing);
         reserved_ = wanted;
@@ -106,16 +119,21 @@ class AllWriters final : public Writers {
 
     Communicator const& communicator_;
     Properties transfer_;
-    off_t first_ = 0, grown_ = 0, reserved_ = 0;  // bytes: at first, of frames since, taken from the system
+    off_t first_ = 0, grown_ = 0,
+          reserved_ = 0;  // bytes: at first, of frames since, taken from the system
 };
 
 }  // namespace
 
 std::string why_not_by_all(Communicator const& communicator) {
     if (handle_of(communicator) == MPI_COMM_NULL) return "these ranks are not MPI's";
-    return is_quiet_about_failures() ? "OMPIO keeps quiet about writes that fail (OMPI_MCA_io=^ompio)" : "";
+    return is_quiet_about_failures()
+               ? "OMPIO keeps quiet about writes that fail (OMPI_MCA_io=^ompio)"
+               : "";
 }
 
-std::unique_ptr<Writers> all_writers(Communicator const& communicator) { return std::make_unique<AllWriters>(communicator); }
+std::unique_ptr<Writers> all_writers(Communicator const& communicator) {
+    return std::make_unique<AllWriters>(communicator);
+}
 
 }  // namespace catena::hdf5

@@ -1,4 +1,5 @@
-// Reads a checkpoint, as far as its seal and its checksums hold; what lies where in the file: checkpoint_file.hpp.
+// Reads a checkpoint, as far as its seal and its checksums hold; what lies where in the file:
+// checkpoint_file.hpp.
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -19,8 +20,10 @@ using namespace hdf5;
 /// A checkpoint as it is when it is opened: a run that writes puts others under its name.
 class OpenedCheckpoint {
   public:
-    explicit OpenedCheckpoint(std::string const& file) : file_(file), descriptor_(file, O_RDONLY | O_NONBLOCK, file, reading_checkpoint) {}
-    /// Leads to what is open, whatever has the name by now; where the system has no such paths, by the name.
+    explicit OpenedCheckpoint(std::string const& file)
+        : file_(file), descriptor_(file, O_RDONLY | O_NONBLOCK, file, reading_checkpoint) {}
+    /// Leads to what is open, whatever has the name by now; where the system has no such paths, by
+    /// the name.
     std::string path() const {
         std::string const opened = "/proc/self/fd/" + std::to_string(descriptor_.get());
         return ::access(opened.c_str(), R_OK) == 0 ? opened : file_;
@@ -31,11 +34,13 @@ class OpenedCheckpoint {
     Descriptor descriptor_;
 };
 
-std::unique_ptr<OpenedCheckpoint const> open_checkpoint(std::string const& file, std::string const& remedy) {
+std::unique_ptr<OpenedCheckpoint const> open_checkpoint(std::string const& file,
+                                                        std::string const& remedy) {
     try {
         return std::make_unique<OpenedCheckpoint const>(file);
     } catch (ComputationError const& error) {
-        throw InputError("the checkpoint cannot be read, " + std::string(error.what()), file, remedy);
+        throw InputError("the checkpoint cannot be read, " + std::string(error.what()), file,
+                         remedy);
     }
 }
 
@@ -47,12 +52,14 @@ bool is_plain_hdf5(std::string const& file) {
 }
 
 /// Throws InputError for what HDF5 had better not see at `path`; messages name `file`.
-void require_seal(std::string const& path, std::string const& file, bool has_previous, std::string const& remedy) {
+void require_seal(std::string const& path, std::string const& file, bool has_previous,
+                  std::string const& remedy) {
     std::string const name_one = "name the checkpoint.h5 of a run";
     try {
         SealKind const kind = kind_of_seal(path);
         if (kind == SealKind::earlier)
-            throw InputError("a checkpoint of another version of Catena", file, "restart with the version that wrote it");
+            throw InputError("a checkpoint of another version of Catena", file,
+                             "restart with the version that wrote it");
         if (kind == SealKind::own) {
             if (std::string const wrong = broken_seal(path); !wrong.empty())
                 throw InputError("the checkpoint is damaged, " + wrong, file, remedy);
@@ -64,23 +71,28 @@ void require_seal(std::string const& path, std::string const& file, bool has_pre
     } catch (InputError const&) {
         throw;
     } catch (std::exception const& error) {
-        throw InputError("the checkpoint cannot be read, " + std::string(error.what()), file, remedy);
+        throw InputError("the checkpoint cannot be read, " + std::string(error.what()), file,
+                         remedy);
     }
-    throw InputError("not a checkpoint of Catena, or damaged", file, has_previous ? remedy : name_one);
+    throw InputError("not a checkpoint of Catena, or damaged", file,
+                     has_previous ? remedy : name_one);
 }
 
 }  // namespace
 
 std::string previous_checkpoint(std::string const& file) {
     std::filesystem::path const path(file);
-    return (path.parent_path() / (path.stem().string() + ".previous" + path.extension().string())).string();
+    return (path.parent_path() / (path.stem().string() + ".previous" + path.extension().string()))
+        .string();
 }
 
 Checkpoint read_checkpoint(std::string const& file) {
     Quiet const quiet;
     std::error_code unseen;
     bool const exists = std::filesystem::exists(file, unseen);
-    if (unseen) throw InputError("the checkpoint cannot be accessed, " + unseen.message(), file, "name the checkpoint.h5 of a run");
+    if (unseen)
+        throw InputError("the checkpoint cannot be accessed, " + unseen.message(), file,
+                         "name the checkpoint.h5 of a run");
     if (!exists) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_checkpoint(file);
     bool const has_previous = std::filesystem::exists(previous, unseen);
@@ -91,7 +103,8 @@ Checkpoint read_checkpoint(std::string const& file) {
         require_seal(opened.path(), file, has_previous, remedy);
         File const handle(H5Fopen(opened.path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
         if (!handle) throw InputError("not a checkpoint, " + cause(), file, remedy);
-        CheckpointRead read = read_checkpoint_file({handle.get(), file, reading_checkpoint}, Arrays::keep, {});
+        CheckpointRead read =
+            read_checkpoint_file({handle.get(), file, reading_checkpoint}, Arrays::keep, {});
         if (read.checksum != checksum_of(read.contents, read.sizes, read.of_values))
             throw ComputationError("its checksum does not fit its contents");
         return std::move(read.contents);

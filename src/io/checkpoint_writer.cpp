@@ -6,8 +6,8 @@
 
 #include "error.hpp"
 #include "io/checkpoint_file.hpp"
-#include "io/output_file.hpp"
 #include "io/file_seal.hpp"
+#include "io/output_file.hpp"
 #include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
 
@@ -18,7 +18,8 @@ using namespace hdf5;
 
 std::string const& writing = writing_checkpoint;
 
-/// The file of this name stays; `previous` becomes another name of it, so that no moment is without a checkpoint.
+/// The file of this name stays; `previous` becomes another name of it, so that no moment is without
+/// a checkpoint.
 void keep_previous(std::string const& file) {
     std::string const previous = previous_checkpoint(file), spare = previous + ".writing";
     ::unlink(spare.c_str());
@@ -31,14 +32,17 @@ void keep_previous(std::string const& file) {
 
 /// Over all ranks, whole: in halves, which do not run over.
 std::uint64_t sum_over(Communicator const& communicator, std::uint64_t value) {
-    auto const low = static_cast<std::uint64_t>(communicator.sum(static_cast<std::int64_t>(value & 0xffffffffU)));
-    auto const high = static_cast<std::uint64_t>(communicator.sum(static_cast<std::int64_t>(value >> 32)));
+    auto const low = static_cast<std::uint64_t>(
+        communicator.sum(static_cast<std::int64_t>(value & 0xffffffffU)));
+    auto const high =
+        static_cast<std::uint64_t>(communicator.sum(static_cast<std::int64_t>(value >> 32)));
     return low + (high << 32);
 }
 
 std::int64_t bytes_of(ArraySizes const& sizes) {
     std::int64_t bytes = 0;
-    for (auto const& [name, size] : sizes) bytes += size * static_cast<std::int64_t>(sizeof(double));
+    for (auto const& [name, size] : sizes)
+        bytes += size * static_cast<std::int64_t>(sizeof(double));
     return bytes;
 }
 
@@ -51,19 +55,22 @@ struct CheckpointWriter::Draft {
     Checkpoint head;              // without arrays
     ArraySizes later, sizes;      // of arrays that put() brings, and of all
     std::uint64_t of_values = 0;  // of those that are this rank's
-    FileWay way;
+    ParallelIoMode way;
     std::unique_ptr<Writers> writers;  // null on ranks that leave it to the root
     File handle;
     std::map<std::string, Dataset> data;
     std::exception_ptr failure;  // of the root's, which writes alone
     bool is_finished = false;
-    int to_other_host = 0;  // ranks from one to the next that looks at its share: on another host where ranks lie host by host
+    int to_other_host = 0;  // ranks from one to the next that looks at its share: on another host
+                            // where ranks lie host by host
 
-    Draft(Communicator const& of, std::string const& written, Checkpoint const& checkpoint, ArraySizes const& by_put)
+    Draft(Communicator const& of, std::string const& written, Checkpoint const& checkpoint,
+          ArraySizes const& by_put)
         : communicator(of),
           file(written),
           name(written + ".writing"),
-          head{checkpoint.step, checkpoint.time, checkpoint.scene_hash, checkpoint.notes, checkpoint.integers, {}},
+          head{checkpoint.step,  checkpoint.time,     checkpoint.scene_hash,
+               checkpoint.notes, checkpoint.integers, {}},
           later(by_put),
           sizes(by_put) {
         for (auto const& [array, values] : checkpoint.arrays) {
@@ -86,7 +93,8 @@ struct CheckpointWriter::Draft {
         writers->prepare(access, file, writing);
         handle = File(check(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.get()), file, writing));
         writers->watch(handle, file, writing);
-        for (auto const& [array, size] : later) data[array] = open_array({handle.get(), file, writing}, array);
+        for (auto const& [array, size] : later)
+            data[array] = open_array({handle.get(), file, writing}, array);
     }
     /// Others may not know that this rank ends here: then nothing is closed together.
     void leave_open() {
@@ -103,14 +111,19 @@ struct CheckpointWriter::Draft {
         for (ArrayPart const& part : parts) {
             if (part.values.empty()) continue;
             hsize_t const first = static_cast<hsize_t>(part.first), count = part.values.size();
-            check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_OR, &first, nullptr, &count, nullptr), file, writing);
-            if (parts.size() > 1) joined.insert(joined.end(), part.values.begin(), part.values.end());
+            check(
+                H5Sselect_hyperslab(in_file.get(), H5S_SELECT_OR, &first, nullptr, &count, nullptr),
+                file, writing);
+            if (parts.size() > 1)
+                joined.insert(joined.end(), part.values.begin(), part.values.end());
             of_values += checksum_of_values(array, part.first, part.values);
             numbers += count;
         }
         Space const in_memory(check(H5Screate_simple(1, &numbers, nullptr), file, writing));
         double const* const values = parts.size() == 1 ? parts[0].values.data() : joined.data();
-        check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), writers->transfer(), values), file, writing);
+        check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(),
+                       writers->transfer(), values),
+              file, writing);
     }
     void close() {
         for (auto& [array, dataset] : data) check(dataset.close(), file, writing);
@@ -122,21 +135,25 @@ struct CheckpointWriter::Draft {
     void share(int apart, Look const& look) const {
         on_every_rank(communicator, [&] {
             if (way.collective)
-                look(Reader{(communicator.rank() + apart) % communicator.size(), communicator.size()});
+                look(Reader{(communicator.rank() + apart) % communicator.size(),
+                            communicator.size()});
             else if (is_first())
                 look(Reader{});
         });
     }
     Sealed sum_of_pieces(int apart) const {
         Sealed own;
-        share(apart, [&](Reader reader) { own = sum_pieces(name, reader.number, reader.of, file, writing); });
+        share(apart, [&](Reader reader) {
+            own = sum_pieces(name, reader.number, reader.of, file, writing);
+        });
         return {communicator.sum(own.bytes), sum_over(communicator, own.checksum)};
     }
     void seal() const {
         Sealed const sealed = sum_of_pieces(0);
         on_first_rank(communicator, [&] { put_seal(name, sealed, file, writing); });
         if (!way.collective) return;
-        Sealed const again = sum_of_pieces(to_other_host);  // one that does not see yet what another one has written
+        Sealed const again =
+            sum_of_pieces(to_other_host);  // one that does not see yet what another one has written
         on_first_rank(communicator, [&] {
             if (again != sealed) refuse("ranks do not see the same file");
         });
@@ -145,33 +162,40 @@ struct CheckpointWriter::Draft {
         CheckpointRead read;
         share(to_other_host, [&](Reader reader) {
             try {
-                File const back(check(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name, reading_checkpoint));
-                read = read_checkpoint_file({back.get(), name, reading_checkpoint}, Arrays::only_check, reader);
+                File const back(check(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name,
+                                      reading_checkpoint));
+                read = read_checkpoint_file({back.get(), name, reading_checkpoint},
+                                            Arrays::only_check, reader);
             } catch (std::exception const& error) {
                 refuse(error.what());
             }
         });
         std::uint64_t const all = sum_over(communicator, read.of_values);
         on_first_rank(communicator, [&] {
-            if (read.checksum != checksum_of(read.contents, read.sizes, all)) refuse("its checksum does not fit its contents");
+            if (read.checksum != checksum_of(read.contents, read.sizes, all))
+                refuse("its checksum does not fit its contents");
         });
     }
     [[noreturn]] void refuse(std::string const& why) const {
-        throw ComputationError("cannot write the checkpoint (" + file + "): it does not read back, " + why);
+        throw ComputationError("cannot write the checkpoint (" + file +
+                               "): it does not read back, " + why);
     }
 };
 
-CheckpointWriter::CheckpointWriter(Communicator const& communicator, std::string const& file, Checkpoint const& checkpoint,
+CheckpointWriter::CheckpointWriter(Communicator const& communicator, std::string const& file,
+                                   Checkpoint const& checkpoint,
                                    std::map<std::string, std::int64_t> const& later) {
     Quiet const quiet;
     draft_ = std::make_unique<Draft>(communicator, file, checkpoint, later);
     Draft& draft = *draft_;
     on_first_rank(communicator, [&] { make_checkpoint_file(draft.name, file, checkpoint, later); });
-    draft.way = choose_file_way(communicator, file_wish_of_run(communicator), draft.name, bytes_of(later), "arrays");
+    draft.way = choose_file_way(communicator, requested_io_mode_of_run(communicator), draft.name,
+                                bytes_of(later), "arrays");
     if (draft.way.collective) {
         std::unique_ptr<Writers> all;
-        std::string const why =
-            why_not_together(communicator, {[&] { all = all_writers(communicator); }, [&] { draft.open(std::move(all)); }});
+        std::string const why = why_not_together(
+            communicator,
+            {[&] { all = all_writers(communicator); }, [&] { draft.open(std::move(all)); }});
         auto const of_host = static_cast<int>(communicator.max(communicator.ranks_on_host()));
         draft.to_other_host = of_host < communicator.size() ? of_host : 1;
         if (why.empty()) return;
@@ -187,7 +211,7 @@ CheckpointWriter::~CheckpointWriter() {
     draft_.reset();
 }
 
-FileWay const& CheckpointWriter::way() const { return draft_->way; }
+ParallelIoMode const& CheckpointWriter::way() const { return draft_->way; }
 
 void CheckpointWriter::put(std::string const& array, std::span<ArrayPart const> parts) {
     if (draft_->failure) return;
@@ -212,7 +236,9 @@ void CheckpointWriter::finish() {
             draft.close();
         });
     std::uint64_t const all = sum_over(communicator, draft.of_values);
-    on_first_rank(communicator, [&] { put_checksum(draft.name, draft.file, checksum_of(draft.head, draft.sizes, all)); });
+    on_first_rank(communicator, [&] {
+        put_checksum(draft.name, draft.file, checksum_of(draft.head, draft.sizes, all));
+    });
     draft.seal();
     draft.require_that_it_reads_back();
     on_first_rank(communicator, [&] {

@@ -1,5 +1,6 @@
-// 64-bit checksums, of a stream of words and of words at their places. One round is that of xxHash64 (Y. Collet, https://xxhash.com): for a
-// given state it maps words one to one, so a change of any single word is always seen.
+// 64-bit checksums, of a stream of words and of words at their places. One round is that of
+// xxHash64 (Y. Collet, https://xxhash.com): for a given state it maps words one to one, so a change
+// of any single word is always seen.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +39,9 @@ class Checksum {
     std::uint64_t state_ = 0x27D4EB2F165667C5ULL, words_ = 0;
 };
 
-/// Of a word at its place, mixed one to one: a change of any single word is always seen in the sum over all places, and neither who adds
-/// which words nor in which order matters. The rounds are those above.
+/// Of a word at its place, mixed one to one: a change of any single word is always seen in the sum
+/// over all places, and neither who adds which words nor in which order matters. The rounds are
+/// those above.
 inline std::uint64_t checksum_at(std::uint64_t place, std::uint64_t word) {
     Checksum sum;
     sum.add(place);

@@ -1,4 +1,5 @@
-// Numbers with a few decimals, as fmt writes them but in a tenth of its time: text files hold them by the ten million.
+// Numbers with a few decimals, as fmt writes them but in a tenth of its time: text files hold them
+// by the ten million.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +15,8 @@ class Decimals {
   public:
     Decimals(double value, int places) {
         constexpr double ten_to_the[] = {1, 10, 100, 1000}, most = 1e12, doubt = 1e-3;
-        double const scaled = std::abs(value) * ten_to_the[places], whole = std::floor(scaled), rest = scaled - whole;
+        double const scaled = std::abs(value) * ten_to_the[places], whole = std::floor(scaled),
+                     rest = scaled - whole;
         // The product is a little off: what lies so near to a half may belong on its other side.
         if (!(scaled < most) || std::abs(rest - 0.5) < doubt) {
             begin_ = text_;

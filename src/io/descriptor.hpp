@@ -19,7 +19,9 @@ class Descriptor {
   public:
     /// Messages say "cannot <doing> (<shown>)".
     Descriptor(std::string const& file, int flags, std::string shown, std::string doing)
-        : shown_(std::move(shown)), doing_(std::move(doing)), descriptor_(::open(file.c_str(), flags | O_CLOEXEC)) {
+        : shown_(std::move(shown)),
+          doing_(std::move(doing)),
+          descriptor_(::open(file.c_str(), flags | O_CLOEXEC)) {
         if (descriptor_ < 0) fail();
     }
     ~Descriptor() { ::close(descriptor_); }
@@ -31,7 +33,8 @@ class Descriptor {
     std::size_t read(char* to, std::size_t most, std::int64_t at) const {
         std::size_t done = 0;
         while (done < most) {
-            ssize_t const count = ::pread(descriptor_, to + done, most - done, at + static_cast<std::int64_t>(done));
+            ssize_t const count =
+                ::pread(descriptor_, to + done, most - done, at + static_cast<std::int64_t>(done));
             if (count < 0 && errno == EINTR) continue;
             if (count < 0) fail();
             if (count == 0) break;
@@ -51,7 +54,8 @@ class Descriptor {
 
   private:
     [[noreturn]] void fail() const {
-        throw ComputationError("cannot " + doing_ + " (" + shown_ + "): " + std::generic_category().message(errno));
+        throw ComputationError("cannot " + doing_ + " (" + shown_ +
+                               "): " + std::generic_category().message(errno));
     }
 
     std::string shown_, doing_;

@@ -1,4 +1,5 @@
-// Attributes, fixed arrays and growing series in an HDF5 file: what trajectory and checkpoint are made of.
+// Attributes, fixed arrays and growing series in an HDF5 file: what trajectory and checkpoint are
+// made of.
 #pragma once
 
 #include <span>
@@ -27,10 +28,12 @@ void put_text(Place const&, std::string const& name, std::string_view text);
 void put_texts(Place const&, std::string const& name, std::span<std::string const> texts);
 /// Variable length, UTF-8: MDAnalysis refuses fixed-length units.
 void put_unit(Place const&, std::string const& unit);
-/// A string attribute; "" when it is absent or no string, or of variable length: HDF5 breaks where such texts are damaged.
+/// A string attribute; "" when it is absent or no string, or of variable length: HDF5 breaks where
+/// such texts are damaged.
 std::string get_text(Place const&, std::string const& name);
 
-Dataset put_array(Place const&, std::string const& name, hid_t type, void const* values, std::span<hsize_t const> shape);
+Dataset put_array(Place const&, std::string const& name, hid_t type, void const* values,
+                  std::span<hsize_t const> shape);
 Dataset put_array(Place const&, std::string const& name, std::span<double const> values);
 Dataset put_array(Place const&, std::string const& name, std::span<std::int64_t const> values);
 Dataset put_array(Place const&, std::string const& name, std::span<std::string const> texts);
@@ -39,7 +42,8 @@ Dataset put_array(Place const&, std::string const& name, std::span<std::string c
 class Series {
   public:
     Series() = default;
-    static Series create(Place const&, std::string const& name, hid_t type, std::vector<hsize_t> row);
+    static Series create(Place const&, std::string const& name, hid_t type,
+                         std::vector<hsize_t> row);
     static Series open(Place const&, std::string const& name, hid_t type);
     /// Entries along a row's first extent.
     struct Part {
@@ -47,8 +51,10 @@ class Series {
     };
     /// Writes row `frame`, growing to frame + 1 rows; where `values` is null it only grows.
     void put(Place const&, hsize_t frame, void const* values);
-    /// Of that row these parts, which follow one another in the row as they do in `values`. `transfer`: of the file's writers.
-    void put(Place const&, hsize_t frame, std::span<Part const> parts, void const* values, hid_t transfer);
+    /// Of that row these parts, which follow one another in the row as they do in `values`.
+    /// `transfer`: of the file's writers.
+    void put(Place const&, hsize_t frame, std::span<Part const> parts, void const* values,
+             hid_t transfer);
     /// Bytes that row `frame` adds to the file.
     hsize_t growth(Place const&, hsize_t frame) const;
     /// Whether all ranks can write into it: its room is there before anybody writes.

@@ -34,7 +34,8 @@ herr_t innermost_first(unsigned, H5E_error2_t const* error, void* found) {
 }  // namespace
 
 Quiet::Quiet() {
-    // At exit HDF5 would try once more to close files that a full disk kept open, and crash. All that is ours is closed by then.
+    // At exit HDF5 would try once more to close files that a full disk kept open, and crash. All
+    // that is ours is closed by then.
     [[maybe_unused]] static herr_t const no_clean_up_at_exit = H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -48,14 +49,17 @@ std::string cause() {
     return text.empty() ? "HDF5 gives no reason" : text;
 }
 
-void fail(std::string const& file, std::string const& doing) { throw ComputationError("cannot " + doing + " (" + file + "): " + cause()); }
+void fail(std::string const& file, std::string const& doing) {
+    throw ComputationError("cannot " + doing + " (" + file + "): " + cause());
+}
 
 hid_t create_anew(std::string const& file, hid_t creation, hid_t access) {
     ::unlink(file.c_str());
     return H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation, access);
 }
 
-void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes, std::string const& file, std::string const& doing) {
+void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes,
+                      std::string const& file, std::string const& doing) {
     int error = 0;
     do error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;
     while (error == EINTR);
@@ -76,14 +80,17 @@ std::int64_t size_of(File const& handle, std::string const& file, std::string co
 }
 }  // namespace
 
-void make_room(File const& handle, hsize_t more, std::string const& file, std::string const& doing) {
+void make_room(File const& handle, hsize_t more, std::string const& file,
+               std::string const& doing) {
     std::int64_t const written = size_of(handle, file, doing) + static_cast<std::int64_t>(more);
-    std::int64_t const not_placed_yet = std::min<std::int64_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
+    std::int64_t const not_placed_yet =
+        std::min<std::int64_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
     take_from_system(descriptor_of(handle, file, doing), 0, written + not_placed_yet, file, doing);
 }
 
 void take_room(File const& handle, std::string const& file, std::string const& doing) {
-    take_from_system(descriptor_of(handle, file, doing), 0, size_of(handle, file, doing), file, doing);
+    take_from_system(descriptor_of(handle, file, doing), 0, size_of(handle, file, doing), file,
+                     doing);
 }
 
 void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) {
@@ -95,7 +102,8 @@ void leave_as_flushed(File const& handle) {
     void* descriptor = nullptr;
     int const nowhere = memfd_create("catena", 0);
     if (nowhere < 0) return;
-    if (H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &descriptor) >= 0) dup2(nowhere, *static_cast<int const*>(descriptor));
+    if (H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &descriptor) >= 0)
+        dup2(nowhere, *static_cast<int const*>(descriptor));
     ::close(nowhere);
 }
 
@@ -108,7 +116,8 @@ void start_hdf5() { hdf5::Quiet const started; }
 std::string hdf5_version() {
     unsigned major = 0, minor = 0, release = 0;
     H5get_libversion(&major, &minor, &release);
-    return "HDF5 " + std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+    return "HDF5 " + std::to_string(major) + "." + std::to_string(minor) + "." +
+           std::to_string(release);
 }
 
 }  // namespace catena

@@ -1,4 +1,5 @@
-// Owners of HDF5 handles, and the one way an HDF5 failure becomes an error: one line with file and cause.
+// Owners of HDF5 handles, and the one way an HDF5 failure becomes an error: one line with file and
+// cause.
 #pragma once
 
 #include <hdf5.h>
@@ -9,8 +10,8 @@
 
 namespace catena::hdf5 {
 
-/// HDF5 prints its error stack on stderr unless told not to; while a Quiet lives it does not. Every use of HDF5 starts with one: the
-/// first also takes HDF5 out of the process's exit.
+/// HDF5 prints its error stack on stderr unless told not to; while a Quiet lives it does not. Every
+/// use of HDF5 starts with one: the first also takes HDF5 out of the process's exit.
 class Quiet {
   public:
     Quiet();
@@ -59,7 +60,8 @@ using Attribute = Handle<&H5Aclose>;
 using Object = Handle<&H5Oclose>;
 using Properties = Handle<&H5Pclose>;
 
-/// The innermost reason on HDF5's error stack, the system's own words where it holds them ("No space left on device").
+/// The innermost reason on HDF5's error stack, the system's own words where it holds them ("No
+/// space left on device").
 std::string cause();
 
 /// Throws ComputationError "cannot <doing> (<file>): <cause>".
@@ -72,18 +74,23 @@ Status check(Status status, std::string const& file, std::string const& doing) {
     return status;
 }
 
-/// H5Fcreate of a file that nobody else has: what was there is removed, a link or a pipe too, and nothing is followed.
+/// H5Fcreate of a file that nobody else has: what was there is removed, a link or a pipe too, and
+/// nothing is followed.
 hid_t create_anew(std::string const& file, hid_t creation, hid_t access);
 
-/// Takes these bytes of a file from the system before anybody writes them. Where the file system cannot, a full disk shows at the writes.
-void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes, std::string const& file, std::string const& doing);
-/// On the disk for all that a flush writes and `more` bytes: a full one is found before anything in the file is overwritten.
+/// Takes these bytes of a file from the system before anybody writes them. Where the file system
+/// cannot, a full disk shows at the writes.
+void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes,
+                      std::string const& file, std::string const& doing);
+/// On the disk for all that a flush writes and `more` bytes: a full one is found before anything in
+/// the file is overwritten.
 void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing);
 /// On the disk for all that has its place in the file.
 void take_room(File const&, std::string const& file, std::string const& doing);
 /// Everything written so far reaches the disk: H5Fflush, then fsync.
 void flush_to_disk(File const&, std::string const& file, std::string const& doing);
-/// For a file in which something could not be written: as its last flush left it, whatever HDF5 still does to it.
+/// For a file in which something could not be written: as its last flush left it, whatever HDF5
+/// still does to it.
 void leave_as_flushed(File const&);
 
 }  // namespace catena::hdf5

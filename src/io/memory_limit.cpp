@@ -29,14 +29,19 @@ std::int64_t least_of(std::string const& mounted, std::string path, char const* 
     }
 }
 
-/// Lines of `own` are "number:controllers:path"; of version 2, whose limits are in one tree, "0::path".
+/// Lines of `own` are "number:controllers:path"; of version 2, whose limits are in one tree,
+/// "0::path".
 std::int64_t limit_of_groups(std::string const& groups, std::string const& own) {
-    std::int64_t least = std::min(number_in(groups + "/memory.max"), number_in(groups + "/memory/memory.limit_in_bytes"));
+    std::int64_t least = std::min(number_in(groups + "/memory.max"),
+                                  number_in(groups + "/memory/memory.limit_in_bytes"));
     std::ifstream in(own);
     for (std::string line; std::getline(in, line);) {
         std::size_t const first = line.find(':'), second = line.find(':', first + 1);
-        if (first == std::string::npos || second == std::string::npos || line.compare(second + 1, 1, "/") != 0) continue;
-        std::string const controllers = "," + line.substr(first + 1, second - first - 1) + ",", path = line.substr(second + 1);
+        if (first == std::string::npos || second == std::string::npos ||
+            line.compare(second + 1, 1, "/") != 0)
+            continue;
+        std::string const controllers = "," + line.substr(first + 1, second - first - 1) + ",",
+                          path = line.substr(second + 1);
         if (controllers == ",,") least = std::min(least, least_of(groups, path, "memory.max"));
         if (controllers.find(",memory,") != std::string::npos)
             least = std::min(least, least_of(groups + "/memory", path, "memory.limit_in_bytes"));
@@ -47,7 +52,8 @@ std::int64_t limit_of_groups(std::string const& groups, std::string const& own) 
 std::int64_t limit_of_process() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return none;
-    return limit.rlim_cur > static_cast<rlim_t>(none) ? none : static_cast<std::int64_t>(limit.rlim_cur);
+    return limit.rlim_cur > static_cast<rlim_t>(none) ? none
+                                                      : static_cast<std::int64_t>(limit.rlim_cur);
 }
 
 }  // namespace

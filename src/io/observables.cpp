@@ -21,14 +21,18 @@ std::string header_of(std::vector<std::string> const& columns, std::string const
 std::optional<std::int64_t> step_of(std::string_view line) {
     std::int64_t step = 0;
     auto const [end, error] = std::from_chars(line.data(), line.data() + line.size(), step);
-    if (error != std::errc() || end == line.data() + line.size() || *end != ',') return std::nullopt;
+    if (error != std::errc() || end == line.data() + line.size() || *end != ',')
+        return std::nullopt;
     return step;
 }
 
 /// How many bytes of an earlier run's table stay: its header and the whole lines up to a step.
-std::int64_t kept_size(std::string const& file, std::string const& header, GoOn const& go_on) {
-    std::string const beside = GoOn::way_beside;
-    if (!std::filesystem::exists(file)) throw InputError("no table of observables to go on with", file, "put it back, or " + beside);
+std::int64_t kept_size(std::string const& file, std::string const& header,
+                       Continuation const& go_on) {
+    std::string const beside = Continuation::way_beside;
+    if (!std::filesystem::exists(file))
+        throw InputError("no table of observables to go on with", file,
+                         "put it back, or " + beside);
     std::string const text = read_text_file(file);
     if (!text.starts_with(header))
         throw InputError("the table of observables has other columns than this run", file,
@@ -39,15 +43,18 @@ std::int64_t kept_size(std::string const& file, std::string const& header, GoOn 
         std::size_t const end = text.find('\n', kept);
         if (end == std::string::npos) break;  // a run that was killed while it wrote
         auto const step = step_of(std::string_view(text).substr(kept, end - kept));
-        if (!step) throw InputError("not a record of observables", file + ", line " + std::to_string(line), "mend the line, or " + beside);
+        if (!step)
+            throw InputError("not a record of observables", file + ", line " + std::to_string(line),
+                             "mend the line, or " + beside);
         if (*step > go_on.after_step) break;
         kept = end + 1;
         ++records;
     }
     if (records < go_on.records)
-        throw InputError(
-            fmt::format("the table of observables has lost lines: {} of the {} before the checkpoint are there", records, go_on.records),
-            file, "put the whole file back, or " + beside);
+        throw InputError(fmt::format("the table of observables has lost lines: {} of the {} before "
+                                     "the checkpoint are there",
+                                     records, go_on.records),
+                         file, "put the whole file back, or " + beside);
     return static_cast<std::int64_t>(kept);
 }
 
@@ -65,7 +72,8 @@ double number(std::string const& cell, std::string const& where) {
     double value = 0;
     auto const [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error == std::errc::result_out_of_range) return std::strtod(cell.c_str(), nullptr);
-    if (error != std::errc() || end != cell.data() + cell.size()) throw InputError("not a number: '" + cell + "'", where, "mend the table");
+    if (error != std::errc() || end != cell.data() + cell.size())
+        throw InputError("not a number: '" + cell + "'", where, "mend the table");
     return value;
 }
 
@@ -76,10 +84,13 @@ struct ObservablesWriter::File {
     std::size_t columns;
 };
 
-ObservablesWriter::ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<GoOn> const& go_on,
+ObservablesWriter::ObservablesWriter(std::string const& file,
+                                     std::vector<std::string> const& columns,
+                                     std::optional<Continuation> const& go_on,
                                      std::string const& time_unit) {
     std::string const header = header_of(columns, time_unit);
-    OutputFile out = go_on ? OutputFile::append(file, kept_size(file, header, *go_on)) : OutputFile::create(file);
+    OutputFile out = go_on ? OutputFile::append(file, kept_size(file, header, *go_on))
+                           : OutputFile::create(file);
     if (!go_on) out.write(header);
     out.sync();
     file_ = std::make_unique<File>(File{std::move(out), columns.size()});
@@ -89,8 +100,9 @@ ObservablesWriter::~ObservablesWriter() = default;
 
 void ObservablesWriter::write(std::int64_t step, double time, std::vector<double> const& values) {
     if (values.size() != file_->columns)
-        throw ComputationError(fmt::format("cannot write the observables ({}, step {}): {} values for {} columns", file_->out.name(), step,
-                                           values.size(), file_->columns));
+        throw ComputationError(
+            fmt::format("cannot write the observables ({}, step {}): {} values for {} columns",
+                        file_->out.name(), step, values.size(), file_->columns));
     std::string line = fmt::format("{},{:.17g}", step, time);
     for (double const value : values) line += fmt::format(",{:.17g}", value);
     file_->out.write(line + "\n");
@@ -115,16 +127,21 @@ ObservablesTable read_observables(std::string const& file) {
         std::string const where = file + ", line " + std::to_string(line + 1);
         begin = end + 1;
         if (line == 0) {
-            if (cells.size() < 2 || cells[0] != "step") throw InputError("not a table of observables", file, "name the table of a run");
+            if (cells.size() < 2 || cells[0] != "step")
+                throw InputError("not a table of observables", file, "name the table of a run");
             table.names = cells;
             table.columns.resize(cells.size());
             continue;
         }
         if (cells.size() != table.names.size())
-            throw InputError(fmt::format("{} cells for {} columns", cells.size(), table.names.size()), where, "mend the table");
-        for (std::size_t k = 0; k < cells.size(); ++k) table.columns[k].push_back(number(cells[k], where));
+            throw InputError(
+                fmt::format("{} cells for {} columns", cells.size(), table.names.size()), where,
+                "mend the table");
+        for (std::size_t k = 0; k < cells.size(); ++k)
+            table.columns[k].push_back(number(cells[k], where));
     }
-    if (table.names.empty()) throw InputError("an empty table of observables", file, "name the table of a run");
+    if (table.names.empty())
+        throw InputError("an empty table of observables", file, "name the table of a run");
     return table;
 }
 

@@ -11,7 +11,8 @@ struct ObservablesTable {
     std::vector<std::vector<double>> columns;  // one for each name
 };
 
-/// InputError naming file and line for anything but a table of ObservablesWriter; a last line without its end is left out.
+/// InputError naming file and line for anything but a table of ObservablesWriter; a last line
+/// without its end is left out.
 ObservablesTable read_observables(std::string const& file);
 
 }  // namespace catena

@@ -11,10 +11,12 @@ class OneWriter final : public Writers {
     void watch(File const&, std::string const&, std::string const&) override {}
     hid_t transfer() const override { return H5P_DEFAULT; }
     std::int64_t sum(std::int64_t value) const override { return value; }
-    void make_room(File const& handle, hsize_t more, std::string const& file, std::string const& doing) override {
+    void make_room(File const& handle, hsize_t more, std::string const& file,
+                   std::string const& doing) override {
         hdf5::make_room(handle, more, file, doing);
     }
-    void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) const override {
+    void flush_to_disk(File const& handle, std::string const& file,
+                       std::string const& doing) const override {
         hdf5::flush_to_disk(handle, file, doing);
     }
     bool leave_as_flushed(File const& handle) const override {

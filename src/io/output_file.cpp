@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t buffer_size = 1 << 16;
 
 [[noreturn]] void fail(std::string const& doing, std::string const& file, int error) {
-    throw ComputationError("cannot " + doing + " (" + file + "): " + std::generic_category().message(error));
+    throw ComputationError("cannot " + doing + " (" + file +
+                           "): " + std::generic_category().message(error));
 }
 
 int open_file(std::string const& file, int flags) {
@@ -33,7 +34,8 @@ int open_file(std::string const& file, int flags) {
 }  // namespace
 
 void sync_to_disk(int descriptor, std::string const& file) {
-    if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS) fail("write to disk", file, errno);
+    if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
+        fail("write to disk", file, errno);
 }
 
 void sync_folder_of(std::string const& file) {
@@ -45,7 +47,8 @@ void sync_folder_of(std::string const& file) {
     int const error = errno;
     ::close(descriptor);
     // Some network file systems cannot sync folders; the rename itself is theirs to keep.
-    if (status != 0 && error != EINVAL && error != ENOTSUP && error != EBADF) fail("write the folder to disk", folder, error);
+    if (status != 0 && error != EINVAL && error != ENOTSUP && error != EBADF)
+        fail("write the folder to disk", folder, error);
 }
 
 void rename_file(std::string const& from, std::string const& to) {
@@ -53,7 +56,9 @@ void rename_file(std::string const& from, std::string const& to) {
     sync_folder_of(to);
 }
 
-OutputFile OutputFile::create(std::string const& file) { return {open_file(file, O_WRONLY | O_CREAT | O_TRUNC), file}; }
+OutputFile OutputFile::create(std::string const& file) {
+    return {open_file(file, O_WRONLY | O_CREAT | O_TRUNC), file};
+}
 
 OutputFile OutputFile::create_anew(std::string const& file) {
     if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail("remove what is there", file, errno);
@@ -62,8 +67,8 @@ OutputFile OutputFile::create_anew(std::string const& file) {
 
 bool OutputFile::is_in_place() const {
     struct stat open{}, named{};
-    return ::fstat(descriptor_, &open) == 0 && ::lstat(name_.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
-           open.st_ino == named.st_ino;
+    return ::fstat(descriptor_, &open) == 0 && ::lstat(name_.c_str(), &named) == 0 &&
+           open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 OutputFile OutputFile::append(std::string const& file, std::int64_t size) {
@@ -74,7 +79,9 @@ OutputFile OutputFile::append(std::string const& file, std::int64_t size) {
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_)), buffer_(std::move(other.buffer_)) {}
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      name_(std::move(other.name_)),
+      buffer_(std::move(other.buffer_)) {}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
     std::swap(descriptor_, other.descriptor_);
@@ -122,7 +129,8 @@ void OutputFile::close() {
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("close", name_, errno);
 }
 
-AtomicFile::AtomicFile(std::string file) : file_(std::move(file)), out_(OutputFile::create_anew(file_ + ".writing")) {}
+AtomicFile::AtomicFile(std::string file)
+    : file_(std::move(file)), out_(OutputFile::create_anew(file_ + ".writing")) {}
 
 AtomicFile::~AtomicFile() {
     if (!published_) ::unlink(out_.name().c_str());
@@ -130,7 +138,8 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::publish() {
     out_.sync();
-    if (!out_.is_in_place()) throw ComputationError("cannot write (" + file_ + "): another process writes there");
+    if (!out_.is_in_place())
+        throw ComputationError("cannot write (" + file_ + "): another process writes there");
     out_.close();
     rename_file(out_.name(), file_);
     published_ = true;
@@ -138,7 +147,8 @@ void AtomicFile::publish() {
 
 void write_text_file(std::string const& file, std::string const& text) {
     auto const kind = std::filesystem::symlink_status(file).type();
-    if (kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::regular) {
+    if (kind != std::filesystem::file_type::not_found &&
+        kind != std::filesystem::file_type::regular) {
         // A device, a pipe or a link (/dev/stdout): renaming would put a file in its place.
         OutputFile out = OutputFile::create(file);
         out.write(text);
@@ -157,7 +167,9 @@ void replace_text_file(std::string const& file, std::string const& text) {
 void make_output_folder(std::string const& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw InputError("the output folder cannot be made: " + error.message(), folder, "name another with --output");
+    if (error)
+        throw InputError("the output folder cannot be made: " + error.message(), folder,
+                         "name another with --output");
 }
 
 std::string read_text_file(std::string const& file) {

@@ -7,7 +7,8 @@
 
 namespace catena {
 
-/// fsync; a device or pipe that cannot be synced is no error. Throws ComputationError naming `file` and the cause.
+/// fsync; a device or pipe that cannot be synced is no error. Throws ComputationError naming `file`
+/// and the cause.
 void sync_to_disk(int descriptor, std::string const& file);
 
 /// Makes a rename in the folder of `file` lasting.
@@ -16,13 +17,15 @@ void sync_folder_of(std::string const& file);
 /// Renames within one folder and makes it lasting.
 void rename_file(std::string const& from, std::string const& to);
 
-/// Buffered writer that owns its descriptor. Every member throws ComputationError naming file and cause.
+/// Buffered writer that owns its descriptor. Every member throws ComputationError naming file and
+/// cause.
 class OutputFile {
   public:
     OutputFile() = default;
     /// Starts an empty file, whatever was there.
     static OutputFile create(std::string const& file);
-    /// The same, but for a file that nobody else has: what was there is removed, a link or a pipe too, and nothing is followed.
+    /// The same, but for a file that nobody else has: what was there is removed, a link or a pipe
+    /// too, and nothing is followed.
     static OutputFile create_anew(std::string const& file);
     /// Opens a file that exists, cuts it to `size` bytes and goes on behind them.
     static OutputFile append(std::string const& file, std::int64_t size);
@@ -44,13 +47,14 @@ class OutputFile {
 
   private:
     void hand_over(std::string_view rest);
-    OutputFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+    OutputFile(int descriptor, std::string name)
+        : descriptor_(descriptor), name_(std::move(name)) {}
     int descriptor_ = -1;
     std::string name_, buffer_;
 };
 
-/// A file that appears under its name only when it is whole: written beside it, synced and renamed by `publish`;
-/// unpublished work is removed.
+/// A file that appears under its name only when it is whole: written beside it, synced and renamed
+/// by `publish`; unpublished work is removed.
 class AtomicFile {
   public:
     explicit AtomicFile(std::string file);
@@ -69,7 +73,8 @@ class AtomicFile {
 /// Puts the text under this name by an AtomicFile: a link of that name is replaced, not followed.
 void replace_text_file(std::string const& file, std::string const& text);
 
-/// With the folders above it, where they are not there yet; InputError naming it when it cannot be made.
+/// With the folders above it, where they are not there yet; InputError naming it when it cannot be
+/// made.
 void make_output_folder(std::string const& folder);
 
 /// The whole of a text file; InputError naming it when it cannot be read.

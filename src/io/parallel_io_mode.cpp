@@ -15,15 +15,16 @@
 namespace catena {
 namespace {
 
-/// What ranks send to the root in one piece (chain/scene_windows.hpp). Small frames take 0.15 ms longer together, tens of ms where ranks
-/// share cores.
+/// What ranks send to the root in one piece (chain/scene_windows.hpp). Small frames take 0.15 ms
+/// longer together, tens of ms where ranks share cores.
 constexpr std::int64_t worth_it = 4 << 20;
 
 /// The same on every host that sees the same file.
 using Marks = std::array<std::int64_t, 2>;
 
 Marks marks_of(std::string const& file) {
-    int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);  // asks the server, where there is one
+    int const descriptor =
+        ::open(file.c_str(), O_RDWR | O_CLOEXEC);  // asks the server, where there is one
     if (descriptor < 0) return {-1, -1};
     struct stat status{};
     bool const told = ::fstat(descriptor, &status) == 0;
@@ -45,14 +46,16 @@ bool has_locks(std::string const& file) {
     int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
     struct flock lock{};
     lock.l_type = F_WRLCK, lock.l_whence = SEEK_SET, lock.l_len = 1;
-    bool const locked = descriptor >= 0 && (::fcntl(descriptor, F_SETLK, &lock) == 0 || errno == EAGAIN || errno == EACCES);
+    bool const locked = descriptor >= 0 && (::fcntl(descriptor, F_SETLK, &lock) == 0 ||
+                                            errno == EAGAIN || errno == EACCES);
     if (descriptor >= 0) ::close(descriptor);
     return locked;
 }
 
 std::string why_by_the_root(Communicator const& communicator, std::string const& file) {
     std::string const why = hdf5::why_not_by_all(communicator);
-    if (communicator.sum(why.empty() ? 0 : 1) > 0) return why.empty() ? "not every rank can write with the others" : why;
+    if (communicator.sum(why.empty() ? 0 : 1) > 0)
+        return why.empty() ? "not every rank can write with the others" : why;
     int const rank = rank_without(communicator, file);
     if (rank >= 0) return "rank " + std::to_string(rank) + " does not see the file";
     return communicator.sum(has_locks(file) ? 0 : 1) > 0 ? "its file system has no locks" : "";
@@ -60,19 +63,23 @@ std::string why_by_the_root(Communicator const& communicator, std::string const&
 
 }  // namespace
 
-FileWay by_the_root(std::string const& why) { return {false, "by the root: " + why, why}; }
+ParallelIoMode by_the_root(std::string const& why) { return {false, "by the root: " + why, why}; }
 
-FileWay choose_file_way(Communicator const& communicator, FileWish wish, std::string const& file, std::int64_t bytes,
-                        std::string const& what) {
+ParallelIoMode choose_file_way(Communicator const& communicator, RequestedIoMode wish,
+                               std::string const& file, std::int64_t bytes,
+                               std::string const& what) {
     if (communicator.size() == 1) return {};
-    if (wish == FileWish::root) return by_the_root("CATENA_HDF5 says so");
+    if (wish == RequestedIoMode::root) return by_the_root("CATENA_HDF5 says so");
     communicator.broadcast(std::as_writable_bytes(std::span(&bytes, 1)));
-    if (wish == FileWish::best && bytes < worth_it) return by_the_root(what + " are small");
+    if (wish == RequestedIoMode::best && bytes < worth_it) return by_the_root(what + " are small");
     std::string const why = why_by_the_root(communicator, file);
-    return why.empty() ? FileWay{true, "collective, " + std::to_string(communicator.size()) + " ranks"} : by_the_root(why);
+    return why.empty() ? ParallelIoMode{true, "collective, " + std::to_string(communicator.size()) +
+                                                  " ranks"}
+                       : by_the_root(why);
 }
 
-std::string why_not_together(Communicator const& communicator, std::initializer_list<std::function<void()>> steps) {
+std::string why_not_together(Communicator const& communicator,
+                             std::initializer_list<std::function<void()>> steps) {
     try {
         for (auto const& step : steps) on_every_rank(communicator, step);
     } catch (SharedError const& error) {
@@ -81,9 +88,10 @@ std::string why_not_together(Communicator const& communicator, std::initializer_
     return "";
 }
 
-void require_wished(FileWish wish, FileWay const& way, std::string const& file) {
-    if (wish == FileWish::collective && !way.why_not.empty())
-        throw InputError("ranks cannot write together, " + way.why_not, file, "leave CATENA_HDF5=collective out: the root writes");
+void require_wished(RequestedIoMode wish, ParallelIoMode const& way, std::string const& file) {
+    if (wish == RequestedIoMode::collective && !way.why_not.empty())
+        throw InputError("ranks cannot write together, " + way.why_not, file,
+                         "leave CATENA_HDF5=collective out: the root writes");
 }
 
 }  // namespace catena

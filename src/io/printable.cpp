@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 
-/// Bytes of the UTF-8 character at the start of `text`, 0 where there is none (RFC 3629: no overlong forms, surrogates, nor beyond
-/// U+10FFFF).
+/// Bytes of the UTF-8 character at the start of `text`, 0 where there is none (RFC 3629: no
+/// overlong forms, surrogates, nor beyond U+10FFFF).
 std::size_t character_at(std::string_view text) {
     struct Form {
         unsigned char first, last, second_from, second_to;
@@ -29,22 +29,29 @@ std::size_t character_at(std::string_view text) {
         if (byte(0) < form.first || byte(0) > form.last) continue;
         if (text.size() < form.bytes) return 0;
         for (std::size_t k = 1; k < form.bytes; ++k)
-            if (byte(k) < (k == 1 ? form.second_from : 0x80) || byte(k) > (k == 1 ? form.second_to : 0xBF)) return 0;
+            if (byte(k) < (k == 1 ? form.second_from : 0x80) ||
+                byte(k) > (k == 1 ? form.second_to : 0xBF))
+                return 0;
         return form.bytes;
     }
     return 0;
 }
 
-/// U+2028 to U+202E and U+2066 to U+2069: ends of lines, and marks that turn around the text that follows.
+/// U+2028 to U+202E and U+2066 to U+2069: ends of lines, and marks that turn around the text that
+/// follows.
 bool rearranges_lines(std::string_view character) {
-    bool const marks = character.starts_with("\xE2\x80") && character[2] >= '\xA8' && character[2] <= '\xAE';
-    return marks || (character.starts_with("\xE2\x81") && character[2] >= '\xA6' && character[2] <= '\xA9');
+    bool const marks =
+        character.starts_with("\xE2\x80") && character[2] >= '\xA8' && character[2] <= '\xAE';
+    return marks ||
+           (character.starts_with("\xE2\x81") && character[2] >= '\xA6' && character[2] <= '\xA9');
 }
 
 bool is_control(std::string_view character) {
     auto const first = static_cast<unsigned char>(character[0]);
-    if (character.size() == 1) return (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F;
-    return (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0) || rearranges_lines(character);
+    if (character.size() == 1)
+        return (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F;
+    return (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0) ||
+           rearranges_lines(character);
 }
 
 }  // namespace

@@ -6,8 +6,9 @@
 
 namespace catena {
 
-/// The text as valid UTF-8 without control characters: bytes that are not UTF-8 become U+FFFD, control characters (C0 but for the line's
-/// end and the tabulator, DEL, C1, and the marks of Unicode that end or turn around lines) become `?`.
+/// The text as valid UTF-8 without control characters: bytes that are not UTF-8 become U+FFFD,
+/// control characters (C0 but for the line's end and the tabulator, DEL, C1, and the marks of
+/// Unicode that end or turn around lines) become `?`.
 std::string printable(std::string_view text);
 
 }  // namespace catena

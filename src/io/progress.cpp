@@ -19,7 +19,8 @@ std::string duration(double seconds) {
     if (!std::isfinite(seconds) || seconds > 1e8) return "?";
     auto const whole = static_cast<std::int64_t>(std::llround(seconds));
     if (whole >= 86400) return fmt::format("{} d {:02} h", whole / 86400, whole / 3600 % 24);
-    if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+    if (whole >= 3600)
+        return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
@@ -35,7 +36,8 @@ std::size_t width_of(int descriptor) {
 
 }  // namespace
 
-Progress::Progress(bool quiet, std::int64_t first_step, std::int64_t last_step, double time_step, bool si, std::FILE* out)
+Progress::Progress(bool quiet, std::int64_t first_step, std::int64_t last_step, double time_step,
+                   bool si, std::FILE* out)
     : quiet_(quiet),
       si_(si),
       terminal_(::isatty(::fileno(out)) == 1),
@@ -68,11 +70,14 @@ double Progress::rate() const {
 }
 
 std::string Progress::line(bool last) const {
-    double const steps = static_cast<double>(last_ - first_), done = static_cast<double>(now_ - first_), speed = rate();
+    double const steps = static_cast<double>(last_ - first_),
+                 done = static_cast<double>(now_ - first_), speed = rate();
     double const fraction = steps > 0 ? std::clamp(done / steps, 0.0, 1.0) : 1;
-    std::string text = fmt::format("{:5.1f} %  step {} of {}  {:.4g} steps/s", 100 * fraction, now_, last_, speed);
+    std::string text =
+        fmt::format("{:5.1f} %  step {} of {}  {:.4g} steps/s", 100 * fraction, now_, last_, speed);
     if (!si_) text += fmt::format("  {:.4g} ns/day", speed * time_step_ * 86.4);
-    text += last ? "  took " + duration(seconds_now() - start_) : "  " + duration((steps - done) / speed) + " left";
+    text += last ? "  took " + duration(seconds_now() - start_)
+                 : "  " + duration((steps - done) / speed) + " left";
     return text;
 }
 
@@ -80,10 +85,14 @@ void Progress::show(bool last) const {
     std::string text = line(last);
     if (terminal_) {
         double const steps = static_cast<double>(last_ - first_);
-        double const fraction = steps > 0 ? std::clamp(static_cast<double>(now_ - first_) / steps, 0.0, 1.0) : 1;
+        double const fraction =
+            steps > 0 ? std::clamp(static_cast<double>(now_ - first_) / steps, 0.0, 1.0) : 1;
         std::size_t const width = width_of(::fileno(out_));
-        auto const room = std::min<std::int64_t>(widest_bar, static_cast<std::int64_t>(width) - static_cast<std::int64_t>(text.size()) - 4);
-        if (room >= narrowest_bar) text = bar(fraction, static_cast<std::size_t>(room)) + " " + text;
+        auto const room =
+            std::min<std::int64_t>(widest_bar, static_cast<std::int64_t>(width) -
+                                                   static_cast<std::int64_t>(text.size()) - 4);
+        if (room >= narrowest_bar)
+            text = bar(fraction, static_cast<std::size_t>(room)) + " " + text;
         text = "\r" + text.substr(0, width - 1) + "\x1b[K";
     }
     if (!terminal_ || last) text += "\n";

@@ -7,15 +7,16 @@
 
 namespace catena {
 
-FileWish file_wish(std::string const& word) {
-    if (word.empty()) return FileWish::best;
-    if (word == "root") return FileWish::root;
-    if (word == "collective") return FileWish::collective;
-    throw InputError("no way to write files: " + word, "CATENA_HDF5", "say root or collective, or leave it out");
+RequestedIoMode file_wish(std::string const& word) {
+    if (word.empty()) return RequestedIoMode::best;
+    if (word == "root") return RequestedIoMode::root;
+    if (word == "collective") return RequestedIoMode::collective;
+    throw InputError("no way to write files: " + word, "CATENA_HDF5",
+                     "say root or collective, or leave it out");
 }
 
-FileWish file_wish_of_run(Communicator const& communicator) {
-    FileWish wish = FileWish::best;
+RequestedIoMode requested_io_mode_of_run(Communicator const& communicator) {
+    RequestedIoMode wish = RequestedIoMode::best;
     on_first_rank(communicator, [&] {
         char const* const word = std::getenv("CATENA_HDF5");
         wish = file_wish(word != nullptr ? word : "");

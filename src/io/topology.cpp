@@ -1,5 +1,5 @@
-// topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) with topology.psf and, where its columns are too narrow,
-// topology.cif.
+// topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) with
+// topology.psf and, where its columns are too narrow, topology.cif.
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
@@ -20,7 +20,8 @@ namespace catena {
 namespace {
 
 constexpr std::int64_t most_pdb_serials = 99999;
-constexpr std::string_view chain_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+constexpr std::string_view chain_letters =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
 /// Printable ASCII, which is all that these formats hold.
 std::string plain(std::string_view text) {
@@ -30,7 +31,8 @@ std::string plain(std::string_view text) {
     return copy;
 }
 
-/// Serial numbers as they are up to 99,999, then hybrid-36 (http://cci.lbl.gov/hybrid_36): A0000, A0001, ..., ZZZZZ, a0000, ...
+/// Serial numbers as they are up to 99,999, then hybrid-36 (http://cci.lbl.gov/hybrid_36): A0000,
+/// A0001, ..., ZZZZZ, a0000, ...
 std::string serial(std::int64_t number) {
     constexpr std::int64_t letters = 26 * 36 * 36 * 36 * 36;
     if (number <= most_pdb_serials) return fmt::format(FMT_COMPILE("{:5}"), number);
@@ -40,12 +42,14 @@ std::string serial(std::int64_t number) {
     std::string text(5, '0');
     for (int place = 4; place >= 0; --place, rest /= 36) {
         auto const digit = static_cast<char>(rest % 36);
-        text[static_cast<std::size_t>(place)] = static_cast<char>(digit < 10 ? '0' + digit : (lower ? 'a' : 'A') + digit - 10);
+        text[static_cast<std::size_t>(place)] =
+            static_cast<char>(digit < 10 ? '0' + digit : (lower ? 'a' : 'A') + digit - 10);
     }
     return text;
 }
 
-/// A number in `width` columns with up to 3 decimals, fewer where it is large; blank-padded 0.000 where even its integer part is too wide.
+/// A number in `width` columns with up to 3 decimals, fewer where it is large; blank-padded 0.000
+/// where even its integer part is too wide.
 std::string fixed(double value, std::size_t width) {
     for (int places = 3; places >= 0; --places)
         if (Decimals const number(value, places); number.text().size() <= width)
@@ -53,8 +57,8 @@ std::string fixed(double value, std::size_t width) {
     return fixed(0.0, width);
 }
 
-/// Angstrom for each unit of the scene: 10 for nm; with `units: si` the power of ten that makes a typical link 1 to 10 Angstrom long.
-/// `positions`: of the first sites.
+/// Angstrom for each unit of the scene: 10 for nm; with `units: si` the power of ten that makes a
+/// typical link 1 to 10 Angstrom long. `positions`: of the first sites.
 double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& positions) {
     if (!topology.si) return 10;
     std::vector<double> links;
@@ -67,7 +71,8 @@ double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& posi
     if (links.empty()) return 1;
     auto const middle = links.begin() + static_cast<std::ptrdiff_t>(links.size() / 2);
     std::nth_element(links.begin(), middle, links.end());
-    return *middle > 0 && std::isfinite(*middle) ? std::pow(10.0, -std::floor(std::log10(*middle))) : 1;
+    return *middle > 0 && std::isfinite(*middle) ? std::pow(10.0, -std::floor(std::log10(*middle)))
+                                                 : 1;
 }
 
 void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
@@ -75,12 +80,16 @@ void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     for (std::size_t at = 0, part = 1; at < title.size(); at += 68, ++part)
         out.write(part == 1 ? fmt::format("TITLE     {}\n", title.substr(at, 68))
                             : fmt::format("TITLE   {:2} {}\n", part % 100, title.substr(at, 68)));
-    out.write("REMARK   1 WRITTEN BY CATENA: ONE SITE A BEAD OR A BODY WITHOUT BEADS (BDY, CENTRE OF MASS)\n");
-    if (topology.si) out.write(fmt::format("REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR {:.0E} M\n", 1 / scale));
+    out.write(
+        "REMARK   1 WRITTEN BY CATENA: ONE SITE A BEAD OR A BODY WITHOUT BEADS (BDY, CENTRE OF "
+        "MASS)\n");
+    if (topology.si)
+        out.write(
+            fmt::format("REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR {:.0E} M\n", 1 / scale));
     if (topology.box) {
         Vec3 const edges = scale * *topology.box;
-        out.write(
-            fmt::format("CRYST1{}{}{}  90.00  90.00  90.00 P 1           1\n", fixed(edges[0], 9), fixed(edges[1], 9), fixed(edges[2], 9)));
+        out.write(fmt::format("CRYST1{}{}{}  90.00  90.00  90.00 P 1           1\n",
+                              fixed(edges[0], 9), fixed(edges[1], 9), fixed(edges[2], 9)));
     }
 }
 
@@ -93,7 +102,8 @@ void write_bonds(AtomicFile& out, Topology const& topology) {
             if (k == 0 && ring) neighbours += serial(chain.first + chain.count);
             if (k + 1 < chain.count) neighbours += serial(chain.first + k + 2);
             if (k + 1 == chain.count && ring) neighbours += serial(chain.first + 1);
-            if (!neighbours.empty()) out.write("CONECT" + serial(chain.first + k + 1) + neighbours + "\n");
+            if (!neighbours.empty())
+                out.write("CONECT" + serial(chain.first + k + 1) + neighbours + "\n");
         }
 }
 
@@ -104,14 +114,17 @@ void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
     if (topology.box) {
         Vec3 const edges = scale * *topology.box;
         out.write(
-            fmt::format("_cell.length_a {:.6g}\n_cell.length_b {:.6g}\n_cell.length_c {:.6g}\n_cell.angle_alpha 90\n_cell.angle_beta 90\n"
+            fmt::format("_cell.length_a {:.6g}\n_cell.length_b {:.6g}\n_cell.length_c "
+                        "{:.6g}\n_cell.angle_alpha 90\n_cell.angle_beta 90\n"
                         "_cell.angle_gamma 90\n_symmetry.space_group_name_H-M \"P 1\"\n#\n",
                         edges[0], edges[1], edges[2]));
     }
     out.write("loop_\n");
-    for (char const* column : {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id",
-                               "label_entity_id", "label_seq_id", "pdbx_PDB_ins_code", "Cartn_x", "Cartn_y", "Cartn_z", "occupancy",
-                               "B_iso_or_equiv", "auth_seq_id", "auth_asym_id", "pdbx_PDB_model_num"})
+    for (char const* column :
+         {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id",
+          "label_asym_id", "label_entity_id", "label_seq_id", "pdbx_PDB_ins_code", "Cartn_x",
+          "Cartn_y", "Cartn_z", "occupancy", "B_iso_or_equiv", "auth_seq_id", "auth_asym_id",
+          "pdbx_PDB_model_num"})
         out.write(fmt::format("_atom_site.{}\n", column));
 }
 
@@ -119,12 +132,15 @@ void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
 
 std::string chain_name(std::size_t number) {
     std::string name;
-    for (++number; number > 0; number = (number - 1) / 26) name.insert(name.begin(), static_cast<char>('A' + (number - 1) % 26));
+    for (++number; number > 0; number = (number - 1) / 26)
+        name.insert(name.begin(), static_cast<char>('A' + (number - 1) % 26));
     return name;
 }
 
 std::string residue_of(Topology const& topology, std::size_t site) {
-    std::string const name = site < topology.residue.size() && !topology.residue[site].empty() ? plain(topology.residue[site]) : "UNK";
+    std::string const name = site < topology.residue.size() && !topology.residue[site].empty()
+                                 ? plain(topology.residue[site])
+                                 : "UNK";
     return name.substr(0, 3);
 }
 
@@ -134,7 +150,8 @@ struct TopologyWriter::Files {
         fmt::memory_buffer pdb, cif;
     };
 
-    Files(std::string const& folder, Topology const& of) : topology(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
+    Files(std::string const& folder, Topology const& of)
+        : topology(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
         written.push_back((std::filesystem::path(folder) / "topology.pdb").string());
         for (Topology::Chain const& each : topology.chains) sites += each.count;
         if (sites <= most_pdb_serials) {
@@ -154,12 +171,16 @@ struct TopologyWriter::Files {
     }
 
     void put(std::span<Vec3 const> positions, Executor const& executor) {
-        std::int64_t const count = std::ssize(positions), parts = std::min<std::int64_t>(executor.threads(), count);
+        std::int64_t const count = std::ssize(positions),
+                           parts = std::min<std::int64_t>(executor.threads(), count);
         lines.resize(std::max(lines.size(), static_cast<std::size_t>(parts)));
-        executor.for_ranges(parts, static_cast<int>(count / std::max<std::int64_t>(parts, 1)), [&](std::int64_t first, std::int64_t last) {
-            for (std::int64_t part = first; part < last; ++part)
-                format(positions, count * part / parts, count * (part + 1) / parts, lines[static_cast<std::size_t>(part)]);
-        });
+        executor.for_ranges(parts, static_cast<int>(count / std::max<std::int64_t>(parts, 1)),
+                            [&](std::int64_t first, std::int64_t last) {
+                                for (std::int64_t part = first; part < last; ++part)
+                                    format(positions, count * part / parts,
+                                           count * (part + 1) / parts,
+                                           lines[static_cast<std::size_t>(part)]);
+                            });
         auto const write = [&](AtomicFile& file, fmt::memory_buffer Lines::* text) {
             for (std::int64_t part = 0; part < parts; ++part) {
                 fmt::memory_buffer const& of_part = lines[static_cast<std::size_t>(part)].*text;
@@ -174,15 +195,18 @@ struct TopologyWriter::Files {
     }
 
     /// Sites [begin, end) of those that come next.
-    void format(std::span<Vec3 const> positions, std::int64_t begin, std::int64_t end, Lines& to) const {
+    void format(std::span<Vec3 const> positions, std::int64_t begin, std::int64_t end,
+                Lines& to) const {
         to.pdb.clear();
         to.cif.clear();
-        auto chain = std::upper_bound(topology.chains.begin(), topology.chains.end(), next + begin,
-                                      [](std::int64_t site, Topology::Chain const& each) { return site < each.first; });
+        auto chain = std::upper_bound(
+            topology.chains.begin(), topology.chains.end(), next + begin,
+            [](std::int64_t site, Topology::Chain const& each) { return site < each.first; });
         --chain;
         std::string name = chain_name(static_cast<std::size_t>(chain - topology.chains.begin()));
         for (std::int64_t site = next + begin; site < next + end; ++site) {
-            if (site == chain->first + chain->count) name = chain_name(static_cast<std::size_t>(++chain - topology.chains.begin()));
+            if (site == chain->first + chain->count)
+                name = chain_name(static_cast<std::size_t>(++chain - topology.chains.begin()));
             std::int64_t const number = site - chain->first + 1;
             add(site, number, name, static_cast<std::size_t>(chain - topology.chains.begin()),
                 scale * positions[static_cast<std::size_t>(site - next)], to);
@@ -191,14 +215,19 @@ struct TopologyWriter::Files {
     }
 
     /// `number`: in its chain, from 1.
-    void add(std::int64_t site, std::int64_t number, std::string const& name, std::size_t chain, Vec3 const& x, Lines& to) const {
+    void add(std::int64_t site, std::int64_t number, std::string const& name, std::size_t chain,
+             Vec3 const& x, Lines& to) const {
         std::string const residue = residue_of(topology, static_cast<std::size_t>(site));
-        fmt::format_to(std::back_inserter(to.pdb), FMT_COMPILE("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n"),
-                       serial(site + 1), residue, chain_letters[chain % chain_letters.size()], number % 10000, fixed(x[0], 8),
-                       fixed(x[1], 8), fixed(x[2], 8));
+        fmt::format_to(
+            std::back_inserter(to.pdb),
+            FMT_COMPILE("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n"),
+            serial(site + 1), residue, chain_letters[chain % chain_letters.size()], number % 10000,
+            fixed(x[0], 8), fixed(x[1], 8), fixed(x[2], 8));
         if (!cif) return;
-        fmt::format_to(std::back_inserter(to.cif), FMT_COMPILE("ATOM {} C CA . {} {} 1 {} ? {} {} {} 1.00 0.00 {} {} 1\n"), site + 1,
-                       residue, name, number, Decimals(x[0], 3).text(), Decimals(x[1], 3).text(), Decimals(x[2], 3).text(), number, name);
+        fmt::format_to(std::back_inserter(to.cif),
+                       FMT_COMPILE("ATOM {} C CA . {} {} 1 {} ? {} {} {} 1.00 0.00 {} {} 1\n"),
+                       site + 1, residue, name, number, Decimals(x[0], 3).text(),
+                       Decimals(x[1], 3).text(), Decimals(x[2], 3).text(), number, name);
     }
 
     void finish() {
@@ -225,7 +254,8 @@ struct TopologyWriter::Files {
     bool begun = false;
 };
 
-TopologyWriter::TopologyWriter(std::string const& folder, Topology const& topology) : files_(std::make_unique<Files>(folder, topology)) {}
+TopologyWriter::TopologyWriter(std::string const& folder, Topology const& topology)
+    : files_(std::make_unique<Files>(folder, topology)) {}
 
 TopologyWriter::~TopologyWriter() = default;
 
@@ -239,7 +269,8 @@ std::vector<std::string> TopologyWriter::finish() {
     return files_->written;
 }
 
-std::vector<std::string> write_topology(std::string const& folder, Topology const& topology, Frame const& first) {
+std::vector<std::string> write_topology(std::string const& folder, Topology const& topology,
+                                        Frame const& first) {
     TopologyWriter writer(folder, topology);
     writer.put(first.positions, *serial_executor());
     return writer.finish();

@@ -4,9 +4,9 @@
 
 #include "clock.hpp"
 #include "error.hpp"
-#include "io/parallel_io_mode.hpp"
 #include "io/hdf5_data.hpp"
 #include "io/output.hpp"
+#include "io/parallel_io_mode.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trial.hpp"
 #include "io/writers.hpp"
@@ -20,9 +20,11 @@ using namespace hdf5;
 std::string const writing = "write the trajectory";
 constexpr double seconds_between_flushes = 10;
 
-static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double), "frames are handed to HDF5 as they lie");
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double),
+              "frames are handed to HDF5 as they lie");
 
-/// Metadata stay in memory between flushes: a killed run leaves the file as its last flush left it, whole.
+/// Metadata stay in memory between flushes: a killed run leaves the file as its last flush left it,
+/// whole.
 Properties access_of(Writers const& writers, std::string const& file) {
     Properties access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
     H5AC_cache_config_t cache;
@@ -38,20 +40,22 @@ Properties access_of(Writers const& writers, std::string const& file) {
 }
 
 /// Between two frames, what whoever writes the next one has to know.
-struct Standing {
+struct FrameContext {
     TrajectoryContents contents;
     Vec3 box;
     hsize_t frames = 0;
     std::int64_t last_step = 0;
 };
-static_assert(std::is_trivially_copyable_v<Standing>, "goes from rank to rank as it lies");
+static_assert(std::is_trivially_copyable_v<FrameContext>, "goes from rank to rank as it lies");
 
 class H5mdWriter final : public TrajectoryWriter {
   public:
-    H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces, std::optional<GoOn> const& go_on)
+    H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces,
+               std::optional<Continuation> const& go_on)
         : name_(std::move(file)),
           writers_(one_writer()),
-          at_{contents_of(topology, velocities, joint_forces), topology.box.value_or(Vec3::zero())} {
+          at_{contents_of(topology, velocities, joint_forces),
+              topology.box.value_or(Vec3::zero())} {
         Quiet const quiet;
         if (go_on)
             open(*go_on);
@@ -61,11 +65,13 @@ class H5mdWriter final : public TrajectoryWriter {
     }
 
     /// Goes on with a file that a writer has closed.
-    H5mdWriter(std::string file, Standing const& standing, std::unique_ptr<Writers> writers)
+    H5mdWriter(std::string file, FrameContext const& standing, std::unique_ptr<Writers> writers)
         : name_(std::move(file)), writers_(std::move(writers)), at_(standing) {
         Quiet const quiet;
         try {
-            file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access_of(*writers_, name_).get()), name_, writing));
+            file_ =
+                File(check(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access_of(*writers_, name_).get()),
+                           name_, writing));
             writers_->watch(file_, name_, writing);
             series_ = open_trajectory(place(), at_.contents);
         } catch (...) {
@@ -82,8 +88,10 @@ class H5mdWriter final : public TrajectoryWriter {
     }
 
     void begin(std::int64_t step, double time) override {
-        if (!file_) throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
-        if (at_.frames > 0 && step <= at_.last_step) refuse(step, "its last frame is already of step " + std::to_string(at_.last_step));
+        if (!file_)
+            throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
+        if (at_.frames > 0 && step <= at_.last_step)
+            refuse(step, "its last frame is already of step " + std::to_string(at_.last_step));
         step_ = step;
         time_ = time;
         sites_ = bodies_ = 0;
@@ -95,9 +103,14 @@ class H5mdWriter final : public TrajectoryWriter {
         whole_or_as_flushed([&] { put_parts(parts); });
     }
     void end(std::vector<Vector<double, 6>> const& tip_forces) override {
-        bool const whole = static_cast<hsize_t>(writers_->sum(static_cast<std::int64_t>(sites_))) == at_.contents.sites &&
-                           static_cast<hsize_t>(writers_->sum(static_cast<std::int64_t>(bodies_))) == at_.contents.bodies;
-        if (!whole || (writers_->is_first() && at_.contents.joint_forces && tip_forces.size() != at_.contents.tips)) refuse_arrays();
+        bool const whole =
+            static_cast<hsize_t>(writers_->sum(static_cast<std::int64_t>(sites_))) ==
+                at_.contents.sites &&
+            static_cast<hsize_t>(writers_->sum(static_cast<std::int64_t>(bodies_))) ==
+                at_.contents.bodies;
+        if (!whole || (writers_->is_first() && at_.contents.joint_forces &&
+                       tip_forces.size() != at_.contents.tips))
+            refuse_arrays();
         whole_or_as_flushed([&] { end_frame(tip_forces); });
     }
     void flush() override {
@@ -117,7 +130,7 @@ class H5mdWriter final : public TrajectoryWriter {
     }
 
     std::int64_t frames() const override { return static_cast<std::int64_t>(at_.frames); }
-    Standing const& standing() const { return at_; }
+    FrameContext const& standing() const { return at_; }
     bool is_for_all() const { return series_.position.is_for_all(place()); }
 
   private:
@@ -140,10 +153,12 @@ class H5mdWriter final : public TrajectoryWriter {
         TrajectoryContents const& contents = at_.contents;
         std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
         auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
-        bool const in_order = writers_->are_several() || (part.first_site == sites_ && part.first_body == bodies_);
-        if (!in_order || part.first_site + sites > contents.sites || part.first_body + bodies > contents.bodies ||
-            !fits(part.velocities.size(), contents.velocities) || !fits(part.joint_forces.size(), contents.joint_forces) ||
-            !states_fit(part))
+        bool const in_order =
+            writers_->are_several() || (part.first_site == sites_ && part.first_body == bodies_);
+        if (!in_order || part.first_site + sites > contents.sites ||
+            part.first_body + bodies > contents.bodies ||
+            !fits(part.velocities.size(), contents.velocities) ||
+            !fits(part.joint_forces.size(), contents.joint_forces) || !states_fit(part))
             refuse_arrays();
         sites_ += sites;
         bodies_ += bodies;
@@ -152,15 +167,18 @@ class H5mdWriter final : public TrajectoryWriter {
     bool states_fit(Frame const& part) const {
         std::size_t const bodies = part.orientations.size();
         auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == bodies; };
-        return fits(part.body_positions.size(), at_.contents.body_states) && fits(part.body_velocities.size(), at_.contents.body_states) &&
+        return fits(part.body_positions.size(), at_.contents.body_states) &&
+               fits(part.body_velocities.size(), at_.contents.body_states) &&
                fits(part.angular_velocities.size(), at_.contents.body_states) &&
-               fits(part.joint_positions.size(), at_.contents.joint_states) && fits(part.joint_rates.size(), at_.contents.joint_states);
+               fits(part.joint_positions.size(), at_.contents.joint_states) &&
+               fits(part.joint_rates.size(), at_.contents.joint_states);
     }
 
     void make_room_for_frame() {
         whole_or_as_flushed([&] {
             hsize_t more = 0;
-            for (Series const* series : series_.present()) more += series->growth(place(), at_.frames);
+            for (Series const* series : series_.present())
+                more += series->growth(place(), at_.frames);
             writers_->make_room(file_, more, name_, writing);
         });
     }
@@ -173,7 +191,8 @@ class H5mdWriter final : public TrajectoryWriter {
         }
         put_all(series_.position, sites, parts, &Frame::positions);
         if (at_.contents.velocities) put_all(series_.velocity, sites, parts, &Frame::velocities);
-        if (at_.contents.bodies > 0) put_all(series_.orientation, bodies, parts, &Frame::orientations);
+        if (at_.contents.bodies > 0)
+            put_all(series_.orientation, bodies, parts, &Frame::orientations);
         put_states(bodies, parts);
         if (!at_.contents.joint_forces) return;
         auto const [torque, force] = halves_of(parts, &Frame::joint_forces);
@@ -193,15 +212,19 @@ class H5mdWriter final : public TrajectoryWriter {
     }
 
     template <class Value>
-    void put_all(Series& series, std::span<Series::Part const> where, std::span<Frame const> parts, std::vector<Value> Frame::* values) {
-        if (parts.size() == 1) return series.put(place(), at_.frames, where, (parts[0].*values).data(), writers_->transfer());
+    void put_all(Series& series, std::span<Series::Part const> where, std::span<Frame const> parts,
+                 std::vector<Value> Frame::* values) {
+        if (parts.size() == 1)
+            return series.put(place(), at_.frames, where, (parts[0].*values).data(),
+                              writers_->transfer());
         std::vector<Value> joined;
-        for (Frame const& part : parts) joined.insert(joined.end(), (part.*values).begin(), (part.*values).end());
+        for (Frame const& part : parts)
+            joined.insert(joined.end(), (part.*values).begin(), (part.*values).end());
         series.put(place(), at_.frames, where, joined.data(), writers_->transfer());
     }
 
-    static std::pair<std::vector<double>, std::vector<double>> halves_of(std::span<Frame const> parts,
-                                                                         std::vector<Vector<double, 6>> Frame::* wrenches) {
+    static std::pair<std::vector<double>, std::vector<double>> halves_of(
+        std::span<Frame const> parts, std::vector<Vector<double, 6>> Frame::* wrenches) {
         std::pair<std::vector<double>, std::vector<double>> halves;
         for (Frame const& part : parts)
             for (Vector<double, 6> const& wrench : part.*wrenches) {
@@ -224,44 +247,55 @@ class H5mdWriter final : public TrajectoryWriter {
         put_from_first(series_.step, &step_);
         ++at_.frames;
         at_.last_step = step_;
-        bool const at_once = std::exchange(is_first_here_, false);  // so that a run can be looked at from its first frame on
-        bool const due = writers_->is_first() && (at_once || seconds_now() - flushed_ >= seconds_between_flushes);
+        bool const at_once = std::exchange(
+            is_first_here_, false);  // so that a run can be looked at from its first frame on
+        bool const due = writers_->is_first() &&
+                         (at_once || seconds_now() - flushed_ >= seconds_between_flushes);
         if (writers_->sum(due ? 1 : 0) == 0) return;
         writers_->make_room(file_, 0, name_, writing);
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
         flushed_ = seconds_now();
     }
-    void put_from_first(Series& series, void const* values) { series.put(place(), at_.frames, writers_->is_first() ? values : nullptr); }
+    void put_from_first(Series& series, void const* values) {
+        series.put(place(), at_.frames, writers_->is_first() ? values : nullptr);
+    }
     Place place() const { return {file_.get(), name_, writing}; }
 
     void create(Topology const& topology) {
         Properties const access = access_of(*writers_, name_);
-        file_ = File(check(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), name_, writing));
+        file_ = File(check(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()),
+                           name_, writing));
         series_ = create_trajectory(place(), topology, at_.contents);
     }
 
-    void open(GoOn const& go_on) {
+    void open(Continuation const& go_on) {
         if (!std::filesystem::exists(name_))
-            throw InputError("no trajectory to go on with", name_, std::string("put it back, or ") + GoOn::way_beside);
-        if (std::string const end = trial([&] { look_through(); }, limits_for_file(name_)); !end.empty())
-            throw InputError("the trajectory is damaged, HDF5 breaks on it: " + end, name_, GoOn::way_beside);
+            throw InputError("no trajectory to go on with", name_,
+                             std::string("put it back, or ") + Continuation::way_beside);
+        if (std::string const end = trial([&] { look_through(); }, limits_for_file(name_));
+            !end.empty())
+            throw InputError("the trajectory is damaged, HDF5 breaks on it: " + end, name_,
+                             Continuation::way_beside);
         Properties const access = access_of(*writers_, name_);
         file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
         if (!file_)
             throw InputError("the trajectory cannot be opened, " + cause(), name_,
-                             std::string("close it elsewhere, or ") + GoOn::way_beside);
+                             std::string("close it elsewhere, or ") + Continuation::way_beside);
         std::vector<std::int64_t> steps;
         try {
             series_ = open_trajectory(place(), at_.contents);
             steps = read_steps();
         } catch (ComputationError const& error) {
-            throw InputError("the trajectory is damaged, " + std::string(error.what()), name_, GoOn::way_beside);
+            throw InputError("the trajectory is damaged, " + std::string(error.what()), name_,
+                             Continuation::way_beside);
         }
-        auto const kept = std::find_if(steps.begin(), steps.end(), [&](std::int64_t step) { return step > go_on.after_step; });
+        auto const kept = std::find_if(steps.begin(), steps.end(),
+                                       [&](std::int64_t step) { return step > go_on.after_step; });
         if (kept - steps.begin() < go_on.records)
-            throw InputError("the trajectory has lost frames: " + std::to_string(kept - steps.begin()) + " of the " +
-                                 std::to_string(go_on.records) + " before the checkpoint are there",
-                             name_, std::string("put the whole file back, or ") + GoOn::way_beside);
+            throw InputError(
+                "the trajectory has lost frames: " + std::to_string(kept - steps.begin()) +
+                    " of the " + std::to_string(go_on.records) + " before the checkpoint are there",
+                name_, std::string("put the whole file back, or ") + Continuation::way_beside);
         at_.frames = static_cast<hsize_t>(kept - steps.begin());
         if (at_.frames > 0) at_.last_step = steps[at_.frames - 1];
         for (Series* series : series_.present()) series->cut(place(), at_.frames);
@@ -280,20 +314,25 @@ class H5mdWriter final : public TrajectoryWriter {
         hsize_t whole = series_.step.frames(place());
         std::vector<std::int64_t> steps(whole);
         if (whole > 0)
-            check(H5Dread(series_.step.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, steps.data()), name_, "read the steps");
+            check(H5Dread(series_.step.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                          steps.data()),
+                  name_, "read the steps");
         for (Series* series : series_.present()) whole = std::min(whole, series->frames(place()));
         steps.resize(whole);
         return steps;
     }
 
     [[noreturn]] void refuse(std::int64_t step, std::string const& why) const {
-        throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(step) + "): " + why);
+        throw ComputationError("cannot write the trajectory (" + name_ + ", step " +
+                               std::to_string(step) + "): " + why);
     }
-    [[noreturn]] void refuse_arrays() const { refuse(step_, "the frame's arrays do not fit the topology"); }
+    [[noreturn]] void refuse_arrays() const {
+        refuse(step_, "the frame's arrays do not fit the topology");
+    }
 
     std::string name_;
     std::unique_ptr<Writers> writers_;
-    Standing at_;
+    FrameContext at_;
     File file_;
     TrajectorySeries series_;
     std::int64_t step_ = 0;  // of the frame on its way
@@ -305,13 +344,15 @@ class H5mdWriter final : public TrajectoryWriter {
 
 }  // namespace
 
-std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const& topology, bool velocities, bool joint_forces,
-                                                  std::optional<GoOn> const& go_on) {
+std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const& topology,
+                                                  bool velocities, bool joint_forces,
+                                                  std::optional<Continuation> const& go_on) {
     return std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, go_on);
 }
 
-TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string const& file, Topology const& topology, bool velocities,
-                                  bool joint_forces, std::optional<GoOn> const& go_on) {
+TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string const& file,
+                                  Topology const& topology, bool velocities, bool joint_forces,
+                                  std::optional<Continuation> const& go_on) {
     std::unique_ptr<H5mdWriter> writer;
     bool fits = false;
     std::int64_t bytes = 0;
@@ -320,12 +361,13 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
         fits = writer->is_for_all();
         bytes = writer->standing().contents.bytes_of_frame();
     });
-    FileWish const wish = file_wish_of_run(communicator);
-    FileWay way = choose_file_way(communicator, wish, file, bytes, "frames");
-    if (way.collective && communicator.sum(fits ? 1 : 0) == 0) way = by_the_root("an earlier version began the file");
+    RequestedIoMode const wish = requested_io_mode_of_run(communicator);
+    ParallelIoMode way = choose_file_way(communicator, wish, file, bytes, "frames");
+    if (way.collective && communicator.sum(fits ? 1 : 0) == 0)
+        way = by_the_root("an earlier version began the file");
     require_wished(wish, way, file);
     if (!way.collective) return {std::move(writer), way};
-    Standing standing;
+    FrameContext standing;
     on_first_rank(communicator, [&] {
         standing = writer->standing();
         writer->close();
@@ -334,12 +376,14 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
     std::unique_ptr<Writers> all;
     std::string const why = why_not_together(
         communicator,
-        {[&] { all = all_writers(communicator); }, [&] { writer = std::make_unique<H5mdWriter>(file, standing, std::move(all)); }});
+        {[&] { all = all_writers(communicator); },
+         [&] { writer = std::make_unique<H5mdWriter>(file, standing, std::move(all)); }});
     if (why.empty()) return {std::move(writer), way};
     writer.reset();
     way = by_the_root(why);
     require_wished(wish, way, file);
-    on_first_rank(communicator, [&] { writer = std::make_unique<H5mdWriter>(file, standing, one_writer()); });
+    on_first_rank(communicator,
+                  [&] { writer = std::make_unique<H5mdWriter>(file, standing, one_writer()); });
     return {std::move(writer), way};
 }
 

@@ -38,8 +38,11 @@ class Builder {
         describe_file();
         Group const particles = make_group(root_, "particles");
         Group const sites = make_group(at(particles), "trajectory");
-        add_element(at(sites), "position", {contents_.sites, 3}, units_.length, series_.position, "W, unwrapped");
-        if (contents_.velocities) add_element(at(sites), "velocity", {contents_.sites, 3}, units_.velocity, series_.velocity, "W");
+        add_element(at(sites), "position", {contents_.sites, 3}, units_.length, series_.position,
+                    "W, unwrapped");
+        if (contents_.velocities)
+            add_element(at(sites), "velocity", {contents_.sites, 3}, units_.velocity,
+                        series_.velocity, "W");
         add_box(at(sites));
         put_unit(at(put_array(at(sites), "mass", topology_.mass)), units_.mass);
         std::vector<std::int64_t> id(contents_.sites);
@@ -76,33 +79,44 @@ class Builder {
         put_text(at(own), "length_unit", units_.length);
         describe_chains(at(own));
         if (contents_.bodies > 0) {
-            Group const element =
-                add_element(at(own), "orientation", {contents_.bodies, 4}, "", series_.orientation, "w x y z, body axes to W");
+            Group const element = add_element(at(own), "orientation", {contents_.bodies, 4}, "",
+                                              series_.orientation, "w x y z, body axes to W");
             std::vector<hsize_t> const site(topology_.bodies.begin(), topology_.bodies.end());
-            put_array(at(element), "site", H5T_NATIVE_HSIZE, site.data(), std::span(&contents_.bodies, 1));
+            put_array(at(element), "site", H5T_NATIVE_HSIZE, site.data(),
+                      std::span(&contents_.bodies, 1));
         }
         add_coordinates(at(own));
         if (!contents_.joint_forces) return;
         std::string const frame = "W, on each body at its inboard joint; at the first of its sites";
-        add_element(at(own), "joint_torque", {contents_.sites, 3}, units_.torque, series_.torque, frame);
-        add_element(at(own), "joint_force", {contents_.sites, 3}, units_.force, series_.force, frame);
+        add_element(at(own), "joint_torque", {contents_.sites, 3}, units_.torque, series_.torque,
+                    frame);
+        add_element(at(own), "joint_force", {contents_.sites, 3}, units_.force, series_.force,
+                    frame);
         if (contents_.tips == 0) return;
         std::string const at_tip = "W, on the last body at its joint to the ground";
-        Group const torque = add_element(at(own), "tip_torque", {contents_.tips, 3}, units_.torque, series_.tip_torque, at_tip);
-        Group const force = add_element(at(own), "tip_force", {contents_.tips, 3}, units_.force, series_.tip_force, at_tip);
-        for (Group const* const element : {&torque, &force}) put_array(at(*element), "chain", topology_.tips);
+        Group const torque = add_element(at(own), "tip_torque", {contents_.tips, 3}, units_.torque,
+                                         series_.tip_torque, at_tip);
+        Group const force = add_element(at(own), "tip_force", {contents_.tips, 3}, units_.force,
+                                        series_.tip_force, at_tip);
+        for (Group const* const element : {&torque, &force})
+            put_array(at(*element), "chain", topology_.tips);
     }
 
     void add_coordinates(Place const& own) {
         std::string const at_centre = "W, of the centre of mass";
         if (contents_.body_states) {
-            add_element(own, "body_position", {contents_.bodies, 3}, units_.length, series_.body_position, at_centre);
-            add_element(own, "body_velocity", {contents_.bodies, 3}, units_.velocity, series_.body_velocity, at_centre);
-            add_element(own, "angular_velocity", {contents_.bodies, 3}, units_.rate, series_.angular_velocity, "B, body axes");
+            add_element(own, "body_position", {contents_.bodies, 3}, units_.length,
+                        series_.body_position, at_centre);
+            add_element(own, "body_velocity", {contents_.bodies, 3}, units_.velocity,
+                        series_.body_velocity, at_centre);
+            add_element(own, "angular_velocity", {contents_.bodies, 3}, units_.rate,
+                        series_.angular_velocity, "B, body axes");
         }
         if (!contents_.joint_states) return;
-        add_element(own, "joint_position", {contents_.bodies, 4}, "", series_.joint_position, "of the inboard joint, as q in the scene");
-        add_element(own, "joint_rate", {contents_.bodies, 3}, "", series_.joint_rate, "of the inboard joint, as qd in the scene");
+        add_element(own, "joint_position", {contents_.bodies, 4}, "", series_.joint_position,
+                    "of the inboard joint, as q in the scene");
+        add_element(own, "joint_rate", {contents_.bodies, 3}, "", series_.joint_rate,
+                    "of the inboard joint, as qd in the scene");
     }
 
     void describe_chains(Place const& own) {
@@ -124,8 +138,8 @@ class Builder {
     }
 
     /// A group {step, time, value}. The first one makes step and time, the others link them.
-    Group add_element(Place const& parent, std::string const& name, std::vector<hsize_t> row, std::string const& unit, Series& value,
-                      std::string const& frame) {
+    Group add_element(Place const& parent, std::string const& name, std::vector<hsize_t> row,
+                      std::string const& unit, Series& value, std::string const& frame) {
         Group element = make_group(parent, name);
         if (!series_.step) {
             series_.step = Series::create(at(element), "step", H5T_NATIVE_INT64, {});
@@ -134,8 +148,9 @@ class Builder {
         } else {
             for (std::string const shared : {"step", "time"}) {
                 std::string const source = std::string(position_group).append("/").append(shared);
-                check(H5Lcreate_hard(root_.id, source.c_str(), element.get(), shared.c_str(), H5P_DEFAULT, H5P_DEFAULT), root_.file,
-                      root_.doing);
+                check(H5Lcreate_hard(root_.id, source.c_str(), element.get(), shared.c_str(),
+                                     H5P_DEFAULT, H5P_DEFAULT),
+                      root_.file, root_.doing);
             }
         }
         value = Series::create(at(element), "value", H5T_NATIVE_DOUBLE, std::move(row));
@@ -147,8 +162,10 @@ class Builder {
     void add_box(Place const& sites) {
         Group const box = make_group(sites, "box");
         put_attribute(at(box), "dimension", std::int64_t{3});
-        put_texts(at(box), "boundary", std::vector<std::string>(3, contents_.periodic ? "periodic" : "none"));
-        if (contents_.periodic) add_element(at(box), "edges", {3}, units_.length, series_.edges, "");
+        put_texts(at(box), "boundary",
+                  std::vector<std::string>(3, contents_.periodic ? "periodic" : "none"));
+        if (contents_.periodic)
+            add_element(at(box), "edges", {3}, units_.length, series_.edges, "");
     }
 
     Place const& root_;
@@ -159,13 +176,16 @@ class Builder {
 };
 
 [[noreturn]] void refuse(Place const& root, std::string const& what) {
-    throw InputError("the trajectory " + what, root.file, std::string("restart with the scene that wrote it, or ") + GoOn::way_beside);
+    throw InputError(
+        "the trajectory " + what, root.file,
+        std::string("restart with the scene that wrote it, or ") + Continuation::way_beside);
 }
 
 void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
     bool const present = has(root, group);
     if (present != wanted)
-        refuse(root, std::string(present ? "holds " : "holds no ") + what + (present ? " that" : " but") + " this run " +
+        refuse(root, std::string(present ? "holds " : "holds no ") + what +
+                         (present ? " that" : " but") + " this run " +
                          (wanted ? "writes them" : "does not write"));
 }
 
@@ -187,32 +207,40 @@ TrajectoryContents contents_of(Topology const& topology, bool velocities, bool j
 
 std::vector<Series*> TrajectorySeries::present() {
     std::vector<Series*> all;
-    for (Series* series : {&position, &velocity, &edges, &orientation, &body_position, &body_velocity, &angular_velocity, &joint_position,
-                           &joint_rate, &torque, &force, &tip_torque, &tip_force, &time, &step})
+    for (Series* series : {&position, &velocity, &edges, &orientation, &body_position,
+                           &body_velocity, &angular_velocity, &joint_position, &joint_rate, &torque,
+                           &force, &tip_torque, &tip_force, &time, &step})
         if (*series) all.push_back(series);
     return all;
 }
 
-TrajectorySeries create_trajectory(Place const& root, Topology const& topology, TrajectoryContents const& contents) {
+TrajectorySeries create_trajectory(Place const& root, Topology const& topology,
+                                   TrajectoryContents const& contents) {
     return Builder(root, topology, contents).build();
 }
 
 TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& contents) {
-    auto const text_of = [&](std::string const& object, std::string const& attribute) -> std::string {
+    auto const text_of = [&](std::string const& object,
+                             std::string const& attribute) -> std::string {
         if (!has(root, object)) return "";
         Object const opened(H5Oopen(root.id, object.c_str(), H5P_DEFAULT));
         return opened ? get_text({opened.get(), root.file, root.doing}, attribute) : "";
     };
-    if (text_of("h5md/creator", "name") != "catena" || !has(root, "catena")) refuse(root, "was not written by Catena");
+    if (text_of("h5md/creator", "name") != "catena" || !has(root, "catena"))
+        refuse(root, "was not written by Catena");
     std::string const position = position_group + "/value";
     if (!has(root, position)) refuse(root, "has no positions");
     TrajectorySeries series;
     series.position = Series::open(root, position, H5T_NATIVE_DOUBLE);
     if (series.position.row() != std::vector<hsize_t>{contents.sites, 3})
-        refuse(root, "has " + (series.position.row().empty() ? "no" : std::to_string(series.position.row()[0])) + " sites but the scene " +
-                         std::to_string(contents.sites));
+        refuse(
+            root,
+            "has " +
+                (series.position.row().empty() ? "no" : std::to_string(series.position.row()[0])) +
+                " sites but the scene " + std::to_string(contents.sites));
     std::string const unit = text_of("catena", "length_unit");  // none in files of earlier versions
-    if (!unit.empty() && unit != units_of(contents.si).length) refuse(root, "is in " + unit + ", unlike the scene");
+    if (!unit.empty() && unit != units_of(contents.si).length)
+        refuse(root, "is in " + unit + ", unlike the scene");
     require(root, "particles/trajectory/velocity", contents.velocities, "velocities");
     require(root, "particles/trajectory/box/edges", contents.periodic, "box edges");
     require(root, "catena/orientation", contents.bodies > 0, "orientations");
@@ -221,12 +249,19 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     require(root, "catena/joint_position", contents.joint_states, "coordinates of joints");
     series.step = Series::open(root, position_group + "/step", H5T_NATIVE_INT64);
     series.time = Series::open(root, position_group + "/time", H5T_NATIVE_DOUBLE);
-    if (contents.velocities) series.velocity = Series::open(root, "particles/trajectory/velocity/value", H5T_NATIVE_DOUBLE);
-    if (contents.periodic) series.edges = Series::open(root, "particles/trajectory/box/edges/value", H5T_NATIVE_DOUBLE);
-    if (contents.bodies > 0) series.orientation = Series::open(root, "catena/orientation/value", H5T_NATIVE_DOUBLE);
-    if (series.orientation && series.orientation.row()[0] != contents.bodies) refuse(root, "has another number of bodies");
+    if (contents.velocities)
+        series.velocity =
+            Series::open(root, "particles/trajectory/velocity/value", H5T_NATIVE_DOUBLE);
+    if (contents.periodic)
+        series.edges =
+            Series::open(root, "particles/trajectory/box/edges/value", H5T_NATIVE_DOUBLE);
+    if (contents.bodies > 0)
+        series.orientation = Series::open(root, "catena/orientation/value", H5T_NATIVE_DOUBLE);
+    if (series.orientation && series.orientation.row()[0] != contents.bodies)
+        refuse(root, "has another number of bodies");
     auto const open = [&](Series& to, bool wanted, char const* name) {
-        if (wanted) to = Series::open(root, std::string("catena/") + name + "/value", H5T_NATIVE_DOUBLE);
+        if (wanted)
+            to = Series::open(root, std::string("catena/") + name + "/value", H5T_NATIVE_DOUBLE);
     };
     open(series.body_position, contents.body_states, "body_position");
     open(series.body_velocity, contents.body_states, "body_velocity");
@@ -236,7 +271,8 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     if (!contents.joint_forces) return series;
     series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
     series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);
-    if (!has(root, "catena/tip_force")) return series;  // none, or a file of a version that did not write them
+    if (!has(root, "catena/tip_force"))
+        return series;  // none, or a file of a version that did not write them
     series.tip_torque = Series::open(root, "catena/tip_torque/value", H5T_NATIVE_DOUBLE);
     series.tip_force = Series::open(root, "catena/tip_force/value", H5T_NATIVE_DOUBLE);
     if (series.tip_force.row()[0] != contents.tips) refuse(root, "has another number of tips");

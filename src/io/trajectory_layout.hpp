@@ -1,29 +1,37 @@
-// What a Catena trajectory holds, by name: H5MD 1.1 (https://www.nongnu.org/h5md/releases/h5md-1.1.0.html) and Catena's own group.
+// What a Catena trajectory holds, by name: H5MD 1.1
+// (https://www.nongnu.org/h5md/releases/h5md-1.1.0.html) and Catena's own group.
 //
 //   /h5md                         version [1, 1], author, creator "catena", modules/units
-//   /particles/trajectory         one site a bead, carried or not, or body without beads, in the order of the topology
+//   /particles/trajectory         one site a bead, carried or not, or body without beads, in the
+//   order of the topology
 //       box                       dimension, boundary; edges when periodic
 //       position, velocity        {step, time, value [frames][sites][3]}, ground axes, unwrapped
 //       mass, id                  [sites], id from 1
 //   /catena                       format_version, title, length_unit: texts of fixed length
 //       chains                    first, count, beads, ring, name: [chains]
-//       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to ground axes; site [bodies] from 0, the
+//       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to
+//       ground axes; site [bodies] from 0, the
 //                                 body's or that of its first bead
 //       body_position, body_velocity, angular_velocity
-//                                 with output.coordinates: {step, time, value [frames][bodies][3]}, in the order of orientation: of the
-//                                 centre of mass in ground axes; angular velocity in body axes
-//       joint_position            {step, time, value [frames][bodies][4]}, with output.coordinates in joint coordinates: as a joint's `q`
-//       in
-//                                 a scene: angle or shift, two angles, or w x y z (spherical, free); the rest of the four is 0
+//                                 with output.coordinates: {step, time, value [frames][bodies][3]},
+//                                 in the order of orientation: of the centre of mass in ground
+//                                 axes; angular velocity in body axes
+//       joint_position            {step, time, value [frames][bodies][4]}, with output.coordinates
+//       in joint coordinates: as a joint's `q` in
+//                                 a scene: angle or shift, two angles, or w x y z (spherical,
+//                                 free); the rest of the four is 0
 //       joint_rate                the same for `qd`: value [frames][bodies][3]
-//       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each body (at its first site) at its inboard joint, ground
+//       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each body (at its
+//       first site) at its inboard joint, ground
 //                                 axes
-//       tip_torque, tip_force     {step, time, value [frames][tips][3]}, on the last body of each chain with a joint from there to the
+//       tip_torque, tip_force     {step, time, value [frames][tips][3]}, on the last body of each
+//       chain with a joint from there to the
 //                                 ground, at that joint, ground axes; chain [tips] from 0
 //
-// All steps are one dataset and all times another, linked hard from each element, so the elements cannot disagree. MDAnalysis
-// 2.11 wants exactly one group in /particles, named `trajectory`, and `unit` attributes of variable length.
-// `units: si` writes the units as they are (m, s, m s-1, N): MDAnalysis 2.11 knows no metre and refuses such a file, h5py reads it.
+// All steps are one dataset and all times another, linked hard from each element, so the elements
+// cannot disagree. MDAnalysis 2.11 wants exactly one group in /particles, named `trajectory`, and
+// `unit` attributes of variable length. `units: si` writes the units as they are (m, s, m s-1, N):
+// MDAnalysis 2.11 knows no metre and refuses such a file, h5py reads it.
 #pragma once
 
 #include <optional>
@@ -37,7 +45,8 @@ namespace catena::hdf5 {
 
 /// What of the optional parts a trajectory has.
 struct TrajectoryContents {
-    bool velocities = false, joint_forces = false, periodic = false, si = false, body_states = false, joint_states = false;
+    bool velocities = false, joint_forces = false, periodic = false, si = false,
+         body_states = false, joint_states = false;
     hsize_t sites = 0, bodies = 0, tips = 0;
 
     std::int64_t bytes_of_frame() const {
@@ -59,7 +68,8 @@ struct TrajectorySeries {
 
 TrajectorySeries create_trajectory(Place const& root, Topology const&, TrajectoryContents const&);
 
-/// Opens what create_trajectory made. InputError when the file is another program's or holds other things than `contents`.
+/// Opens what create_trajectory made. InputError when the file is another program's or holds other
+/// things than `contents`.
 TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const&);
 
 }  // namespace catena::hdf5

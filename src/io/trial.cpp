@@ -83,7 +83,8 @@ TrialLimits limits_for_file(std::string const& file) {
     std::uintmax_t const found = std::filesystem::file_size(file, ignored);
     double const size = ignored ? 0 : static_cast<double>(found);
     double const unpacked = best_compression * size;
-    return {static_cast<std::int64_t>(std::clamp(unpacked, 0.8e9, 1e15)), 10 + static_cast<std::int64_t>(unpacked * seconds_per_byte)};
+    return {static_cast<std::int64_t>(std::clamp(unpacked, 0.8e9, 1e15)),
+            10 + static_cast<std::int64_t>(unpacked * seconds_per_byte)};
 }
 
 std::string trial(std::function<void()> const& action, TrialLimits const& limits) {
@@ -94,9 +95,12 @@ std::string trial(std::function<void()> const& action, TrialLimits const& limits
     int status = 0;
     while (::waitpid(copy, &status, 0) < 0)
         if (errno != EINTR) return "";
-    if (WIFEXITED(status)) return WEXITSTATUS(status) == 0 ? "" : "status " + std::to_string(WEXITSTATUS(status));
-    if (std::find(std::begin(faults), std::end(faults), WTERMSIG(status)) == std::end(faults)) return "";
-    return WTERMSIG(status) == SIGXCPU ? "no end within " + std::to_string(limits.seconds) + " s" : strsignal(WTERMSIG(status));
+    if (WIFEXITED(status))
+        return WEXITSTATUS(status) == 0 ? "" : "status " + std::to_string(WEXITSTATUS(status));
+    if (std::find(std::begin(faults), std::end(faults), WTERMSIG(status)) == std::end(faults))
+        return "";
+    return WTERMSIG(status) == SIGXCPU ? "no end within " + std::to_string(limits.seconds) + " s"
+                                       : strsignal(WTERMSIG(status));
 }
 
 }  // namespace catena

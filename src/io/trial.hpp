@@ -15,8 +15,9 @@ struct TrialLimits {
 /// For reading a file: more than a compressed one of its size can need.
 TrialLimits limits_for_file(std::string const& file);
 
-/// Runs `action` in a copy of this process, which keeps nothing of what it changes and says nothing. Returns an empty text where it came
-/// back or threw, and where the system gives no copy; else how the copy ended ("Segmentation fault").
+/// Runs `action` in a copy of this process, which keeps nothing of what it changes and says
+/// nothing. Returns an empty text where it came back or threw, and where the system gives no copy;
+/// else how the copy ended ("Segmentation fault").
 std::string trial(std::function<void()> const& action, TrialLimits const& limits);
 
 }  // namespace catena

@@ -1,4 +1,5 @@
-// Beads that rigid bodies carry: where they are, and what forces on them do to the bodies, for every Space.
+// Beads that rigid bodies carry: where they are, and what forces on them do to the bodies, for
+// every Space.
 #pragma once
 
 #include <utility>
@@ -22,7 +23,8 @@ struct CarriedBeadsView {
 
     CATENA_HD explicit operator bool() const { return offset != nullptr; }
     CATENA_HD void put(std::int64_t k, Vec3 const& centre, Mat3 const& axes) const {
-        for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i) position.store(i, centre + axes * place[i]);
+        for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i)
+            position.store(i, centre + axes * place[i]);
     }
     CATENA_HD void clear_forces(std::int64_t k) const {
         for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i) force.store(i, Vec3::zero());
@@ -54,10 +56,15 @@ class CarriedBeadsIn {
     /// On this rank; in the group.
     bool any() const { return any_; }
     bool in_scene() const { return in_scene_; }
-    CarriedBeadsView view() { return {in_scene_ ? offset_.data() : nullptr, place_.data(), position_.view(), force_.view()}; }
+    CarriedBeadsView view() {
+        return {in_scene_ ? offset_.data() : nullptr, place_.data(), position_.view(),
+                force_.view()};
+    }
     typename Space::template FieldOf<3> const& force() const { return force_; }
     // What BeadHost's members of these names promise.
-    ConstView<3> bead_positions() { return any_ ? space_.pull(position_, position_mirror_) : View<3>{}; }
+    ConstView<3> bead_positions() {
+        return any_ ? space_.pull(position_, position_mirror_) : View<3>{};
+    }
     View<3> bead_forces() {
         forces_are_out_ = any_;
         return any_ ? space_.pull(force_, force_mirror_) : View<3>{};

@@ -17,8 +17,10 @@ JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
     }
     for (LocalDrive const& d : group.drives) {
         bool const two = group.joint[d.body] == JointType::universal;
-        state.q.set(d.body, {{scene::value_at(d.first, 0), two ? scene::value_at(d.second, 0) : 0.0, 0, 0}});
-        state.qd.set(d.body, {{scene::rate_at(d.first, 0), two ? scene::rate_at(d.second, 0) : 0.0, 0}});
+        state.q.set(d.body, {{scene::value_at(d.first, 0), two ? scene::value_at(d.second, 0) : 0.0,
+                              0, 0}});
+        state.qd.set(d.body,
+                     {{scene::rate_at(d.first, 0), two ? scene::rate_at(d.second, 0) : 0.0, 0}});
     }
     return state;
 }
@@ -32,7 +34,8 @@ std::vector<std::int64_t> first_bodies(ChainGroup const& group) {
 std::vector<std::int32_t> run_slots(ChainGroup const& group) {
     std::vector<std::int32_t> slots(static_cast<std::size_t>(group.size));
     for (dca::Run const& run : group.schedule.runs)
-        for (std::int64_t k = run.body; k < run.body + run.count; ++k) slots[k] = static_cast<std::int32_t>(run.slot);
+        for (std::int64_t k = run.body; k < run.body + run.count; ++k)
+            slots[k] = static_cast<std::int32_t>(run.slot);
     return slots;
 }
 

@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "kinematics/joint_scan.hpp"
 #include "dca/host_space.hpp"
-#include "tree/scan_then.hpp"
+#include "kinematics/joint_scan.hpp"
 #include "tree/frontier_exchange.hpp"
+#include "tree/scan_then.hpp"
 
 namespace catena {
 
@@ -19,7 +19,10 @@ struct JointCoordinates {
 
     JointCoordinates() = default;
     explicit JointCoordinates(ChainGroup const& group)
-        : q(group.size), qd(group.size), base_position(std::ssize(group.pieces)), base_velocity(std::ssize(group.pieces)) {}
+        : q(group.size),
+          qd(group.size),
+          base_position(std::ssize(group.pieces)),
+          base_velocity(std::ssize(group.pieces)) {}
     StateView view() { return {q.view(), qd.view(), base_position.view(), base_velocity.view()}; }
 };
 using JointState = JointCoordinates<HostSpace>;
@@ -35,7 +38,11 @@ struct MotionFields {
 
     MotionFields() = default;
     MotionFields(ChainGroup const& group, Space const& space)
-        : joint_turn(group.size), orientation(group.size), omega(group.size), origin(group.size), velocity(group.size) {
+        : joint_turn(group.size),
+          orientation(group.size),
+          omega(group.size),
+          origin(group.size),
+          velocity(group.size) {
         if (!group.moving_meeting()) return;
         r2 = typename Space::template FieldOf<3>(group.size);
         axes2 = typename Space::template FieldOf<6>(group.size);
@@ -43,7 +50,8 @@ struct MotionFields {
         fill(space, axes2, group.axes2);
     }
     MotionView view() {
-        return {joint_turn.view(), orientation.view(), omega.view(), origin.view(), velocity.view(), r2.view(), axes2.view()};
+        return {joint_turn.view(), orientation.view(), omega.view(), origin.view(),
+                velocity.view(),   r2.view(),          axes2.view()};
     }
 };
 using BodyMotion = MotionFields<HostSpace>;
@@ -58,8 +66,8 @@ class JointKinematics {
     using FieldOf = typename Space::template FieldOf<D>;
 
   public:
-    /// Of a rank's first body, or none, along with what ranks tell each other of motions: its joint's loads (HingeLoads), and where that
-    /// joint lies on the body before.
+    /// Of a rank's first body, or none, along with what ranks tell each other of motions: its
+    /// joint's loads (RevoluteLoads), and where that joint lies on the body before.
     using LoadsForNeighbour = BodyExchange<4>;
     using MeetingForNeighbour = BodyExchange<9>;
     /// The group and the communicator must outlive it.
@@ -80,7 +88,8 @@ class JointKinematics {
           joint_translation_(group.joint_translation),
           first_axis_(group.first_axis),
           screw_(group.screw),
-          tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots, group.schedule.slots),
+          tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots,
+                group.schedule.slots),
           top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
           runs_(group.schedule.runs),
           roots_(group.schedule.roots),
@@ -119,19 +128,30 @@ class JointKinematics {
     /// Of bodies against their inboard ones, where a scan leaves them (JointScan::rotation).
     ConstView<4> rotations() { return rotation_.view(); }
     JointScan scan(StateView const& state, MotionView const& motion) {
-        return {joints(),         state,        motion,        rotation_.view(), omega_.view(),       translation_.view(),
-                velocity_.view(), slot_.data(), whole_.view(), before_.view(),   next_meeting_.view()};
+        return {joints(),
+                state,
+                motion,
+                rotation_.view(),
+                omega_.view(),
+                translation_.view(),
+                velocity_.view(),
+                slot_.data(),
+                whole_.view(),
+                before_.view(),
+                next_meeting_.view()};
     }
 
-    /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and velocity as well.
+    /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and
+    /// velocity as well.
     void evaluate(StateView const& state, bool with_positions, MotionView const& motion) {
         with_positions ? evaluate<true>(scan(state, motion)) : evaluate<false>(scan(state, motion));
     }
-    /// Up and down the tree, after set_relative() of every body, and then last(k) for every body, with set_motion(). Collective where a
-    /// chain is shared by ranks.
+    /// Up and down the tree, after set_relative() of every body, and then last(k) for every body,
+    /// with set_motion(). Collective where a chain is shared by ranks.
     template <bool positions, class Last>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
-        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, MotionScan<positions>{s}, group_.size, last);
+        if (group_.schedule.shared.empty())
+            return space_.climb_and_descend(tree_, MotionScan<positions>{s}, group_.size, last);
         sweep<positions>(s, loads);
         space_.for_each(group_.size, last);
     }
@@ -141,13 +161,16 @@ class JointKinematics {
     }
     /// `tree`: the group's, without runs that JointScan::follow was called of.
     template <bool positions>
-    void sweep(JointScan const& s, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
+    void sweep(JointScan const& s, typename Space::ScanTree const& tree,
+               LoadsForNeighbour const& loads) {
         sweep_with(MotionScan<positions>{s}, tree, loads);
     }
 
-    /// By a scan that may do more with runs than MotionScan, and leaves `loads` there. `tree`: as sweep().
+    /// By a scan that may do more with runs than MotionScan, and leaves `loads` there. `tree`: as
+    /// sweep().
     template <class Scan>
-    void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
+    void sweep_with(Scan const& scan, typename Space::ScanTree const& tree,
+                    LoadsForNeighbour const& loads) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
         pass(scan, tree, meeting, loads);
@@ -155,15 +178,18 @@ class JointKinematics {
     /// Whether sweep_runs() takes runs by threads that have a body each.
     bool has_threads_for_bodies() const {
         return space_.has_threads_for_bodies(tree_) &&
-               (group_.schedule.shared.empty() || (shared_.is_direct() && space_.has_threads_for_bodies(top_)));
+               (group_.schedule.shared.empty() ||
+                (shared_.is_direct() && space_.has_threads_for_bodies(top_)));
     }
     /// By one over all runs; then last(run) for each.
     template <class Scan, class Last>
     void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
-        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan, runs_, last);
+        if (group_.schedule.shared.empty())
+            return space_.climb_and_descend(tree_, scan, runs_, last);
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
         dca::ScanThen const all{scan, runs_, last};
-        if (shared_.turn(space_, communicator_, shown(scan), tree_, top_, all, meeting, loads)) return;
+        if (shared_.turn(space_, communicator_, shown(scan), tree_, top_, all, meeting, loads))
+            return;
         pass(scan, tree_, meeting, loads);
         space_.over(runs_, last);
     }
@@ -171,13 +197,18 @@ class JointKinematics {
     // Not private: nvcc takes lambdas for kernels from public members alone.
     template <bool positions>
     void evaluate(JointScan const& s) {
-        space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_relative<positions>(k); });
-        sweep<positions>(s, LoadsForNeighbour::none(), [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
+        space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) {
+            s.template set_relative<positions>(k);
+        });
+        sweep<positions>(s, LoadsForNeighbour::none(), [s] CATENA_LAMBDA(std::int64_t k) {
+            s.template set_motion<positions>(k);
+        });
     }
     /// Joint k's from body k - 1, across the ranks, where it moves.
     MeetingForNeighbour shown_meeting(JointScan const& s) {
         View<9> const meeting = next_meeting_.view();
-        MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard};
+        MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard,
+                                        meeting, 1, group_.neighbour_outboard};
         if (!group_.moving_meeting() || !shown) return MeetingForNeighbour::none();
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
         return shown;
@@ -185,12 +216,17 @@ class JointKinematics {
     void begin_at_ground() {
         MotionRecords const before = before_.view();
         JointsView const all = joints();
-        // Scans bring the same bits there; what comes after them may ask earlier (HingeScan::begins_at_ground).
+        // Scans bring the same bits there; what comes after them may ask earlier
+        // (RevoluteScan::begins_at_ground).
         space_.over(runs_, [before, all] CATENA_LAMBDA(dca::Run const& run) {
             if (all.starts_chain(run.body)) before.store(run.slot, Motion::none());
         });
-        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
-        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
+        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) {
+            before.store(root.slot, Motion::none());
+        });
+        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) {
+            before.store(root.slot, Motion::none());
+        });
     }
 
   private:
@@ -200,8 +236,10 @@ class JointKinematics {
     }
     /// sweep_with() among ranks.
     template <class Scan>
-    void pass(Scan const& scan, typename Space::ScanTree const& tree, MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
-        if (shared_.turn(space_, communicator_, shown(scan), tree, top_, scan, meeting, loads)) return;
+    void pass(Scan const& scan, typename Space::ScanTree const& tree,
+              MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
+        if (shared_.turn(space_, communicator_, shown(scan), tree, top_, scan, meeting, loads))
+            return;
         space_.climb(tree, scan);
         shared_.show(space_, shown(scan));
         shared_.bring(space_, communicator_, shown(scan), meeting, loads);
@@ -230,7 +268,7 @@ class JointKinematics {
     FieldOf<4> rotation_;
     FieldOf<3> omega_, translation_, velocity_;
     FieldOf<9> next_meeting_;
-    dca::SharedUnits<Space> shared_;
+    dca::FrontierExchange<Space> shared_;
     typename Space::template Records<Motion, dca::Order::plain> whole_, before_;
 };
 

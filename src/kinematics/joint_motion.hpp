@@ -1,15 +1,16 @@
-// How joints move their bodies, host and device. A joint's motion (rotation, translation, angular and linear velocity) composes
-// associatively along the chain, so the way along it is a scan.
+// How joints move their bodies, host and device. A joint's motion (rotation, translation, angular
+// and linear velocity) composes associatively along the chain, so the way along it is a scan.
 #pragma once
 
 #include "chain/chain_group.hpp"
-#include "dca/leaf.hpp"
 #include "dca/lane_access.hpp"
+#include "dca/leaf.hpp"
 #include "scene/pose.hpp"
 
 namespace catena {
 
-using dca::is_one_body, dca::Mat3At, dca::QuatAt, dca::read, dca::RealAt, dca::Screw, dca::Vec3At, dca::write, dca::write_directions;
+using dca::is_one_body, dca::Mat3At, dca::QuatAt, dca::read, dca::RealAt, dca::Screw, dca::Vec3At,
+    dca::write, dca::write_directions;
 
 /// The motion of a frame B against a frame A.
 template <class Real>
@@ -19,7 +20,8 @@ struct MotionOf {
     Vector<Real, 3> translation;  // of B's origin from A's, A
     Vector<Real, 3> velocity;     // of B's origin against A, B
     static CATENA_HD MotionOf none() {
-        return {Quaternion<Real>::identity(), Vector<Real, 3>::zero(), Vector<Real, 3>::zero(), Vector<Real, 3>::zero()};
+        return {Quaternion<Real>::identity(), Vector<Real, 3>::zero(), Vector<Real, 3>::zero(),
+                Vector<Real, 3>::zero()};
     }
 };
 using Motion = MotionOf<double>;
@@ -31,26 +33,34 @@ CATENA_HD Vector<double, 13> as_numbers(Motion const& m) {
 }
 template <class Real>
 CATENA_HD MotionOf<Real> as_motion(Vector<Real, 13> const& n) {
-    return {{n[0], n[1], n[2], n[3]}, {{n[4], n[5], n[6]}}, {{n[7], n[8], n[9]}}, {{n[10], n[11], n[12]}}};
+    return {{n[0], n[1], n[2], n[3]},
+            {{n[4], n[5], n[6]}},
+            {{n[7], n[8], n[9]}},
+            {{n[10], n[11], n[12]}}};
 }
 /// Angular velocity of C against A, C, from that of B against A and the motion of C against B.
 template <class Real>
 CATENA_HD Vector<Real, 3> compose(Vector<Real, 3> const& omega, MotionOf<Real> const& bc) {
     return transposed_times(to_matrix(bc.rotation), omega) + bc.omega;
 }
-/// Motion of C against A from those of B against A and C against B. Without `positions` translation and velocity stay zero.
+/// Motion of C against A from those of B against A and C against B. Without `positions` translation
+/// and velocity stay zero.
 template <bool positions, class Real>
 CATENA_HD MotionOf<Real> compose(MotionOf<Real> const& ab, MotionOf<Real> const& bc) {
     using Vector3 = Vector<Real, 3>;
-    MotionOf<Real> ac{ab.rotation * bc.rotation, compose(ab.omega, bc), Vector3::zero(), Vector3::zero()};
+    MotionOf<Real> ac{ab.rotation * bc.rotation, compose(ab.omega, bc), Vector3::zero(),
+                      Vector3::zero()};
     if constexpr (positions) {
         ac.translation = ab.translation + to_matrix(ab.rotation) * bc.translation;
-        ac.velocity = transposed_times(to_matrix(bc.rotation), ab.velocity + cross(ab.omega, bc.translation)) + bc.velocity;
+        ac.velocity = transposed_times(to_matrix(bc.rotation),
+                                       ab.velocity + cross(ab.omega, bc.translation)) +
+                      bc.velocity;
     }
     return ac;
 }
 
-/// The coordinates' rates as a relative motion of a joint: angular and linear velocity of the outboard side against the inboard one, M.
+/// The coordinates' rates as a relative motion of a joint: angular and linear velocity of the
+/// outboard side against the inboard one, M.
 template <class Real>
 struct JointRate {
     Vector<Real, 3> angular, linear;
@@ -60,7 +70,8 @@ struct JointRate {
 struct StateView {
     View<4> q;
     View<3> qd;
-    View<3> base_position, base_velocity;  // one a piece; counts where the piece starts on a free base: origin of body 1, W
+    View<3> base_position, base_velocity;  // one a piece; counts where the piece starts on a free
+                                           // base: origin of body 1, W
 };
 
 /// What a pass over the chain finds. Without poses where nobody asks for them.
@@ -70,7 +81,8 @@ struct MotionView {
     View<3> omega;        // of B, B
     View<3> origin;       // of B, W
     View<3> velocity;     // of B's origin, B
-    // Where the meeting frames of outboard joints move in their inboard body (else absent): as ConfigurationView.
+    // Where the meeting frames of outboard joints move in their inboard body (else absent): as
+    // ConfigurationView.
     View<3> r2;
     View<6> axes2;
     bool orients_first_alone = false;
@@ -99,7 +111,8 @@ struct JointsView {
     LocalDrive const* drive = nullptr;
     std::int64_t drives = 0;
 
-    // Of one body, or of several next to each other whose joints are of one type and none of which begins a chain.
+    // Of one body, or of several next to each other whose joints are of one type and none of which
+    // begins a chain.
     CATENA_HD JointType type(std::int64_t k) const { return joint[k]; }
     template <dca::SeveralBodies Place>
     CATENA_HD JointType type(Place const& several) const {
@@ -220,7 +233,8 @@ struct JointsView {
     }
     /// Of body k against its inboard body. `turn`: turn_of().
     template <class Place>
-    CATENA_HD MotionOf<RealAt<Place>> motion(StateView const& state, Place k, QuatAt<Place> const& turn) const {
+    CATENA_HD MotionOf<RealAt<Place>> motion(StateView const& state, Place k,
+                                             QuatAt<Place> const& turn) const {
         using Vector3 = Vec3At<Place>;
         if constexpr (is_one_body<Place>)
             if (joint[k] == JointType::free) {
@@ -228,7 +242,8 @@ struct JointsView {
                 return {turn, state.qd.load(k), state.base_position.load(p),
                         transposed_times(to_matrix(turn), state.base_velocity.load(p))};
             }
-        MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * turn, Vector3::zero(), meeting_point(state, k), Vector3::zero()};
+        MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * turn, Vector3::zero(),
+                                  meeting_point(state, k), Vector3::zero()};
         switch (type(k)) {
             case JointType::spherical:
                 m.omega = read(state.qd, k);
@@ -255,9 +270,11 @@ struct JointsView {
     CATENA_HD Vec3At<Place> normal(Place k) const {
         return planar ? axis(k) : Vec3At<Place>::zero();
     }
-    /// In a plane bodies turn about its normal alone: composing rounds a part across it, which grows with the chain.
+    /// In a plane bodies turn about its normal alone: composing rounds a part across it, which
+    /// grows with the chain.
     template <class Real>
-    CATENA_HD Vector<Real, 3> kept_in_plane(Vector<Real, 3> const& plane, Vector<Real, 3> const& omega) const {
+    CATENA_HD Vector<Real, 3> kept_in_plane(Vector<Real, 3> const& plane,
+                                            Vector<Real, 3> const& omega) const {
         return planar ? dot(plane, omega) * plane : omega;
     }
     /// Sets q and qd of a driven joint to its courses' at a time.
@@ -265,8 +282,10 @@ struct JointsView {
         LocalDrive const* const d = drives > 0 ? drive_of(k) : nullptr;
         if (!d) return;
         bool const two = joint[k] == JointType::universal;
-        state.q.store(k, Vector<double, 4>{{scene::value_at(d->first, time), two ? scene::value_at(d->second, time) : 0.0, 0, 0}});
-        state.qd.store(k, Vec3{{scene::rate_at(d->first, time), two ? scene::rate_at(d->second, time) : 0.0, 0}});
+        state.q.store(k, Vector<double, 4>{{scene::value_at(d->first, time),
+                                            two ? scene::value_at(d->second, time) : 0.0, 0, 0}});
+        state.qd.store(k, Vec3{{scene::rate_at(d->first, time),
+                                two ? scene::rate_at(d->second, time) : 0.0, 0}});
     }
 };
 

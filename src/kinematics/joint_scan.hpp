@@ -1,7 +1,9 @@
-// The scan over the canonical tree that gives every body its motion against the ground, item by item, host and device.
+// The scan over the canonical tree that gives every body its motion against the ground, item by
+// item, host and device.
 //
-// Bodies against the body before their run; runs and pairs of segments as wholes, up the tree; what lies before each segment, down the
-// tree; bodies against the ground. Motions are those of a segment's last body.
+// Bodies against the body before their run; runs and pairs of segments as wholes, up the tree; what
+// lies before each segment, down the tree; bodies against the ground. Motions are those of a
+// segment's last body.
 #pragma once
 
 #include "kinematics/joint_motion.hpp"

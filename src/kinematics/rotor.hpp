@@ -1,6 +1,7 @@
-// Free rotation of a rigid body, host and device: NO_SQUISH (Miller, Eleftheriou, Pattnaik, Ndirango, Newns, Martyna, J. Chem.
-// Phys. 116, 8649, 2002) - turns about the principal axes in the order 1 2 3 2 1, symplectic and reversible, written with the
-// angular momentum in body axes instead of the quaternion's conjugate momentum.
+// Free rotation of a rigid body, host and device: NO_SQUISH (Miller, Eleftheriou, Pattnaik,
+// Ndirango, Newns, Martyna, J. Chem. Phys. 116, 8649, 2002) - turns about the principal axes in the
+// order 1 2 3 2 1, symplectic and reversible, written with the angular momentum in body axes
+// instead of the quaternion's conjugate momentum.
 #pragma once
 
 #include "math/rotation.hpp"
@@ -30,7 +31,8 @@ CATENA_HD void turn_about(int axis, double h, Vec3 const& moments, Quat& q, Vec3
     q = q * from_axis_angle(unit, angle);
 }
 
-/// The state after time h without torque; error of third order in h a step, momentum in space kept to rounding.
+/// The state after time h without torque; error of third order in h a step, momentum in space kept
+/// to rounding.
 CATENA_HD RotorState free_rotor(PrincipalFrame const& frame, RotorState const& start, double h) {
     Quat q = start.orientation * frame.rotation;
     Mat3 const to_body = to_matrix(frame.rotation);

@@ -1,4 +1,5 @@
-// Elementary functions, host and device. Mathematical libraries of hosts and devices round differently; these round alike everywhere.
+// Elementary functions, host and device. Mathematical libraries of hosts and devices round
+// differently; these round alike everywhere.
 #pragma once
 
 #include <cmath>
@@ -24,7 +25,8 @@ CATENA_HD CosSin turned_back(int quarters, double c, double s) {
 CATENA_HD double log_of_uniform(double u) {
     auto const bits = __builtin_bit_cast(std::uint64_t, u);
     int exponent = static_cast<int>(bits >> 52) - 1022;
-    double m = __builtin_bit_cast(double, (bits & 0x000fffffffffffffULL) | 0x3fe0000000000000ULL);  // in [1/2, 1)
+    double m = __builtin_bit_cast(
+        double, (bits & 0x000fffffffffffffULL) | 0x3fe0000000000000ULL);  // in [1/2, 1)
     bool const small = m < 0.70710678118654752;
     m = small ? 2 * m : m;
     exponent = small ? exponent - 1 : exponent;

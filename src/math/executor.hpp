@@ -13,9 +13,11 @@ class Executor {
   public:
     explicit Executor(SimdLevel simd) : simd_(simd) {}
     virtual ~Executor() = default;
-    /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side by side, where that pays: one of
-    /// `count` costs as much as `cost` single bodies, merges or runs do.
-    virtual void for_ranges(std::int64_t count, int cost, std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
+    /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side
+    /// by side, where that pays: one of `count` costs as much as `cost` single bodies, merges or
+    /// runs do.
+    virtual void for_ranges(std::int64_t count, int cost,
+                            std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
     virtual int threads() const = 0;
     /// Of each thread, where several items go side by side.
     SimdLevel simd() const { return simd_; }
@@ -26,8 +28,8 @@ class Executor {
             for (std::int64_t i = begin; i < end; ++i) item(i);
         });
     }
-    /// item(i, executor for its own loops over single things): many items run side by side, of few each has all threads. Threads start once
-    /// then, not once an item.
+    /// item(i, executor for its own loops over single things): many items run side by side, of few
+    /// each has all threads. Threads start once then, not once an item.
     template <class Item>
     void for_each_of_many_or_few(std::int64_t count, Item const& item) const;
 

@@ -1,6 +1,7 @@
-// One quantity of D components for every body a rank holds, component after component (a structure of arrays), with one
-// halo body on either side. All addressing is here, in DirectionsView and in RecordsView: a GPU's arrays have an order of their own
-// (gpu_order), so that host code must not reach through a view of a device, nor the other way round.
+// One quantity of D components for every body a rank holds, component after component (a structure
+// of arrays), with one halo body on either side. All addressing is here, in DirectionsView and in
+// RecordsView: a GPU's arrays have an order of their own (gpu_order), so that host code must not
+// reach through a view of a device, nor the other way round.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +22,16 @@ struct FieldView {
     std::int64_t pitch = 0;  // as place_of() has it
     std::int64_t size = 0;
 
-    CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * to_next_number(pitch) + place_of(k, pitch)]; }
-    CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const { return taken<false>(k); }
+    CATENA_HD Real& at(std::int64_t k, int component) const {
+        return origin[component * to_next_number(pitch) + place_of(k, pitch)];
+    }
+    CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const {
+        return taken<false>(k);
+    }
     /// Where nobody will want it soon: it may leave a GPU's caches first.
-    CATENA_HD Vector<std::remove_const_t<Real>, D> load_last(std::int64_t k) const { return taken<true>(k); }
+    CATENA_HD Vector<std::remove_const_t<Real>, D> load_last(std::int64_t k) const {
+        return taken<true>(k);
+    }
     template <class Value>
     CATENA_HD void store(std::int64_t k, Vector<Value, D> const& v) const {
         Real* const first = origin + place_of(k, pitch);

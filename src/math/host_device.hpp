@@ -6,10 +6,17 @@
 
 #if defined(__CUDACC__)
 #define CATENA_HD __host__ __device__ inline
-#define CATENA_HD_IN_PLACE __host__ __device__ __forceinline__   // never called: arrays that it is given may stay in registers
-#define CATENA_HD_APART __host__ __device__ __noinline__ inline  // seldom called: it is to cost its callers no registers
-#define CATENA_EITHER_SIDE _Pragma("nv_exec_check_disable")      // before a template that calls what its arguments have on one side alone
-#define CATENA_LAMBDA __device__                                 // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
+#define CATENA_HD_IN_PLACE \
+    __host__ __device__    \
+        __forceinline__  // never called: arrays that it is given may stay in registers
+#define CATENA_HD_APART \
+    __host__ __device__ \
+        __noinline__ inline  // seldom called: it is to cost its callers no registers
+#define CATENA_EITHER_SIDE \
+    _Pragma("nv_exec_check_disable")  // before a template that calls what its arguments have on one
+                                      // side alone
+#define CATENA_LAMBDA \
+    __device__  // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
 #define CATENA_UNROLL _Pragma("unroll")
 #define CATENA_NO_UNROLL _Pragma("unroll 1")
 #else
@@ -24,8 +31,8 @@
 
 namespace catena {
 
-/// a b + c in one rounding where the instruction set has it, in two where it has not: written out, never left to the
-/// compiler, so that one source gives the same bits wherever it is inlined.
+/// a b + c in one rounding where the instruction set has it, in two where it has not: written out,
+/// never left to the compiler, so that one source gives the same bits wherever it is inlined.
 CATENA_HD double fused(double a, double b, double c) {
 #if defined(__FMA__) || defined(__CUDA_ARCH__) || defined(__ARM_FEATURE_FMA)
     return __builtin_fma(a, b, c);
@@ -59,14 +66,17 @@ CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
 #else
     std::atomic_ref<unsigned long long> found(*place);
     unsigned long long before = found.load(std::memory_order_relaxed);
-    while (value < before && !found.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+    while (value < before &&
+           !found.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
     }
 #endif
 }
 
-/// The order of bodies in a GPU's arrays: in tiles of `lanes` runs of `steps` bodies, the runs' first bodies next to each other, then
-/// their second ones, ..., so that threads that walk along a run each touch whole cache lines together. Of each such row of bodies the
-/// first numbers come together, then the second ones, ...: from one number of a body to the next it is `lanes`, whatever the array.
+/// The order of bodies in a GPU's arrays: in tiles of `lanes` runs of `steps` bodies, the runs'
+/// first bodies next to each other, then their second ones, ..., so that threads that walk along a
+/// run each touch whole cache lines together. Of each such row of bodies the first numbers come
+/// together, then the second ones, ...: from one number of a body to the next it is `lanes`,
+/// whatever the array.
 namespace gpu_order {
 inline constexpr std::int32_t lanes = 32, steps = 16, tile = lanes * steps;
 inline constexpr int bits_of_tile = 9;
@@ -95,11 +105,14 @@ CATENA_HD constexpr std::int64_t body(std::int64_t i) {
     return i + ((in_tile % lanes) * steps + in_tile / lanes - in_tile);
 }
 /// Of whole tiles that hold `bodies`.
-CATENA_HD constexpr std::int64_t padded(std::int64_t bodies) { return (bodies + tile - 1) / tile * tile; }
+CATENA_HD constexpr std::int64_t padded(std::int64_t bodies) {
+    return (bodies + tile - 1) / tile * tile;
+}
 }  // namespace gpu_order
 
-/// Where body k's first number stands in arrays of the processor that runs this, and how far it is to its next one. On the host one body
-/// follows the other, and `pitch` is from one number of a body to the next; on a GPU from one row of bodies to the next.
+/// Where body k's first number stands in arrays of the processor that runs this, and how far it is
+/// to its next one. On the host one body follows the other, and `pitch` is from one number of a
+/// body to the next; on a GPU from one row of bodies to the next.
 CATENA_HD std::int64_t place_of(std::int64_t k, [[maybe_unused]] std::int64_t pitch) {
 #if defined(__CUDA_ARCH__)
     return gpu_order::first_number(k, pitch);

@@ -17,8 +17,9 @@ namespace {
 
 constexpr std::size_t page = std::size_t{2} << 20;
 
-/// Where an array begins in its first page. If all began alike, the same body's numbers in dozens of them would fight for one set of a
-/// cache. Steps of an odd number of cache lines, through the sets of a small cache and back.
+/// Where an array begins in its first page. If all began alike, the same body's numbers in dozens
+/// of them would fight for one set of a cache. Steps of an odd number of cache lines, through the
+/// sets of a small cache and back.
 std::size_t next_shift() {
     constexpr std::size_t step = 13 * 64, steps = 64;
     static std::atomic<std::size_t> arrays = 0;
@@ -31,13 +32,16 @@ std::size_t whole_pages(std::size_t bytes) { return (bytes + page - 1) / page * 
 
 void* allocate_zeros(std::size_t bytes) {
     std::size_t const shift = next_shift(), length = whole_pages(shift + bytes);
-    void* const found = ::mmap(nullptr, length + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    void* const found =
+        ::mmap(nullptr, length + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (found == MAP_FAILED) throw std::bad_alloc();
-    std::size_t const before = whole_pages(reinterpret_cast<std::uintptr_t>(found)) - reinterpret_cast<std::uintptr_t>(found);
+    std::size_t const before = whole_pages(reinterpret_cast<std::uintptr_t>(found)) -
+                               reinterpret_cast<std::uintptr_t>(found);
     std::byte* const begin = static_cast<std::byte*>(found) + before;
     if (before > 0) ::munmap(found, before);
     ::munmap(begin + length, page - before);
-    static_cast<void>(::madvise(begin, length, MADV_HUGEPAGE));  // where that is refused, pages are small
+    static_cast<void>(
+        ::madvise(begin, length, MADV_HUGEPAGE));  // where that is refused, pages are small
     return begin + shift;
 }
 

@@ -1,5 +1,5 @@
-// Memory of long arrays, in large pages where the system has them: a loop goes along dozens of arrays at once, more than a processor
-// keeps addresses of small pages for.
+// Memory of long arrays, in large pages where the system has them: a loop goes along dozens of
+// arrays at once, more than a processor keeps addresses of small pages for.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,14 @@
 
 namespace catena {
 
-/// Fresh from the system, which hands out zeros page by page as they are touched. Throws std::bad_alloc.
+/// Fresh from the system, which hands out zeros page by page as they are touched. Throws
+/// std::bad_alloc.
 void* allocate_zeros(std::size_t bytes);
 void free_zeros(void* place, std::size_t bytes);
 
-/// For arrays that keep the size they are made with: an element that is given no value is zero, and nobody writes that zero. The threads
-/// that first write an array then share the work of getting its pages, and have them near.
+/// For arrays that keep the size they are made with: an element that is given no value is zero, and
+/// nobody writes that zero. The threads that first write an array then share the work of getting
+/// its pages, and have them near.
 template <class T>
 struct LargePages {
     using value_type = T;

@@ -1,5 +1,5 @@
-// Vectors and small matrices of a size known at compile time, host and device; Real = double, float, an extended or a
-// SIMD type. Values only: arrays of bodies live in math/field.hpp.
+// Vectors and small matrices of a size known at compile time, host and device; Real = double,
+// float, an extended or a SIMD type. Values only: arrays of bodies live in math/field.hpp.
 #pragma once
 
 #include <cmath>

@@ -13,9 +13,11 @@ class OpenMpExecutor final : public Executor {
   public:
     OpenMpExecutor(int threads, SimdLevel simd) : Executor(simd), threads_(threads) {}
 
-    void for_ranges(std::int64_t count, int cost, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
+    void for_ranges(std::int64_t count, int cost,
+                    std::function<void(std::int64_t, std::int64_t)> const& body) const override {
         if (count <= 0) return;
-        std::int64_t const ranges = std::min<std::int64_t>({count * cost / worth_a_thread, count, threads_});
+        std::int64_t const ranges =
+            std::min<std::int64_t>({count * cost / worth_a_thread, count, threads_});
         if (ranges <= 1) return body(0, count);
         std::exception_ptr error;
 #pragma omp parallel for num_threads(threads_) schedule(static, 1)

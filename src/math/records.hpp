@@ -1,5 +1,5 @@
-// Records of doubles (segments, eliminated joints, directions), one for each of many places, and how they lie in memory: one record
-// after the other on the host, as fields on a GPU.
+// Records of doubles (segments, eliminated joints, directions), one for each of many places, and
+// how they lie in memory: one record after the other on the host, as fields on a GPU.
 #pragma once
 
 #include "math/linear.hpp"

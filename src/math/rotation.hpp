@@ -1,4 +1,5 @@
-// Rotations as unit quaternions (w, x, y, z). Q_AB maps components in frame B to components in frame A.
+// Rotations as unit quaternions (w, x, y, z). Q_AB maps components in frame B to components in
+// frame A.
 #pragma once
 
 #include "math/elementary.hpp"
@@ -24,8 +25,10 @@ CATENA_HD Vector<Real, 4> as_vector(Quaternion<Real> const& q) {
 /// Q_AC = Q_AB Q_BC.
 template <class Real>
 CATENA_HD Quaternion<Real> operator*(Quaternion<Real> const& a, Quaternion<Real> const& b) {
-    return {fused(-a.z, b.z, fused(-a.y, b.y, fused(-a.x, b.x, a.w * b.w))), fused(-a.z, b.y, fused(a.y, b.z, fused(a.x, b.w, a.w * b.x))),
-            fused(-a.x, b.z, fused(a.z, b.x, fused(a.y, b.w, a.w * b.y))), fused(-a.y, b.x, fused(a.x, b.y, fused(a.z, b.w, a.w * b.z)))};
+    return {fused(-a.z, b.z, fused(-a.y, b.y, fused(-a.x, b.x, a.w * b.w))),
+            fused(-a.z, b.y, fused(a.y, b.z, fused(a.x, b.w, a.w * b.x))),
+            fused(-a.x, b.z, fused(a.z, b.x, fused(a.y, b.w, a.w * b.y))),
+            fused(-a.y, b.x, fused(a.x, b.y, fused(a.z, b.w, a.w * b.z)))};
 }
 template <class Real>
 CATENA_HD Quaternion<Real> conjugate(Quaternion<Real> const& q) {
@@ -45,10 +48,13 @@ CATENA_HD Quaternion<Real> normalized(Quaternion<Real> const& q) {
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q, Real const& s) {
     Real const xs = q.x * s, ys = q.y * s, zs = q.z * s;
-    Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, yy = q.y * ys, zz = q.z * zs;
-    // Sums and differences of the same products, left to the compiler: gcc 12 contracts them where it vectorises, -ffp-contract=off or not.
-    return {{Real(1) - (yy + zz), fused(q.x, ys, -wz), fused(q.x, zs, wy), fused(q.x, ys, wz), Real(1) - (xx + zz), fused(q.y, zs, -wx),
-             fused(q.x, zs, -wy), fused(q.y, zs, wx), Real(1) - (xx + yy)}};
+    Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, yy = q.y * ys,
+               zz = q.z * zs;
+    // Sums and differences of the same products, left to the compiler: gcc 12 contracts them where
+    // it vectorises, -ffp-contract=off or not.
+    return {{Real(1) - (yy + zz), fused(q.x, ys, -wz), fused(q.x, zs, wy), fused(q.x, ys, wz),
+             Real(1) - (xx + zz), fused(q.y, zs, -wx), fused(q.x, zs, -wy), fused(q.y, zs, wx),
+             Real(1) - (xx + yy)}};
 }
 /// s of q, which need not be normalised to the last bit. `inverse(x)`: 1 / x.
 template <class Real, class Inverse>
@@ -93,12 +99,17 @@ template <class Real>
 CATENA_HD Quaternion<Real> to_quaternion(Matrix<Real, 3, 3> const& r) {
     Real const t = r(0, 0) + r(1, 1) + r(2, 2);
     if (t >= r(0, 0) && t >= r(1, 1) && t >= r(2, 2))
-        return normalized(Quaternion<Real>{Real(1) + t, r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)});
+        return normalized(
+            Quaternion<Real>{Real(1) + t, r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)});
     if (r(0, 0) >= r(1, 1) && r(0, 0) >= r(2, 2))
-        return normalized(Quaternion<Real>{r(2, 1) - r(1, 2), Real(1) + r(0, 0) - r(1, 1) - r(2, 2), r(0, 1) + r(1, 0), r(0, 2) + r(2, 0)});
+        return normalized(Quaternion<Real>{r(2, 1) - r(1, 2), Real(1) + r(0, 0) - r(1, 1) - r(2, 2),
+                                           r(0, 1) + r(1, 0), r(0, 2) + r(2, 0)});
     if (r(1, 1) >= r(2, 2))
-        return normalized(Quaternion<Real>{r(0, 2) - r(2, 0), r(0, 1) + r(1, 0), Real(1) - r(0, 0) + r(1, 1) - r(2, 2), r(1, 2) + r(2, 1)});
-    return normalized(Quaternion<Real>{r(1, 0) - r(0, 1), r(0, 2) + r(2, 0), r(1, 2) + r(2, 1), Real(1) - r(0, 0) - r(1, 1) + r(2, 2)});
+        return normalized(Quaternion<Real>{r(0, 2) - r(2, 0), r(0, 1) + r(1, 0),
+                                           Real(1) - r(0, 0) + r(1, 1) - r(2, 2),
+                                           r(1, 2) + r(2, 1)});
+    return normalized(Quaternion<Real>{r(1, 0) - r(0, 1), r(0, 2) + r(2, 0), r(1, 2) + r(2, 1),
+                                       Real(1) - r(0, 0) - r(1, 1) + r(2, 2)});
 }
 
 /// A rotation that is one but for rounding, without what makes it none: r (3 - r^T r) / 2.

@@ -6,7 +6,8 @@ namespace {
 class SerialExecutor final : public Executor {
   public:
     using Executor::Executor;
-    void for_ranges(std::int64_t count, int /*cost*/, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
+    void for_ranges(std::int64_t count, int /*cost*/,
+                    std::function<void(std::int64_t, std::int64_t)> const& body) const override {
         if (count > 0) body(0, count);
     }
     int threads() const override { return 1; }
@@ -14,7 +15,9 @@ class SerialExecutor final : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> serial_executor(SimdLevel simd) { return std::make_unique<SerialExecutor>(simd); }
+std::unique_ptr<Executor> serial_executor(SimdLevel simd) {
+    return std::make_unique<SerialExecutor>(simd);
+}
 
 Executor const& this_thread() {
     static SerialExecutor const executor(best_simd_level());

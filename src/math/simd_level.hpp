@@ -1,4 +1,5 @@
-// Instruction sets in which several runs of bodies, merges or bodies are computed side by side, one in each lane of a vector.
+// Instruction sets in which several runs of bodies, merges or bodies are computed side by side, one
+// in each lane of a vector.
 #pragma once
 
 #include <vector>
@@ -14,8 +15,8 @@ int lanes_of(SimdLevel);
 std::vector<SimdLevel> simd_levels();
 /// The last one of these.
 SimdLevel best_simd_level();
-/// Whether the rest of the program rounds a product and a sum at once, as vectors do. If not, it shows what goes side by side: that must
-/// not depend on ranks then.
+/// Whether the rest of the program rounds a product and a sum at once, as vectors do. If not, it
+/// shows what goes side by side: that must not depend on ranks then.
 bool rounds_as_vectors();
 
 }  // namespace catena

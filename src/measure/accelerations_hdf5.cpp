@@ -36,7 +36,8 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
     std::array<hsize_t, 2> const of_tips{s.tip_force.size(), 6};
     Dataset tips = put_array(root, "tip_forces", H5T_NATIVE_DOUBLE, wrenches.data(), of_tips);
     Dataset tip_chains = put_array(root, "tip_chains", chains);
-    for (Dataset* const data : {&accelerations, &forces, &starts, &tips, &tip_chains}) check(data->close(), file, writing);
+    for (Dataset* const data : {&accelerations, &forces, &starts, &tips, &tip_chains})
+        check(data->close(), file, writing);
     flush_to_disk(handle, file, writing);
     check(handle.close(), file, writing);
 }
@@ -45,8 +46,10 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
 
 void require_accelerations_writer(std::string const& file) {
     auto const kind = std::filesystem::status(file).type();
-    if (kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::regular)
-        throw InputError("not a regular file", "--accelerations " + file, "name a file that HDF5 can write to");
+    if (kind != std::filesystem::file_type::not_found &&
+        kind != std::filesystem::file_type::regular)
+        throw InputError("not a regular file", "--accelerations " + file,
+                         "name a file that HDF5 can write to");
 }
 
 void write_accelerations(std::string const& file, Solution const& solution) {

@@ -12,7 +12,8 @@ namespace {
 struct Tridiagonal {
     std::vector<double> diagonal, beside;
 
-    Tridiagonal(std::span<Vec3 const> e, std::span<double const> mass) : diagonal(e.size()), beside(e.size()) {
+    Tridiagonal(std::span<Vec3 const> e, std::span<double const> mass)
+        : diagonal(e.size()), beside(e.size()) {
         for (std::size_t j = 0; j < e.size(); ++j) {
             diagonal[j] = 1 / mass[j] + 1 / mass[j + 1];
             if (j > 0) beside[j] = -dot(e[j - 1], e[j]) / mass[j];
@@ -38,7 +39,8 @@ struct Tridiagonal {
     }
 };
 
-std::vector<double> slopes(std::span<Vec3 const> e, std::span<double const> mass, BondMeasure measure) {
+std::vector<double> slopes(std::span<Vec3 const> e, std::span<double const> mass,
+                           BondMeasure measure) {
     std::vector<double> g(e.size() + 1, 0.0);  // one more, of no bond
     if (measure == BondMeasure::flexible) return g;
     std::vector<double> const inverse = Tridiagonal(e, mass).inverse_beside();
@@ -54,7 +56,8 @@ double half_log_det(std::span<Vec3 const> e, std::span<double const> mass) {
     return sum;
 }
 
-ChainSample sample_chain(std::span<Vec3 const> x, std::span<Vec3 const> force, std::span<double const> mass, BondMeasure measure) {
+ChainSample sample_chain(std::span<Vec3 const> x, std::span<Vec3 const> force,
+                         std::span<double const> mass, BondMeasure measure) {
     std::size_t const bonds = x.size() - 1;
     Shape shape;
     for (std::size_t k = 0; k < x.size(); ++k) shape.add(mass[k], x[k]);
@@ -73,7 +76,8 @@ ChainSample sample_chain(std::span<Vec3 const> x, std::span<Vec3 const> force, s
         beyond = beyond + force[j + 1];
         double const c = dot(e[j - 1], e[j]);
         Vec3 const w = plus_scaled(e[j - 1], -c, e[j]);
-        double const turned = g[j] * (1 - c * c) + (j + 1 < bonds ? g[j + 1] * dot(w, e[j + 1]) : 0.0);
+        double const turned =
+            g[j] * (1 - c * c) + (j + 1 < bonds ? g[j + 1] * dot(w, e[j + 1]) : 0.0);
         s.cosine += c / static_cast<double>(bonds - 1);
         s.virial += dot(beyond, w);
         s.divergence += (2 * c - turned) / length[j];

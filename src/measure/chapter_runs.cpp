@@ -14,7 +14,8 @@ namespace {
 /// A case made ready: it goes back to the pendulum at rest before every step.
 class Prepared {
   public:
-    Prepared(FigureCase const& what, Handles handles, std::int64_t bodies, int threads, Communicator const& communicator)
+    Prepared(FigureCase const& what, Handles handles, std::int64_t bodies, int threads,
+             Communicator const& communicator)
         : scene_(scene_of(what, handles, bodies, threads)),
           system_(scene_, Axes::joint, communicator),
           stepper_(make_stepper(system_, scene_.dynamics)) {
@@ -38,10 +39,15 @@ class Prepared {
         SolverReport const after = system_.solver_reports().front();
         system_.measure(false);
         if (!counts) return;
-        auto const solves = static_cast<double>(after.bias_sweeps + after.evaluations - before.bias_sweeps - before.evaluations);
-        auto const add = [&](std::vector<double>& list, double value) { list.push_back(communicator.max(value)); };
+        auto const solves = static_cast<double>(after.bias_sweeps + after.evaluations -
+                                                before.bias_sweeps - before.evaluations);
+        auto const add = [&](std::vector<double>& list, double value) {
+            list.push_back(communicator.max(value));
+        };
         add(step_, seconds);
-        add(solve_, (after.matrix_seconds - before.matrix_seconds + after.bias_seconds - before.bias_seconds) / solves);
+        add(solve_, (after.matrix_seconds - before.matrix_seconds + after.bias_seconds -
+                     before.bias_seconds) /
+                        solves);
         add(upload_, (after.split.upload - before.split.upload) / solves);
         add(download_, (after.split.download - before.split.download) / solves);
         add(lower_, (after.split.lower() - before.split.lower()) / solves);
@@ -70,7 +76,8 @@ class Prepared {
         system_.wait();
         return seconds_now() - begin;
     }
-    static Scene scene_of(FigureCase const& what, Handles handles, std::int64_t bodies, int threads) {
+    static Scene scene_of(FigureCase const& what, Handles handles, std::int64_t bodies,
+                          int threads) {
         Scene scene = chapter_pendulum(bodies, {});
         scene.solver.backend = what.backend;
         scene.solver.gpu_levels = what.gpu_levels;
@@ -90,10 +97,12 @@ class Prepared {
 /// The pendulum at rest, solved with the tree cut above one level.
 class CutTree {
   public:
-    CutTree(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator, int level,
-            dca::LevelPartMaker const& lower, Executor const& upper)
+    CutTree(ChainGroup const& group, Scene const& scene, Executor const& executor,
+            Communicator const& communicator, int level, dca::LevelPartMaker const& lower,
+            Executor const& upper)
         : dynamics_(make_joint_dynamics(group, scene, executor, communicator,
-                                        dca::make_level_solver(group, communicator, {level, level}, lower, dca::host_levels(upper)))) {}
+                                        dca::make_level_solver(group, communicator, {level, level},
+                                                               lower, dca::host_levels(upper)))) {}
 
     void evaluate(bool counts) {
         SplitSeconds const before = dynamics_->solver().report().split;
@@ -114,11 +123,14 @@ class CutTree {
     std::vector<SplitSeconds> spent_;
 };
 
-/// Median of what `more` spent in that part beyond `less`, evaluation by evaluation: they were taken one after the other. NaN where more
-/// than a quarter of the differences are not positive: noise is larger than what was to be measured.
-double median_of_differences(CutTree const& more, CutTree const& less, double SplitSeconds::* part) {
+/// Median of what `more` spent in that part beyond `less`, evaluation by evaluation: they were
+/// taken one after the other. NaN where more than a quarter of the differences are not positive:
+/// noise is larger than what was to be measured.
+double median_of_differences(CutTree const& more, CutTree const& less,
+                             double SplitSeconds::* part) {
     std::vector<double> differences;
-    for (std::size_t i = 0; i < more.spent().size(); ++i) differences.push_back(more.spent()[i].*part - less.spent()[i].*part);
+    for (std::size_t i = 0; i < more.spent().size(); ++i)
+        differences.push_back(more.spent()[i].*part - less.spent()[i].*part);
     auto const quarter = differences.begin() + std::ssize(differences) / 4;
     std::nth_element(differences.begin(), quarter, differences.end());
     return *quarter > 0 ? spread_of(differences).median : std::nan("");
@@ -171,10 +183,13 @@ std::vector<FigureCase> figure_cases(std::vector<std::string>& left_out) {
     return cases;
 }
 
-std::vector<FigurePoint> measure_steps(std::vector<FigureCase> const& cases, Handles handles, std::int64_t bodies, int threads, int repeat,
+std::vector<FigurePoint> measure_steps(std::vector<FigureCase> const& cases, Handles handles,
+                                       std::int64_t bodies, int threads, int repeat,
                                        Communicator const& communicator) {
     std::vector<std::unique_ptr<Prepared>> prepared;
-    for (FigureCase const& each : cases) prepared.push_back(std::make_unique<Prepared>(each, handles, bodies, threads, communicator));
+    for (FigureCase const& each : cases)
+        prepared.push_back(
+            std::make_unique<Prepared>(each, handles, bodies, threads, communicator));
     int constexpr warm_up = 3;
     for (int i = 0; i < warm_up + repeat; ++i)
         for (auto const& each : prepared) each->step(i >= warm_up);
@@ -186,7 +201,8 @@ std::vector<FigurePoint> measure_steps(std::vector<FigureCase> const& cases, Han
 std::vector<std::int64_t> merges_of_levels(std::int64_t bodies) {
     dca::Partition const partition({bodies}, true, 1);
     std::vector<std::int64_t> merges;
-    for (auto const& level : dca::make_schedule(partition, 0).levels) merges.push_back(std::ssize(level));
+    for (auto const& level : dca::make_schedule(partition, 0).levels)
+        merges.push_back(std::ssize(level));
     return merges;
 }
 
@@ -194,13 +210,15 @@ LevelStudy measure_levels(Handles handles, std::int64_t bodies, int threads, int
     Scene const scene = chapter_pendulum(bodies, {});
     auto const communicator = serial_communicator();
     auto const groups = make_groups(scene, Axes::joint, handles, true, *communicator);
-    auto const one = serial_executor(), many = openmp_is_built() ? openmp_executor(threads) : serial_executor();
+    auto const one = serial_executor(),
+               many = openmp_is_built() ? openmp_executor(threads) : serial_executor();
     bool const gpu = cuda::why_not().empty() && cuda::choose_device(*communicator).empty();
     std::vector<std::int64_t> const merges = merges_of_levels(bodies);
     std::vector<std::unique_ptr<CutTree>> host, device;  // by the number of levels below the cut
     for (int level = 0; level <= static_cast<int>(merges.size()); ++level) {
         auto const cut = [&](dca::LevelPartMaker const& lower) {
-            return std::make_unique<CutTree>(*groups[0], scene, *one, *communicator, level, lower, *many);
+            return std::make_unique<CutTree>(*groups[0], scene, *one, *communicator, level, lower,
+                                             *many);
         };
         host.push_back(cut(dca::host_levels(*one)));
         if (gpu) device.push_back(cut(cuda::make_levels));
@@ -209,7 +227,8 @@ LevelStudy measure_levels(Handles handles, std::int64_t bodies, int threads, int
     for (int i = 0; i < warm_up + repeat; ++i)
         for (auto* cuts : {&host, &device})
             for (auto const& cut : *cuts) cut->evaluate(i >= warm_up);
-    LevelStudy study{handles, bodies, many->threads(), {}, 0, 32.0 * static_cast<double>(host[0]->depth()) * 0x1p-53};
+    LevelStudy study{handles, bodies, many->threads(),
+                     {},      0,      32.0 * static_cast<double>(host[0]->depth()) * 0x1p-53};
     for (auto const* cuts : {&host, &device})
         for (auto const& cut : *cuts) study.residual = larger(study.residual, cut->residual());
     for (std::size_t k = 1; k < host.size(); ++k) {

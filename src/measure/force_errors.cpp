@@ -19,7 +19,8 @@ std::vector<Kind> kinds() {
         else if (platform == "CPU")
             all.push_back({platform, "single"});
         else
-            for (char const* const precision : {"single", "mixed", "double"}) all.push_back({platform, precision});
+            for (char const* const precision : {"single", "mixed", "double"})
+                all.push_back({platform, precision});
     return all;
 }
 
@@ -36,7 +37,8 @@ Spread seconds_of_forces(ChainSystem& system, int repeat) {
 
 }  // namespace
 
-double force_error_bound(std::string const& platform, std::string const& precision, double rms_force) {
+double force_error_bound(std::string const& platform, std::string const& precision,
+                         double rms_force) {
     bool const adds_in_steps = platform != "Reference" && platform != "CPU";
     double const of_pairs = 0x1p12 * (precision == "double" ? 0x1p-53 : 0x1p-24);
     return adds_in_steps ? of_pairs + 64 * 0x1p-24 + 64 * 0x1p-32 / rms_force : of_pairs;
@@ -66,7 +68,8 @@ ForceStudy study_force_errors(Scene const& given, Communicator const& communicat
         }
         point.error = std::sqrt(difference / squares);
         point.largest_error /= largest;
-        point.bound = force_error_bound(kind.platform, kind.precision, std::sqrt(squares / static_cast<double>(exact.size())));
+        point.bound = force_error_bound(kind.platform, kind.precision,
+                                        std::sqrt(squares / static_cast<double>(exact.size())));
         study.points.push_back(point);
     }
     return study;

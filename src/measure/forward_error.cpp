@@ -20,9 +20,13 @@ double next_correction(ChainSystem& system) {
 
 ForwardError forward_error(ChainSystem& system, std::function<void()> const& look) {
     look();
-    if (system.joint().empty() || system.scene().bodies() > most_estimated * system.communicator().size()) return {};
+    if (system.joint().empty() ||
+        system.scene().bodies() > most_estimated * system.communicator().size())
+        return {};
     ForwardError found{next_correction(system)};
-    if (system.scene().solver.handles != Handles::articulated || system.scene().bodies() > most_estimated) return found;
+    if (system.scene().solver.handles != Handles::articulated ||
+        system.scene().bodies() > most_estimated)
+        return found;
     while (found.steps < most_steps && *found.estimate > refined_beyond) {
         look();  // at what the step before left
         ++found.steps;
@@ -35,7 +39,8 @@ ForwardError forward_error(ChainSystem& system, std::function<void()> const& loo
 
 std::optional<double> forward_error_at_start(Scene const& scene, Communicator const& communicator) {
     bool const any = std::any_of(scene.chains.begin(), scene.chains.end(), in_joint_coordinates);
-    if (!any || !uses_joint_coordinates(scene.dynamics.integrator) || scene.bodies() > most_estimated_of_run * communicator.size())
+    if (!any || !uses_joint_coordinates(scene.dynamics.integrator) ||
+        scene.bodies() > most_estimated_of_run * communicator.size())
         return std::nullopt;
     Scene start = scene;
     start.forces.openmm.reset();
@@ -49,13 +54,15 @@ std::optional<double> forward_error_at_start(Scene const& scene, Communicator co
 }
 
 bool takes_articulated_handles(Scene const& scene) {
-    return std::all_of(scene.chains.begin(), scene.chains.end(),
-                       [](ChainSpec const& chain) { return !in_joint_coordinates(chain) || scene::takes_articulated_handles(chain); });
+    return std::all_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
+        return !in_joint_coordinates(chain) || scene::takes_articulated_handles(chain);
+    });
 }
 
-std::string remedy_of_forward_error(Scene const& scene, bool is_refined, RefineWords const& words) {
+std::string remedy_of_forward_error(Scene const& scene, bool is_refined, RefineHint const& words) {
     std::string remedy = is_refined ? words.refine : "";
-    if (scene.solver.handles == Handles::articulated || !takes_articulated_handles(scene)) return remedy;
+    if (scene.solver.handles == Handles::articulated || !takes_articulated_handles(scene))
+        return remedy;
     return remedy + (remedy.empty() ? "" : " or ") + words.handles;
 }
 

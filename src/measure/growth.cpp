@@ -19,10 +19,14 @@ std::vector<double> joined(std::vector<double> a, std::vector<double> const& b) 
 
 }  // namespace
 
-ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::int64_t largest_quad, int nudges) {
+ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::int64_t largest_quad,
+                             int nudges) {
     bool const quad = scene.bodies() <= largest_quad;
     std::future<std::vector<double>> widest;  // solutions go side by side
-    if (quad) widest = std::async(std::launch::async, [&] { return oracle_accelerations<oracle::Quad>(scene, layout.bead_force); });
+    if (quad)
+        widest = std::async(std::launch::async, [&] {
+            return oracle_accelerations<oracle::Quad>(scene, layout.bead_force);
+        });
     std::vector<double> wide;
     std::vector<std::vector<double>> moved(static_cast<std::size_t>(nudges));
     for (std::size_t c = 0; c < scene.chains.size(); ++c) {
@@ -36,7 +40,8 @@ ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::in
                 Nudged const n = nudged(i + 1, chain, loads, found, nudge);
                 return joint_accelerations(n.chain, oracle::aba<long double>(n.chain, n.loads));
             });
-        for (std::size_t i = 0; i < own.size(); ++i) moved[i] = joined(std::move(moved[i]), own[i].get());
+        for (std::size_t i = 0; i < own.size(); ++i)
+            moved[i] = joined(std::move(moved[i]), own[i].get());
     }
     ExactSolution exact;
     Solution there = layout;

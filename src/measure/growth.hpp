@@ -1,4 +1,5 @@
-// How strongly a scene's accelerations answer to roundings: its condition number, in the sense that the solver's own residual has.
+// How strongly a scene's accelerations answer to roundings: its condition number, in the sense that
+// the solver's own residual has.
 #pragma once
 
 #include "measure/oracle_accelerations.hpp"
@@ -12,9 +13,11 @@ struct ExactSolution {
     double growth = 1;
 };
 
-/// growth: the largest difference of accelerations (largest_difference()) per size of `nudges` random changes of the data and of every
-/// body's and joint's equations (nudged.hpp), at least 1. It is what a relative residual is to be multiplied by: an O(n) estimate from
-/// below, and no larger than 2^48. 113 bits up to `largest_quad` bodies.
-ExactSolution exact_solution(Scene const&, Solution const& layout, std::int64_t largest_quad, int nudges);
+/// growth: the largest difference of accelerations (largest_difference()) per size of `nudges`
+/// random changes of the data and of every body's and joint's equations (nudged.hpp), at least 1.
+/// It is what a relative residual is to be multiplied by: an O(n) estimate from below, and no
+/// larger than 2^48. 113 bits up to `largest_quad` bodies.
+ExactSolution exact_solution(Scene const&, Solution const& layout, std::int64_t largest_quad,
+                             int nudges);
 
 }  // namespace catena

@@ -14,7 +14,8 @@ std::string processor_name() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {
         std::size_t const colon = line.find(':');
-        if (line.starts_with("model name") && colon != std::string::npos && colon + 2 < line.size()) return line.substr(colon + 2);
+        if (line.starts_with("model name") && colon != std::string::npos && colon + 2 < line.size())
+            return line.substr(colon + 2);
     }
     utsname machine{};
     return ::uname(&machine) == 0 ? machine.machine : "unknown";
@@ -25,7 +26,8 @@ int processor_threads() { return static_cast<int>(std::thread::hardware_concurre
 int tasks_running() {
     std::array<int, 5> counts{};
     for (int& count : counts) {
-        std::ifstream file("/proc/loadavg");  // "0.20 0.18 0.12 1/80 11206": the fourth are tasks that run, and all
+        std::ifstream file("/proc/loadavg");  // "0.20 0.18 0.12 1/80 11206": the fourth are tasks
+                                              // that run, and all
         std::string skipped;
         char slash = 0;
         int all = 0;
@@ -41,9 +43,11 @@ int tasks_running() {
 
 std::string compiler_name() {
 #if defined(__clang__)
-    return "clang " CATENA_TEXT(__clang_major__) "." CATENA_TEXT(__clang_minor__) "." CATENA_TEXT(__clang_patchlevel__);
+    return "clang " CATENA_TEXT(__clang_major__) "." CATENA_TEXT(__clang_minor__) "." CATENA_TEXT(
+        __clang_patchlevel__);
 #elif defined(__GNUC__)
-    return "gcc " CATENA_TEXT(__GNUC__) "." CATENA_TEXT(__GNUC_MINOR__) "." CATENA_TEXT(__GNUC_PATCHLEVEL__);
+    return "gcc " CATENA_TEXT(__GNUC__) "." CATENA_TEXT(__GNUC_MINOR__) "." CATENA_TEXT(
+        __GNUC_PATCHLEVEL__);
 #else
     return "unknown";
 #endif

@@ -9,8 +9,8 @@ namespace catena {
 std::string processor_name();
 /// Hardware threads that this process sees.
 int processor_threads();
-/// Tasks of all programs that run or want to run on the machine's processors, this one included: the median over some milliseconds; 1 where
-/// the system does not say.
+/// Tasks of all programs that run or want to run on the machine's processors, this one included:
+/// the median over some milliseconds; 1 where the system does not say.
 int tasks_running();
 /// Compiler and version, and the instruction set this library was compiled for.
 std::string compiler_name();

@@ -28,8 +28,8 @@ Scene with(Scene scene, Stepping const& stepping) {
 
 Trajectory::Trajectory(Scene scene, Communicator const& communicator, Stepping const& stepping)
     : scene_(with(std::move(scene), stepping)),
-      system_(scene_, uses_joint_coordinates(stepping.integrator) ? Axes::joint : Axes::world, communicator,
-              is_implicit(stepping.integrator) ? stepping.step : 0.0),
+      system_(scene_, uses_joint_coordinates(stepping.integrator) ? Axes::joint : Axes::world,
+              communicator, is_implicit(stepping.integrator) ? stepping.step : 0.0),
       stepper_(make_stepper(system_, scene_.dynamics)) {
     stepper_->prepare(nullptr);
 }

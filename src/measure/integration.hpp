@@ -16,7 +16,8 @@ struct Stepping {
 
 class Trajectory {
   public:
-    /// At friction zero. `solver.refine` counts where the integrator's solutions are refined (is_refined()).
+    /// At friction zero. `solver.refine` counts where the integrator's solutions are refined
+    /// (is_refined()).
     Trajectory(Scene, Communicator const&, Stepping const&);
     void run(std::int64_t steps);
     ChainSystem::Snapshot snapshot();

@@ -15,7 +15,7 @@ namespace {
 constexpr int samples_of_energy = 32, coarsest = 3;
 constexpr double rounding = 1e-11;  // of positions after thousands of steps, relative
 constexpr double too_wide = 0.01;   // an error from which on steps are too wide to show an order
-constexpr double unstable = 4;      // times the reference's largest kinetic energy: twice its speeds
+constexpr double unstable = 4;  // times the reference's largest kinetic energy: twice its speeds
 
 constexpr double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
 
@@ -30,7 +30,8 @@ Springs springs_of(Scene const& scene) {
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 0; k < chain.bodies.size(); ++k) {
             if (!scene::resists(chain.bodies, k)) continue;
-            scene::ImplicitInertias const inertias = scene::implicit_inertias(chain.bodies, k, some);
+            scene::ImplicitInertias const inertias =
+                scene::implicit_inertias(chain.bodies, k, some);
             if (!inertias.are_definite() || !inertias.are_alike()) return Springs::uneven;
             any = true;
         }
@@ -39,7 +40,8 @@ Springs springs_of(Scene const& scene) {
 }
 std::string why_explicit_alone(Springs springs) {
     if (springs == Springs::on_gpu) return "they work on the host";
-    if (springs == Springs::uneven) return "a joint has springs along some of its coordinates alone, or ten decades apart";
+    if (springs == Springs::uneven)
+        return "a joint has springs along some of its coordinates alone, or ten decades apart";
     return "";
 }
 
@@ -74,7 +76,8 @@ struct RunResult {
     double change = 0, kinetic = 0;  // the largest
     std::vector<Vec3> end;
 };
-RunResult result_of(Scene const& scene, Communicator const& communicator, Stepping const& stepping, std::int64_t steps) {
+RunResult result_of(Scene const& scene, Communicator const& communicator, Stepping const& stepping,
+                    std::int64_t steps) {
     Trajectory trajectory(scene, communicator, stepping);
     auto const start = trajectory.energy();
     RunResult result{0, start.kinetic, {}};
@@ -94,7 +97,8 @@ double slope_of(std::vector<std::pair<double, double>> const& points) {
     double x = 0, y = 0, xx = 0, xy = 0;
     auto const count = static_cast<double>(points.size());
     for (auto const& [a, b] : points) x += std::log(a) / count, y += std::log(b) / count;
-    for (auto const& [a, b] : points) xx += (std::log(a) - x) * (std::log(a) - x), xy += (std::log(a) - x) * (std::log(b) - y);
+    for (auto const& [a, b] : points)
+        xx += (std::log(a) - x) * (std::log(a) - x), xy += (std::log(a) - x) * (std::log(b) - y);
     return xy / xx;
 }
 /// Errors below `floor` are not the integrator's.
@@ -106,19 +110,23 @@ std::optional<double> finest_slope(std::vector<IntegratorPoint> const& points, d
     }
     return std::nullopt;
 }
-std::optional<double> slope_from(double shortest, std::vector<IntegratorPoint> const& points, double floor) {
+std::optional<double> slope_from(double shortest, std::vector<IntegratorPoint> const& points,
+                                 double floor) {
     std::vector<std::pair<double, double>> errors;
     for (IntegratorPoint const& p : points)
-        if (p.no_error.empty() && p.error > floor && p.error < too_wide && p.step >= shortest) errors.emplace_back(p.step, p.error);
+        if (p.no_error.empty() && p.error > floor && p.error < too_wide && p.step >= shortest)
+            errors.emplace_back(p.step, p.error);
     return errors.size() < 2 ? std::nullopt : std::optional(slope_of(errors));
 }
 
-/// Joint torques and wrenches: what they do to the bodies is work, and the energy's change no error.
+/// Joint torques and wrenches: what they do to the bodies is work, and the energy's change no
+/// error.
 bool works_on_bodies(ChainSpec const& chain) {
     auto const is_zero = [](Vec3 const& v) { return norm(v) == 0; };
     auto const& [torque, wrench] = std::tie(chain.bodies.torque, chain.bodies.wrench);
     return !std::all_of(torque.begin(), torque.end(), is_zero) ||
-           !std::all_of(wrench.begin(), wrench.end(), [&](auto const& w) { return is_zero(w.first) && is_zero(w.second); });
+           !std::all_of(wrench.begin(), wrench.end(),
+                        [&](auto const& w) { return is_zero(w.first) && is_zero(w.second); });
 }
 
 /// With the reference, and how it is done.
@@ -132,7 +140,8 @@ struct Comparison {
     double kinetic;  // the largest
     double floor;    // below it errors are not the integrator's
 };
-IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::int64_t steps, double tolerance = 0) {
+IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::int64_t steps,
+                         double tolerance = 0) {
     IntegratorPoint point;
     point.step = exact.time / static_cast<double>(steps);
     point.error = NAN;
@@ -152,7 +161,8 @@ IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::in
             double const start = seconds_now();
             trajectory.run(steps);
             seconds.push_back(seconds_now() - start);
-            point.taken = trajectory.inner_steps().taken, point.rejected = trajectory.inner_steps().rejected;
+            point.taken = trajectory.inner_steps().taken,
+            point.rejected = trajectory.inner_steps().rejected;
         }
         point.seconds = spread_of(seconds);
     } catch (ComputationError const&) {
@@ -165,7 +175,8 @@ IntegratorCurve curve_of(Comparison const& exact, Integrator integrator, int las
     curve.name = name_of(integrator);
     curve.order = order_of(integrator);
     if (is_implicit(integrator)) curve.scheme = Scheme::implicit_springs;
-    for (int k = coarsest; k <= last; ++k) curve.points.push_back(point_of(exact, integrator, std::int64_t{1} << k));
+    for (int k = coarsest; k <= last; ++k)
+        curve.points.push_back(point_of(exact, integrator, std::int64_t{1} << k));
     curve.slope = finest_slope(curve.points, exact.floor);
     return curve;
 }
@@ -174,7 +185,8 @@ IntegratorCurve adaptive_curve(Comparison const& exact) {
     curve.name = name_of(Integrator::dormand_prince);
     curve.scheme = Scheme::adaptive;
     for (double const tolerance : tolerances) {
-        IntegratorPoint point = point_of(exact, Integrator::dormand_prince, std::int64_t{1} << coarsest, tolerance);
+        IntegratorPoint point =
+            point_of(exact, Integrator::dormand_prince, std::int64_t{1} << coarsest, tolerance);
         point.allowed = std::max(exact.floor, tolerance * static_cast<double>(point.taken));
         curve.points.push_back(point);
     }
@@ -183,8 +195,11 @@ IntegratorCurve adaptive_curve(Comparison const& exact) {
 /// From where on the explicit integrator that steps as this one is unstable.
 double limit_beside(IntegratorCurve const& implicit, std::vector<IntegratorCurve> const& curves) {
     bool const joint = implicit.name == name_of(Integrator::staggered);
-    std::string const counterpart = name_of(joint ? Integrator::velocity_verlet : Integrator::g_baoab);
-    auto const found = std::find_if(curves.begin(), curves.end(), [&](IntegratorCurve const& c) { return c.name == counterpart; });
+    std::string const counterpart =
+        name_of(joint ? Integrator::velocity_verlet : Integrator::g_baoab);
+    auto const found = std::find_if(curves.begin(), curves.end(), [&](IntegratorCurve const& c) {
+        return c.name == counterpart;
+    });
     return found->unstable_from();
 }
 
@@ -192,13 +207,18 @@ double limit_beside(IntegratorCurve const& implicit, std::vector<IntegratorCurve
 
 bool IntegratorCurve::as_promised() const {
     auto const has_error = [](IntegratorPoint const& p) { return p.no_error.empty(); };
-    auto const allowed = [](IntegratorPoint const& p) { return p.no_error.empty() && p.error <= p.allowed; };
+    auto const allowed = [](IntegratorPoint const& p) {
+        return p.no_error.empty() && p.error <= p.allowed;
+    };
     auto const near = [&](double found) { return found > order - 0.1 && found < order + 0.1; };
     if (exact || (too_stiff && !slow)) return true;
     if (scheme == Scheme::adaptive) return std::all_of(points.begin(), points.end(), allowed);
-    bool const goes_on = scheme != Scheme::implicit_springs || std::all_of(points.begin(), points.end(), has_error);
-    bool const shown_beyond = !slow || scheme != Scheme::implicit_springs || (slope_beyond && near(*slope_beyond));
-    return goes_on && (points.empty() || has_error(points.back())) && slope && near(*slope) && shown_beyond;
+    bool const goes_on =
+        scheme != Scheme::implicit_springs || std::all_of(points.begin(), points.end(), has_error);
+    bool const shown_beyond =
+        !slow || scheme != Scheme::implicit_springs || (slope_beyond && near(*slope_beyond));
+    return goes_on && (points.empty() || has_error(points.back())) && slope && near(*slope) &&
+           shown_beyond;
 }
 
 double IntegratorCurve::unstable_from() const {
@@ -209,31 +229,39 @@ double IntegratorCurve::unstable_from() const {
 }
 
 bool IntegratorStudy::has_implicit() const {
-    return std::any_of(curves.begin(), curves.end(), [](IntegratorCurve const& c) { return c.scheme == Scheme::implicit_springs; });
+    return std::any_of(curves.begin(), curves.end(), [](IntegratorCurve const& c) {
+        return c.scheme == Scheme::implicit_springs;
+    });
 }
 
 bool IntegratorStudy::valid() const {
     auto const finite = [](IntegratorPoint const& p) {
-        return !p.no_error.empty() || (std::isfinite(p.error) && std::isfinite(p.energy_error.value_or(0)));
+        return !p.no_error.empty() ||
+               (std::isfinite(p.error) && std::isfinite(p.energy_error.value_or(0)));
     };
-    return std::isfinite(reference_error) && std::all_of(curves.begin(), curves.end(), [&](IntegratorCurve const& c) {
+    return std::isfinite(reference_error) &&
+           std::all_of(curves.begin(), curves.end(), [&](IntegratorCurve const& c) {
                return c.as_promised() && std::all_of(c.points.begin(), c.points.end(), finite);
            });
 }
 
 std::string why_integrators_cannot_be_compared(Scene const& scene) {
-    if (scene.forces.openmm) return "OpenMM's forces have steps at their cutoffs, and lists of their own";
-    if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0) return "its drag changes with velocities";
+    if (scene.forces.openmm)
+        return "OpenMM's forces have steps at their cutoffs, and lists of their own";
+    if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
+        return "its drag changes with velocities";
     for (ChainSpec const& c : scene.chains) {
-        if (c.velocities == StartVelocities::thermal) return "its start is thermal, another one for every integrator";
-        if (!c.bodies.drag.empty() || !c.bodies.damping.empty()) return "its drag or dampers change with velocities";
+        if (c.velocities == StartVelocities::thermal)
+            return "its start is thermal, another one for every integrator";
+        if (!c.bodies.drag.empty() || !c.bodies.damping.empty())
+            return "its drag or dampers change with velocities";
         if (!c.bodies.driven.empty()) return "its joints are driven";
     }
     return integrators_of(scene).empty() ? "no integrator has all its chains" : "";
 }
 
-IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& communicator, double time, int finest, int repeat,
-                                        bool slow) {
+IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& communicator,
+                                        double time, int finest, int repeat, bool slow) {
     IntegratorStudy study;
     study.title = scene.title;
     study.bodies = scene.bodies();
@@ -244,17 +272,20 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     std::vector<Integrator> const integrators = integrators_of(scene);
     bool const springs = springs_of(scene) != Springs::none;
     if (springs) finest += 2;
-    // Of second order sixteen times finer than the finest: 1/256 of that one's error, or rounding. Of fifth order as fine; where springs
-    // may be stiff for that, four times finer.
+    // Of second order sixteen times finer than the finest: 1/256 of that one's error, or rounding.
+    // Of fifth order as fine; where springs may be stiff for that, four times finer.
     Integrator const judge = integrators.front();
     bool const joint = uses_joint_coordinates(judge);
     if (joint) study.refine = scene.solver.refine;
-    std::int64_t const most = std::int64_t{1} << (!joint ? finest + 4 : springs ? finest + 2 : finest);
+    std::int64_t const most = std::int64_t{1} << (!joint    ? finest + 4
+                                                  : springs ? finest + 2
+                                                            : finest);
     study.reference = std::string(name_of(judge)) + ", " + std::to_string(most) + " steps";
     Comparison exact{scene, communicator, time, repeat, !works, {}, 0, 0};
     try {
         auto const run = [&](std::int64_t steps) {
-            return result_of(scene, communicator, {judge, time / static_cast<double>(steps)}, steps);
+            return result_of(scene, communicator, {judge, time / static_cast<double>(steps)},
+                             steps);
         };
         RunResult const found = run(most);
         exact.end = found.end, exact.kinetic = found.kinetic;
@@ -266,26 +297,31 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     exact.floor = std::max(20 * study.reference_error, rounding);
     for (Integrator const integrator : integrators) {
         bool const early = integrator == Integrator::rk4 && !springs;
-        IntegratorCurve curve =
-            integrator == Integrator::dormand_prince ? adaptive_curve(exact) : curve_of(exact, integrator, early ? finest - 3 : finest);
+        IntegratorCurve curve = integrator == Integrator::dormand_prince
+                                    ? adaptive_curve(exact)
+                                    : curve_of(exact, integrator, early ? finest - 3 : finest);
         auto const& points = curve.points;
-        curve.exact =
-            exact.floor == rounding && std::all_of(points.begin(), points.end(), [](auto const& p) { return p.error <= rounding; });
-        auto const stable = std::count_if(points.begin(), points.end(), [](auto const& p) { return p.no_error.empty(); });
+        curve.exact = exact.floor == rounding &&
+                      std::all_of(points.begin(), points.end(),
+                                  [](auto const& p) { return p.error <= rounding; });
+        auto const stable = std::count_if(points.begin(), points.end(),
+                                          [](auto const& p) { return p.no_error.empty(); });
         curve.too_stiff = springs && curve.scheme == Scheme::explicit_steps && stable < 2;
         study.curves.push_back(curve);
     }
     // Last, so that pictures without it have the others in the same colours.
     if (joint) std::rotate(study.curves.begin(), study.curves.begin() + 1, study.curves.end());
     for (IntegratorCurve& curve : study.curves) {
-        double const limit = curve.scheme == Scheme::implicit_springs ? limit_beside(curve, study.curves) : 0;
+        double const limit =
+            curve.scheme == Scheme::implicit_springs ? limit_beside(curve, study.curves) : 0;
         curve.slow = slow;
         if (limit > 0) curve.slope_beyond = slope_from(limit, curve.points, exact.floor);
     }
     return study;
 }
 
-DriftStudy study_drift(Scene const& scene, Communicator const& communicator, Integrator integrator, double step, std::int64_t steps) {
+DriftStudy study_drift(Scene const& scene, Communicator const& communicator, Integrator integrator,
+                       double step, std::int64_t steps) {
     constexpr int blocks = 50, samples = 200;  // samples: of a block
     std::int64_t const each = std::max<std::int64_t>(1, steps / (blocks * samples));
     Trajectory trajectory(scene, communicator, {integrator, step});
@@ -300,7 +336,8 @@ DriftStudy study_drift(Scene const& scene, Communicator const& communicator, Int
             sum += off, squares += off * off, kinetic += now.kinetic;
         }
     double const count = blocks * samples, block_time = samples * static_cast<double>(each) * step;
-    DriftStudy study{scene.title, name_of(integrator), step, each * blocks * samples, kinetic / count, 0, 0, 0};
+    DriftStudy study{
+        scene.title, name_of(integrator), step, each * blocks * samples, kinetic / count, 0, 0, 0};
     study.scatter = std::sqrt(std::max(0.0, squares / count - (sum / count) * (sum / count)));
     double times = 0, cross_sum = 0, rest = 0, average = 0;
     for (double const m : mean) average += m / blocks;
@@ -310,7 +347,8 @@ DriftStudy study_drift(Scene const& scene, Communicator const& communicator, Int
     }
     study.slope = cross_sum / times;
     for (int b = 0; b < blocks; ++b) {
-        double const t = (b - 0.5 * (blocks - 1)) * block_time, off = mean[static_cast<std::size_t>(b)] - average - study.slope * t;
+        double const t = (b - 0.5 * (blocks - 1)) * block_time,
+                     off = mean[static_cast<std::size_t>(b)] - average - study.slope * t;
         rest += off * off;
     }
     study.slope_error = std::sqrt(rest / (blocks - 2) / times);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "oracle/algebra.hpp"
 #include "generate/random.hpp"
+#include "oracle/algebra.hpp"
 
 namespace catena {
 namespace {
@@ -26,9 +26,13 @@ class Perturbation {
         (*this)(wrench.second);
     }
     void operator()(DrivenJoint& drive) {
-        for (Course& c : drive.course) (*this)(c.offset), (*this)(c.rate), (*this)(c.amplitude), (*this)(c.frequency), (*this)(c.phase);
+        for (PrescribedMotion& c : drive.course)
+            (*this)(c.offset), (*this)(c.rate), (*this)(c.amplitude), (*this)(c.frequency),
+                (*this)(c.phase);
     }
-    void operator()(Mat3& rotation) { rotation = to_matrix(from_rotation_vector(draws_.in_cube(size_))) * rotation; }
+    void operator()(Mat3& rotation) {
+        rotation = to_matrix(from_rotation_vector(draws_.in_cube(size_))) * rotation;
+    }
 
   private:
     scene::Draws draws_;
@@ -40,28 +44,34 @@ struct Wrench {
 };
 Wrench in_double(oracle::SpatialForce<long double> const& f) {
     Wrench w;
-    for (int i = 0; i < 3; ++i) w.torque[i] = static_cast<double>(f.torque[i]), w.force[i] = static_cast<double>(f.force[i]);
+    for (int i = 0; i < 3; ++i)
+        w.torque[i] = static_cast<double>(f.torque[i]),
+        w.force[i] = static_cast<double>(f.force[i]);
     return w;
 }
 
-/// Sums of the sizes of what acts on a body, and of what that adds to the accelerations of its handles.
+/// Sums of the sizes of what acts on a body, and of what that adds to the accelerations of its
+/// handles.
 struct Terms {
     double force = 0, moment = 0, linear1 = 0, linear2 = 0, angular = 0;
 };
 
-Terms terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at, Exact const& exact, std::size_t k) {
+Terms terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at, Exact const& exact,
+               std::size_t k) {
     BodyArrays const& b = chain.bodies;
     Mat3 const& r = at.orientation[k];
     bool const last = k + 1 == b.size();
     Vec3 const arm1 = at.origin[k] - at.com_position[k],
-               arm2 = last ? r * (chain.tip_joint.translation - b.com[k]) : at.origin[k + 1] - at.com_position[k];
+               arm2 = last ? r * (chain.tip_joint.translation - b.com[k])
+                           : at.origin[k + 1] - at.com_position[k];
     Wrench const inboard = in_double(exact.joint_force[k]);
     Wrench const outboard = in_double(last ? exact.tip_force : exact.joint_force[k + 1]);
     auto const wrench = b.wrench.empty() ? std::pair{Vec3::zero(), Vec3::zero()} : b.wrench[k];
     oracle::Cholesky<double, 3> const inertia(full(b.inertia[k]));
     Terms t;
     for (Vec3 const& f : {inboard.force, outboard.force, wrench.second}) t.force += norm(f);
-    for (Vec3 const& m : {inboard.torque, cross(arm1, inboard.force), outboard.torque, cross(arm2, outboard.force), wrench.first}) {
+    for (Vec3 const& m : {inboard.torque, cross(arm1, inboard.force), outboard.torque,
+                          cross(arm2, outboard.force), wrench.first}) {
         t.moment += norm(m);
         t.angular += norm(inertia.solve(transposed_times(r, m)));
     }
@@ -70,7 +80,8 @@ Terms terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at, Exa
     return t;
 }
 
-/// Of the forces on each bead, and of what they and the links add to the accelerations of a link's ends.
+/// Of the forces on each bead, and of what they and the links add to the accelerations of a link's
+/// ends.
 void nudge_beads(Nudged& n, Exact const& exact, scene::Draws draws, double size) {
     std::size_t const beads = n.chain.size();
     n.loads.bead_forces.resize(beads, Vec3::zero());
@@ -78,10 +89,11 @@ void nudge_beads(Nudged& n, Exact const& exact, scene::Draws draws, double size)
     double before = 0;
     for (std::size_t k = 0; k < beads; ++k) {
         double const inboard = std::abs(static_cast<double>(exact.tension[k]));
-        double const outboard =
-            k + 1 < beads ? std::abs(static_cast<double>(exact.tension[k + 1])) : norm(in_double(exact.tip_force).force);
+        double const outboard = k + 1 < beads ? std::abs(static_cast<double>(exact.tension[k + 1]))
+                                              : norm(in_double(exact.tip_force).force);
         Vec3& force = n.loads.bead_forces[k];
-        double const terms = inboard + outboard + norm(force), acceleration = terms / n.chain.beads.mass[k];
+        double const terms = inboard + outboard + norm(force),
+                     acceleration = terms / n.chain.beads.mass[k];
         force = force + draws.in_cube(size * terms);
         n.loads.link_gaps[k] = draws.between(-size, size) * (before + acceleration);
         before = acceleration;
@@ -89,7 +101,8 @@ void nudge_beads(Nudged& n, Exact const& exact, scene::Draws draws, double size)
     if (n.chain.tip == Tip::jointed) n.loads.link_gaps.back() = draws.between(-size, size) * before;
 }
 
-void nudge_bodies(Nudged& n, ChainSpec const& chain, oracle::Loads const& loads, Exact const& exact, scene::Draws draws, double size) {
+void nudge_bodies(Nudged& n, ChainSpec const& chain, oracle::Loads const& loads, Exact const& exact,
+                  scene::Draws draws, double size) {
     BodyArrays& b = n.chain.bodies;
     auto const at = oracle::kinematics<double>(chain, loads);
     b.wrench.resize(b.size(), {Vec3::zero(), Vec3::zero()});
@@ -109,20 +122,26 @@ void nudge_bodies(Nudged& n, ChainSpec const& chain, oracle::Loads const& loads,
 ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     Perturbation move(seed, size);
     BodyArrays& b = chain.bodies;
-    move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation), move(b.q), move(b.qd);
-    move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness), move(b.damping), move(b.rest), move(b.wrench);
-    move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity), move(chain.beads.anchor);
+    move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation),
+        move(b.q), move(b.qd);
+    move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness),
+        move(b.damping), move(b.rest), move(b.wrench);
+    move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity),
+        move(chain.beads.anchor);
     TipJoint& tip = chain.tip_joint;
-    move(tip.axis), move(tip.first_axis), move(tip.pitch), move(tip.rotation), move(tip.translation), move(tip.q);
+    move(tip.axis), move(tip.first_axis), move(tip.pitch), move(tip.rotation),
+        move(tip.translation), move(tip.q);
     if (tip.anchor) move(*tip.anchor);
     LinkedArrays& l = chain.linked;
-    move(l.mass), move(l.inertia), move(l.position), move(l.velocity), move(l.orientation), move(l.omega), move(l.inboard);
+    move(l.mass), move(l.inertia), move(l.position), move(l.velocity), move(l.orientation),
+        move(l.omega), move(l.inboard);
     move(l.outboard), move(l.anchor);
     move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
     return chain;
 }
 
-Nudged nudged(std::uint64_t seed, ChainSpec const& chain, oracle::Loads const& loads, Exact const& exact, double size) {
+Nudged nudged(std::uint64_t seed, ChainSpec const& chain, oracle::Loads const& loads,
+              Exact const& exact, double size) {
     Nudged n{perturbed(seed, chain, size), loads};
     if (chain.is_beads()) nudge_beads(n, exact, scene::Draws(seed, 1), size);
     if (chain.bodies.size() > 0) nudge_bodies(n, chain, loads, exact, scene::Draws(seed, 1), size);

@@ -36,7 +36,7 @@ void count_merges(HandleOperations& h) {
     h.disassembly = count([&] { keep(disassemble(joint, offset, b.b1, b.b2)); });
 }
 
-/// As BodyLeaf with MeetingFrames (dca/body_leaf.hpp) calls them.
+/// As BodyLeaf with JointFrameHandles (dca/body_leaf.hpp) calls them.
 template <int K, bool sliding>
 HandleOperations count_bodies() {
     HandleOperations h;

@@ -9,9 +9,12 @@
 namespace catena {
 
 struct Operations {
-    std::int64_t additions = 0, multiplications = 0, fused = 0, divisions = 0, square_roots = 0;  // a change of sign is none
+    std::int64_t additions = 0, multiplications = 0, fused = 0, divisions = 0,
+                 square_roots = 0;  // a change of sign is none
     /// A fused multiplication and addition counts as two.
-    std::int64_t sum() const { return additions + multiplications + 2 * fused + divisions + square_roots; }
+    std::int64_t sum() const {
+        return additions + multiplications + 2 * fused + divisions + square_roots;
+    }
 };
 
 /// A double that counts what is done to it, on this thread.
@@ -25,12 +28,22 @@ class Counted {
         return operations;
     }
 
-    friend Counted operator+(Counted a, Counted b) { return ++done().additions, Counted(a.value_ + b.value_); }
-    friend Counted operator-(Counted a, Counted b) { return ++done().additions, Counted(a.value_ - b.value_); }
-    friend Counted operator*(Counted a, Counted b) { return ++done().multiplications, Counted(a.value_ * b.value_); }
-    friend Counted operator/(Counted a, Counted b) { return ++done().divisions, Counted(a.value_ / b.value_); }
+    friend Counted operator+(Counted a, Counted b) {
+        return ++done().additions, Counted(a.value_ + b.value_);
+    }
+    friend Counted operator-(Counted a, Counted b) {
+        return ++done().additions, Counted(a.value_ - b.value_);
+    }
+    friend Counted operator*(Counted a, Counted b) {
+        return ++done().multiplications, Counted(a.value_ * b.value_);
+    }
+    friend Counted operator/(Counted a, Counted b) {
+        return ++done().divisions, Counted(a.value_ / b.value_);
+    }
     friend Counted operator-(Counted a) { return Counted(-a.value_); }
-    friend Counted fused(Counted a, Counted b, Counted c) { return ++done().fused, Counted(std::fma(a.value_, b.value_, c.value_)); }
+    friend Counted fused(Counted a, Counted b, Counted c) {
+        return ++done().fused, Counted(std::fma(a.value_, b.value_, c.value_));
+    }
     friend Counted sqrt(Counted a) { return ++done().square_roots, Counted(std::sqrt(a.value_)); }
     friend bool operator<(Counted a, Counted b) { return a.value_ < b.value_; }
 
@@ -41,16 +54,20 @@ class Counted {
 /// Of one body or one joint, in the functions as they stand.
 struct HandleOperations {
     int directions = 0;
-    Operations leaf_matrices, leaf_biases, leaf_accelerations;  // the first two: of a body's two handles
+    Operations leaf_matrices, leaf_biases,
+        leaf_accelerations;  // the first two: of a body's two handles
     Operations assembly_matrices, assembly_biases, disassembly;
     std::int64_t assembly() const { return assembly_matrices.sum() + assembly_biases.sum(); }
-    std::int64_t leaf() const { return leaf_matrices.sum() + leaf_biases.sum() + leaf_accelerations.sum(); }
+    std::int64_t leaf() const {
+        return leaf_matrices.sum() + leaf_biases.sum() + leaf_accelerations.sum();
+    }
 };
 struct JointOperations {
     std::string joint;
     HandleOperations projected, full;
 };
-/// Every joint type: link (point beads), planar, spherical, universal, revolute, sliding (prismatic, helical), weld.
+/// Every joint type: link (point beads), planar, spherical, universal, revolute, sliding
+/// (prismatic, helical), weld.
 std::vector<JointOperations> count_operations();
 
 }  // namespace catena

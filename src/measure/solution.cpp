@@ -8,20 +8,28 @@
 namespace catena {
 namespace {
 
-void append(std::vector<double>& list, Vec3 const& v) { list.insert(list.end(), v.data, v.data + 3); }
+void append(std::vector<double>& list, Vec3 const& v) {
+    list.insert(list.end(), v.data, v.data + 3);
+}
 
 /// Of handle 1 of the link on the inboard side of body k.
-Vec3 link_end(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at, std::size_t body) {
-    return chain.is_linked() ? at.position[body] + to_matrix(at.orientation[body]) * chain.linked.inboard[k] : at.position[body];
+Vec3 link_end(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
+              std::size_t body) {
+    return chain.is_linked()
+               ? at.position[body] + to_matrix(at.orientation[body]) * chain.linked.inboard[k]
+               : at.position[body];
 }
-Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at, std::size_t body) {
+Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
+                std::size_t body) {
     if (k == 0) return chain.is_linked() ? chain.linked.anchor : chain.beads.anchor;
-    return chain.is_linked() ? at.position[body - 1] + to_matrix(at.orientation[body - 1]) * chain.linked.outboard[k - 1]
+    return chain.is_linked() ? at.position[body - 1] + to_matrix(at.orientation[body - 1]) *
+                                                           chain.linked.outboard[k - 1]
                              : at.position[body - 1];
 }
 
 /// The force along link k is -tension towards the outboard bead.
-double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at, std::size_t body, Vector<double, 6> const& wrench) {
+double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
+               std::size_t body, Vector<double, 6> const& wrench) {
     if (k == 0 && chain.base == Base::free) return 0.0;
     Vec3 const link = link_end(chain, k, at, body) - link_start(chain, k, at, body);
     return -dot((1.0 / norm(link)) * link, Vec3{{wrench[3], wrench[4], wrench[5]}});
@@ -51,16 +59,20 @@ Solution solution_of(ChainSystem& system) {
             s.force_offset.push_back(static_cast<std::int64_t>(s.joint_force.size()));
             if (chain.is_beads() || chain.is_linked()) {
                 bool const bead = accelerations_of(chain, k) == 3;
-                if (!bead) append(s.acceleration, transposed_times(to_matrix(at.orientation[body]), a.alpha[body]));
+                if (!bead)
+                    append(s.acceleration,
+                           transposed_times(to_matrix(at.orientation[body]), a.alpha[body]));
                 append(s.acceleration, a.acceleration[body]);
                 if (chain.is_beads()) s.bead_acceleration.push_back(a.acceleration[body]);
                 s.joint_force.push_back(tension(chain, k, at, body, a.joint_force[body]));
                 continue;
             }
             JointType const joint = chain.bodies.joint[k];
-            for (int i = 0; i < std::min(3, scene::coordinates_of(joint)); ++i) s.acceleration.push_back(a.joint_acceleration[body][i]);
+            for (int i = 0; i < std::min(3, scene::coordinates_of(joint)); ++i)
+                s.acceleration.push_back(a.joint_acceleration[body][i]);
             if (joint == JointType::free) append(s.acceleration, a.base_acceleration[body]);
-            s.joint_force.insert(s.joint_force.end(), a.joint_force[body].data, a.joint_force[body].data + 6);
+            s.joint_force.insert(s.joint_force.end(), a.joint_force[body].data,
+                                 a.joint_force[body].data + 6);
         }
     s.acceleration_offset.push_back(static_cast<std::int64_t>(s.acceleration.size()));
     s.force_offset.push_back(static_cast<std::int64_t>(s.joint_force.size()));
@@ -72,29 +84,38 @@ Solution layout_of(Scene const& scene) {
     s.acceleration_offset.push_back(0);
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 0; k < chain.size(); ++k)
-            s.acceleration_offset.push_back(s.acceleration_offset.back() + accelerations_of(chain, k));
+            s.acceleration_offset.push_back(s.acceleration_offset.back() +
+                                            accelerations_of(chain, k));
     return s;
 }
 
-double largest_difference(Scene const& scene, Solution const& found, std::vector<double> const& reference) {
+double largest_difference(Scene const& scene, Solution const& found,
+                          std::vector<double> const& reference) {
     enum { angular, base, bead, sliding, classes };
     double difference[classes] = {}, largest[classes] = {};
     std::size_t body = 0;
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 0; k < chain.size(); ++k, ++body)
-            for (std::int64_t i = found.acceleration_offset[body]; i < found.acceleration_offset[body + 1]; ++i) {
-                bool const linear = accelerations_of(chain, k) == 6 && i >= found.acceleration_offset[body] + 3;
-                bool const slides = chain.bodies.size() > 0 && chain.bodies.joint[k] == JointType::prismatic;
-                int const kind = chain.is_beads() || (chain.is_linked() && accelerations_of(chain, k) == 3) ? bead
-                                 : slides                                                                   ? sliding
-                                 : linear                                                                   ? base
-                                                                                                            : angular;
-                difference[kind] = larger(difference[kind], std::abs(found.acceleration[i] - reference[i]));
+            for (std::int64_t i = found.acceleration_offset[body];
+                 i < found.acceleration_offset[body + 1]; ++i) {
+                bool const linear =
+                    accelerations_of(chain, k) == 6 && i >= found.acceleration_offset[body] + 3;
+                bool const slides =
+                    chain.bodies.size() > 0 && chain.bodies.joint[k] == JointType::prismatic;
+                int const kind =
+                    chain.is_beads() || (chain.is_linked() && accelerations_of(chain, k) == 3)
+                        ? bead
+                    : slides ? sliding
+                    : linear ? base
+                             : angular;
+                difference[kind] =
+                    larger(difference[kind], std::abs(found.acceleration[i] - reference[i]));
                 largest[kind] = std::max(largest[kind], std::abs(reference[i]));
             }
     double worst = 0;
     for (int kind = 0; kind < classes; ++kind)
-        worst = larger(worst, largest[kind] > 0 ? difference[kind] / largest[kind] : difference[kind]);
+        worst =
+            larger(worst, largest[kind] > 0 ? difference[kind] / largest[kind] : difference[kind]);
     return worst;
 }
 

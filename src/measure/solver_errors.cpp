@@ -5,9 +5,9 @@
 #include <set>
 
 #include "error.hpp"
-#include "start/start_velocities.hpp"
 #include "measure/oracle_accelerations.hpp"
 #include "scene/freedom.hpp"
+#include "start/start_velocities.hpp"
 
 namespace catena {
 namespace {
@@ -18,14 +18,15 @@ bool finite(std::vector<double> const& values) {
     return sum == 0;
 }
 
-/// The reference of a scene, made when the first point is known: OpenMM's forces are taken from there.
+/// The reference of a scene, made when the first point is known: OpenMM's forces are taken from
+/// there.
 struct Reference {
     std::vector<double> acceleration;
     void make(SolverStudy& study, Scene const& scene, Solution const& first, int repeat) {
         bool const quad = study.bodies <= largest_quad;
         study.reference = quad ? "articulated bodies, 113 bits" : "articulated bodies, 64 bits";
-        acceleration =
-            quad ? oracle_accelerations<oracle::Quad>(scene, first.bead_force) : oracle_accelerations<long double>(scene, first.bead_force);
+        acceleration = quad ? oracle_accelerations<oracle::Quad>(scene, first.bead_force)
+                            : oracle_accelerations<long double>(scene, first.bead_force);
         std::vector<double> seconds, in_double;
         for (int i = 0; i < repeat; ++i) {
             double const start = seconds_now();
@@ -64,7 +65,8 @@ std::vector<Backend> cpu_backends() {
     return backends;
 }
 
-SolverStudy study_solver_errors(Scene const& given, Communicator const& communicator, std::vector<Backend> const& backends,
+SolverStudy study_solver_errors(Scene const& given, Communicator const& communicator,
+                                std::vector<Backend> const& backends,
                                 std::vector<Handles> const& handles, int repeat) {
     bool const root = communicator.rank() == 0;
     Scene const scene = with_start_velocities(given, communicator);
@@ -74,9 +76,11 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
     study.kind = kinds_of(scene);
     study.bodies = scene.bodies();
     study.ranks = communicator.size();
-    if (root && study.bodies <= largest_condition) study.condition = largest_condition_number(scene);
+    if (root && study.bodies <= largest_condition)
+        study.condition = largest_condition_number(scene);
     Reference reference;
-    bool const takes_articulated = std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
+    bool const takes_articulated =
+        std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
             if (kind == Handles::articulated && !takes_articulated) continue;
@@ -85,7 +89,8 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
             variant.solver.handles = kind;
             variant.dynamics.fixman = false;  // whose forces the oracles do not know
             ChainSystem system(variant, Axes::joint, communicator);
-            SolverPoint point{name_of(backend), name_of(kind), system.executor().threads(), 0, 0, 0, {}, false};
+            SolverPoint point{
+                name_of(backend), name_of(kind), system.executor().threads(), 0, 0, 0, {}, false};
             point.seconds = time_evaluations(system, repeat).evaluation;
             point.residual = system.residual();
             point.residual_bound = system.residual_bound();
@@ -93,7 +98,8 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
             if (root) {
                 if (study.points.empty()) reference.make(study, scene, solution, repeat);
                 point.forward_error = largest_difference(scene, solution, reference.acceleration);
-                point.valid = finite(solution.acceleration) && point.residual <= point.residual_bound;
+                point.valid =
+                    finite(solution.acceleration) && point.residual <= point.residual_bound;
             }
             study.points.push_back(point);
         }

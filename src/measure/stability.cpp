@@ -23,7 +23,9 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double median(std::vector<double> const& values) {
     auto const number = [](double v) { return v == v; };
-    return std::all_of(values.begin(), values.end(), number) ? spread_of(values).median : std::numeric_limits<double>::quiet_NaN();
+    return std::all_of(values.begin(), values.end(), number)
+               ? spread_of(values).median
+               : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// One way to solve, over the seeds.
@@ -39,7 +41,8 @@ struct Variant {
     std::string refused;
 };
 
-std::vector<Variant> variants_of(ChainSpec const& chain, std::vector<Backend> const& backends, std::vector<Handles> const& handles) {
+std::vector<Variant> variants_of(ChainSpec const& chain, std::vector<Backend> const& backends,
+                                 std::vector<Handles> const& handles) {
     std::vector<Variant> all;
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
@@ -73,7 +76,8 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
         to.bound.push_back(system.residual_bound() * exact.growth);
         auto const look = [&](Variant::Errors& errors) {
             errors.residual.push_back(system.residual());
-            errors.error.push_back(largest_difference(scene, solution_of(system), exact.acceleration));
+            errors.error.push_back(
+                largest_difference(scene, solution_of(system), exact.acceleration));
             return errors.error.back();
         };
         double before = look(to.after.front()), error = before;
@@ -86,7 +90,8 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
         }
         int steps = refinements;
         Variant::Errors settled{{to.after.back().residual.back()}, {error}, {}};
-        for (; steps < most_refinements && error > to.residual_bound.back() && error < before / 2; ++steps) {
+        for (; steps < most_refinements && error > to.residual_bound.back() && error < before / 2;
+             ++steps) {
             settled.cost.push_back(refine());
             before = std::exchange(error, look(settled));
             if (error <= before) continue;  // as often as helps, by the known answer
@@ -95,7 +100,8 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
         }
         to.settled.residual.push_back(settled.residual.back());
         to.settled.error.push_back(error);
-        to.settled.cost.push_back(settled.cost.empty() ? to.after.back().cost.back() : settled.cost.back());
+        to.settled.cost.push_back(settled.cost.empty() ? to.after.back().cost.back()
+                                                       : settled.cost.back());
         to.steps = std::max(to.steps, steps);
     } catch (ComputationError const& error) {
         to.refused = error.what();
@@ -119,10 +125,12 @@ StabilityPoint point_of(Variant const& v) {
                          largest_ratio(plain.error, v.bound),
                          v.refused};
     auto const refined = [&](Variant::Errors const& errors) {
-        return StabilityPoint::Refined{median(errors.error), largest_ratio(errors.residual, v.residual_bound),
+        return StabilityPoint::Refined{median(errors.error),
+                                       largest_ratio(errors.residual, v.residual_bound),
                                        largest_ratio(errors.error, v.bound), median(errors.cost)};
     };
-    for (std::size_t i = 1; i < v.after.size() && !v.after[i].error.empty(); ++i) point.refined.push_back(refined(v.after[i]));
+    for (std::size_t i = 1; i < v.after.size() && !v.after[i].error.empty(); ++i)
+        point.refined.push_back(refined(v.after[i]));
     if (!v.settled.error.empty()) point.settled = refined(v.settled);
     point.steps = v.steps;
     return point;
@@ -134,17 +142,21 @@ struct PeerErrors {
     std::vector<double> error;
 };
 
-void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution layout, ExactSolution const& exact) {
+void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution layout,
+         ExactSolution const& exact) {
     to.name = answer.name;
     if (to.why_not.empty()) to.why_not = answer.why_not;
-    if (to.why_not.empty() && answer.acceleration.size() != exact.acceleration.size()) to.why_not = "its answer is of another length";
+    if (to.why_not.empty() && answer.acceleration.size() != exact.acceleration.size())
+        to.why_not = "its answer is of another length";
     if (!to.why_not.empty()) return;
     layout.acceleration = answer.acceleration;
     to.error.push_back(largest_difference(scene, layout, exact.acceleration));
     if (!std::isfinite(to.error.back())) to.why_not = "its answer is not finite";
 }
 
-StabilityPeer peer_of(PeerErrors const& p) { return {p.name, p.why_not.empty() ? median(p.error) : infinite, p.why_not}; }
+StabilityPeer peer_of(PeerErrors const& p) {
+    return {p.name, p.why_not.empty() ? median(p.error) : infinite, p.why_not};
+}
 
 /// A case with one seed, its answer and what articulated bodies in double find.
 struct KnownCase {
@@ -166,7 +178,8 @@ double error_in_double(Scene const& scene, Solution layout, ExactSolution const&
 KnownCase known_case(StabilityCase const& which, int seed) {
     KnownCase known{which.scene(static_cast<std::uint64_t>(seed)), {}, {}};
     known.layout = layout_of(known.scene);
-    known.exact = exact_solution(known.scene, known.layout, largest_quad_here, which.bodies > few_nudges_above ? 1 : 3);
+    known.exact = exact_solution(known.scene, known.layout, largest_quad_here,
+                                 which.bodies > few_nudges_above ? 1 : 3);
     known.error_in_double = error_in_double(known.scene, known.layout, known.exact);
     return known;
 }
@@ -174,7 +187,8 @@ KnownCase known_case(StabilityCase const& which, int seed) {
 /// The oracles have one thread a chain, so seeds go side by side, before anything is timed.
 std::vector<KnownCase> known_cases(StabilityCase const& which, int seeds) {
     std::vector<std::future<KnownCase>> finding;
-    for (int seed = 1; seed <= seeds; ++seed) finding.push_back(std::async(std::launch::async, known_case, which, seed));
+    for (int seed = 1; seed <= seeds; ++seed)
+        finding.push_back(std::async(std::launch::async, known_case, which, seed));
     std::vector<KnownCase> known;
     for (std::future<KnownCase>& each : finding) known.push_back(each.get());
     return known;
@@ -200,7 +214,9 @@ char const* name_of(Verdict verdict) {
 }
 
 double StabilityPoint::plain_error() const { return refused.empty() ? error : infinite; }
-double StabilityPoint::last_error() const { return refused.empty() && settled ? settled->error : plain_error(); }
+double StabilityPoint::last_error() const {
+    return refused.empty() && settled ? settled->error : plain_error();
+}
 
 double StabilityStudy::best_of_others() const {
     double best = std::isfinite(oracle_error) ? oracle_error : infinite;
@@ -222,35 +238,44 @@ double StabilityStudy::against_peers(bool articulated) const {
     for (StabilityPoint const& p : points) {
         if (p.is_articulated() != articulated) continue;
         double const bound = p.settled ? p.residual_bound : p.residual_bound * growth;
-        if (double const error = p.last_error(); error != 0) worst = larger(worst, error / std::max(allowed, bound));
+        if (double const error = p.last_error(); error != 0)
+            worst = larger(worst, error / std::max(allowed, bound));
     }
     return worst;
 }
 
-bool StabilityStudy::all(bool articulated, std::function<bool(StabilityPoint const&)> const& holds) const {
-    return std::all_of(points.begin(), points.end(),
-                       [&](StabilityPoint const& p) { return p.is_articulated() != articulated || holds(p); });
+bool StabilityStudy::all(bool articulated,
+                         std::function<bool(StabilityPoint const&)> const& holds) const {
+    return std::all_of(points.begin(), points.end(), [&](StabilityPoint const& p) {
+        return p.is_articulated() != articulated || holds(p);
+    });
 }
 
-/// Where the equations of joint forces lose all digits an answer must still be the exact one of a chain nearby, or refused; whether
-/// articulated handles or others keep them is said.
+/// Where the equations of joint forces lose all digits an answer must still be the exact one of a
+/// chain nearby, or refused; whether articulated handles or others keep them is said.
 Verdict StabilityStudy::verdict() const {
     if (points.empty()) return Verdict::invalid;
-    bool const has_articulated = std::any_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.is_articulated(); });
-    bool const articulated_good = all(true, &StabilityPoint::holds_refined) && against_peers(true) <= 1;
+    bool const has_articulated = std::any_of(
+        points.begin(), points.end(), [](StabilityPoint const& p) { return p.is_articulated(); });
+    bool const articulated_good =
+        all(true, &StabilityPoint::holds_refined) && against_peers(true) <= 1;
     bool const good = all(false, &StabilityPoint::holds_refined) && against_peers(false) <= 1;
     if (beyond()) {
-        if (!all(false, &StabilityPoint::is_nearby) || !all(true, &StabilityPoint::is_nearby)) return Verdict::invalid;
+        if (!all(false, &StabilityPoint::is_nearby) || !all(true, &StabilityPoint::is_nearby))
+            return Verdict::invalid;
         if (good && articulated_good) return Verdict::refined;
         if (has_articulated && articulated_good) return Verdict::articulated;
         return best_of_others() <= 1e-3 && !ill_conditioned() ? Verdict::lost : Verdict::beyond;
     }
     if (!good || !articulated_good) return Verdict::invalid;
-    return all(false, &StabilityPoint::holds) && all(true, &StabilityPoint::holds) ? Verdict::valid : Verdict::refined;
+    return all(false, &StabilityPoint::holds) && all(true, &StabilityPoint::holds)
+               ? Verdict::valid
+               : Verdict::refined;
 }
 
-StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends, std::vector<Handles> const& handles,
-                               int seeds, AskPeers const& peers) {
+StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends,
+                               std::vector<Handles> const& handles, int seeds,
+                               AskPeers const& peers) {
     StabilityStudy study{which.family, which.name, {}, which.bodies, seeds, {}, 1, 0, {}};
     std::vector<PeerErrors> of_peers;
     std::vector<Variant> variants = variants_of(which.scene(1).chains.front(), backends, handles);
@@ -262,11 +287,14 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
         ExactSolution const& exact = each.exact;
         study.reference = exact.by;
         growth.push_back(exact.growth);
-        if (which.bodies <= largest_condition) condition.push_back(oracle::condition_estimate(scene.chains.front()));
+        if (which.bodies <= largest_condition)
+            condition.push_back(oracle::condition_estimate(scene.chains.front()));
         in_double.push_back(each.error_in_double);
-        std::vector<PeerAnswer> const answers = peers ? peers(which, scene) : std::vector<PeerAnswer>{};
+        std::vector<PeerAnswer> const answers =
+            peers ? peers(which, scene) : std::vector<PeerAnswer>{};
         of_peers.resize(answers.size());
-        for (std::size_t i = 0; i < answers.size(); ++i) add(of_peers[i], answers[i], scene, each.layout, exact);
+        for (std::size_t i = 0; i < answers.size(); ++i)
+            add(of_peers[i], answers[i], scene, each.layout, exact);
         for (Variant& variant : variants) add(variant, scene, exact);
     }
     study.growth = median(growth);

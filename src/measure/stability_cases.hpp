@@ -16,8 +16,8 @@ struct StabilityCase {
     std::function<Scene(std::uint64_t seed)> scene;
 };
 
-/// Coils and dills of 2^4 to `longest` bodies; chains of `hard_bodies` with extreme masses, inertias, shapes, rates, springs, dampers and
-/// units. `quick`: every other one.
+/// Coils and dills of 2^4 to `longest` bodies; chains of `hard_bodies` with extreme masses,
+/// inertias, shapes, rates, springs, dampers and units. `quick`: every other one.
 std::vector<StabilityCase> stability_cases(std::int64_t longest, bool quick);
 
 /// Of these sizes alone.

@@ -40,11 +40,15 @@ struct Samples {
     template <class Quantity>
     std::vector<double> of(Quantity const& quantity, Communicator const& communicator) const {
         std::vector<double> values;
-        for (std::size_t i = 0; i < before.size(); ++i) values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
+        for (std::size_t i = 0; i < before.size(); ++i)
+            values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
         return values;
     }
-    /// Of one evaluation; at least 1: where matrices and biases are found at once they are not counted apart.
-    int count(std::int64_t Clocks::* sweeps) const { return std::max(1, static_cast<int>(after.front().*sweeps - before.front().*sweeps)); }
+    /// Of one evaluation; at least 1: where matrices and biases are found at once they are not
+    /// counted apart.
+    int count(std::int64_t Clocks::* sweeps) const {
+        return std::max(1, static_cast<int>(after.front().*sweeps - before.front().*sweeps));
+    }
 };
 Samples sample(ChainSystem& system, int repeat, bool project) {
     Samples s;
@@ -79,25 +83,35 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
     system.measure(true);
     Samples const apart = sample(system, repeat, true);
     system.measure(false);
-    auto const median = [&](auto const& quantity) { return spread_of(apart.of(quantity, communicator)).median; };
+    auto const median = [&](auto const& quantity) {
+        return spread_of(apart.of(quantity, communicator)).median;
+    };
 
     Timing t;
     t.evaluation = spread_of(whole.of([](Clocks const& c) { return c.moment; }, communicator));
-    int const matrix_sweeps = apart.count(&Clocks::matrix_sweeps), bias_sweeps = apart.count(&Clocks::bias_sweeps);
-    t.matrix_sweep = spread_of(apart.of([&](Clocks const& c) { return c.matrix / matrix_sweeps; }, communicator));
-    t.bias_sweep = spread_of(apart.of([&](Clocks const& c) { return c.bias / bias_sweeps; }, communicator));
+    int const matrix_sweeps = apart.count(&Clocks::matrix_sweeps),
+              bias_sweeps = apart.count(&Clocks::bias_sweeps);
+    t.matrix_sweep = spread_of(
+        apart.of([&](Clocks const& c) { return c.matrix / matrix_sweeps; }, communicator));
+    t.bias_sweep =
+        spread_of(apart.of([&](Clocks const& c) { return c.bias / bias_sweeps; }, communicator));
     t.matrix_sweeps = whole.count(&Clocks::matrix_sweeps);
     t.bias_sweeps = whole.count(&Clocks::bias_sweeps);
-    double const matrix = t.matrix_sweep.median * t.matrix_sweeps, bias = t.bias_sweep.median * t.bias_sweeps;
-    t.phases = {{"matrix sweep", matrix}, {"bias sweep", bias}, {"exchange of units", median([](Clocks const& c) { return c.exchange; })}};
+    double const matrix = t.matrix_sweep.median * t.matrix_sweeps,
+                 bias = t.bias_sweep.median * t.bias_sweeps;
+    t.phases = {{"matrix sweep", matrix},
+                {"bias sweep", bias},
+                {"exchange of units", median([](Clocks const& c) { return c.exchange; })}};
     if (system.backend() == Backend::cuda_levels)  // parts of the sweeps
         for (auto const& [name, part] : {std::pair{"levels on the GPU", &SplitSeconds::lower},
                                          {"levels on the host", &SplitSeconds::upper},
                                          {"transfers", &SplitSeconds::transfers}})
-            t.phases.emplace_back(name, median([seconds = part](Clocks const& c) { return (c.split.*seconds)(); }));
+            t.phases.emplace_back(
+                name, median([seconds = part](Clocks const& c) { return (c.split.*seconds)(); }));
     if (system.openmm()) {
         t.phases.emplace_back("forces", median([](Clocks const& c) { return c.forces; }));
-        t.phases.emplace_back("waiting for forces", median([](Clocks const& c) { return c.waiting; }));
+        t.phases.emplace_back("waiting for forces",
+                              median([](Clocks const& c) { return c.waiting; }));
     }
     double const waiting = median([](Clocks const& c) { return c.waiting; });
     t.phases.emplace_back("other", std::max(0.0, t.evaluation.median - matrix - bias - waiting));

@@ -15,7 +15,8 @@ namespace catena {
 inline DeviceBead bead_at(std::int32_t place, Vec3 const& x, std::optional<Vec3> const& box) {
     DeviceBead bead;
     bead.place = place;
-    for (int c = 0; box && c < 3; ++c) bead.cell[c] = static_cast<std::int32_t>(std::floor(x[c] / (*box)[c]));
+    for (int c = 0; box && c < 3; ++c)
+        bead.cell[c] = static_cast<std::int32_t>(std::floor(x[c] / (*box)[c]));
     return bead;
 }
 
@@ -26,12 +27,14 @@ struct ShownTable {
 
 /// `sent`: of each place, which of `beads` beads is shown there.
 inline ShownTable shown_table(std::span<std::int64_t const> sent, std::size_t beads) {
-    ShownTable table{std::vector<std::int32_t>(beads + 1, 0), std::vector<std::int32_t>(sent.size())};
+    ShownTable table{std::vector<std::int32_t>(beads + 1, 0),
+                     std::vector<std::int32_t>(sent.size())};
     for (std::int64_t const k : sent) ++table.first[static_cast<std::size_t>(k) + 1];
     for (std::size_t k = 0; k < beads; ++k) table.first[k + 1] += table.first[k];
     std::vector<std::int32_t> next(table.first.begin(), table.first.end() - 1);
     for (std::size_t i = 0; i < sent.size(); ++i)
-        table.place[static_cast<std::size_t>(next[static_cast<std::size_t>(sent[i])]++)] = static_cast<std::int32_t>(i);
+        table.place[static_cast<std::size_t>(next[static_cast<std::size_t>(sent[i])]++)] =
+            static_cast<std::int32_t>(i);
     return table;
 }
 

@@ -33,7 +33,8 @@ class PointsInCells {
         executor.for_each(std::ssize(runs), [&](std::int64_t r) {
             Run const& run = runs[static_cast<std::size_t>(r)];
             std::iota(point_.begin() + place[static_cast<std::size_t>(r)],
-                      point_.begin() + place[static_cast<std::size_t>(r)] + (run.end - run.begin), run.begin);
+                      point_.begin() + place[static_cast<std::size_t>(r)] + (run.end - run.begin),
+                      run.begin);
         });
     }
 
@@ -42,9 +43,12 @@ class PointsInCells {
     /// Cell by cell; ascending in each.
     std::vector<std::int64_t> const& points() const { return point_; }
     /// Which of them are in the i-th cell.
-    std::pair<std::int64_t, std::int64_t> range(std::size_t i) const { return {first_[i], first_[i + 1]}; }
+    std::pair<std::int64_t, std::int64_t> range(std::size_t i) const {
+        return {first_[i], first_[i + 1]};
+    }
     std::span<std::int64_t const> points(std::size_t i) const {
-        return std::span(point_).subspan(static_cast<std::size_t>(first_[i]), static_cast<std::size_t>(first_[i + 1] - first_[i]));
+        return std::span(point_).subspan(static_cast<std::size_t>(first_[i]),
+                                         static_cast<std::size_t>(first_[i + 1] - first_[i]));
     }
 
   private:
@@ -53,8 +57,11 @@ class PointsInCells {
         Cell cell;
         std::int64_t begin, end;
     };
-    static bool before(Run const& a, Run const& b) { return is_same(a.cell, b.cell) ? a.begin < b.begin : a.cell < b.cell; }
-    static std::vector<Run> runs_of(Grid const& grid, std::span<Vec3 const> points, std::int64_t begin, std::int64_t end) {
+    static bool before(Run const& a, Run const& b) {
+        return is_same(a.cell, b.cell) ? a.begin < b.begin : a.cell < b.cell;
+    }
+    static std::vector<Run> runs_of(Grid const& grid, std::span<Vec3 const> points,
+                                    std::int64_t begin, std::int64_t end) {
         std::vector<Run> runs;
         for (std::int64_t k = begin; k < end; ++k) {
             Cell const cell = grid.cell(points[static_cast<std::size_t>(k)]);
@@ -65,9 +72,11 @@ class PointsInCells {
         return runs;
     }
     /// Piece by piece, then two by two.
-    static std::vector<Run> sorted_runs(Grid const& grid, std::span<Vec3 const> points, Executor const& executor) {
+    static std::vector<Run> sorted_runs(Grid const& grid, std::span<Vec3 const> points,
+                                        Executor const& executor) {
         std::int64_t constexpr of_piece = 1 << 13;
-        std::int64_t const count = std::ssize(points), pieces = std::max<std::int64_t>((count + of_piece - 1) / of_piece, 1);
+        std::int64_t const count = std::ssize(points),
+                           pieces = std::max<std::int64_t>((count + of_piece - 1) / of_piece, 1);
         std::vector<std::vector<Run>> sorted(static_cast<std::size_t>(pieces));
         auto const for_pieces = [&](std::int64_t n, auto const& action) {
             executor.for_ranges(n, of_piece, [&](std::int64_t begin, std::int64_t end) {
@@ -85,7 +94,8 @@ class PointsInCells {
                 if (2 * m + 1 == sorted.size()) return merged[m].swap(one);
                 std::vector<Run> const& other = sorted[2 * m + 1];
                 merged[m].resize(one.size() + other.size());
-                std::merge(one.begin(), one.end(), other.begin(), other.end(), merged[m].begin(), before);
+                std::merge(one.begin(), one.end(), other.begin(), other.end(), merged[m].begin(),
+                           before);
             });
             sorted.swap(merged);
         }

@@ -10,11 +10,12 @@ namespace catena {
 
 class GhostExchange {
   public:
-    GhostExchange(Communicator const& communicator, GhostLists::Plan plan) : lists_(communicator, std::move(plan)) {}
+    GhostExchange(Communicator const& communicator, GhostLists::Plan plan)
+        : lists_(communicator, std::move(plan)) {}
 
-    /// Brings the ghosts' positions. `own`: this rank's beads in the order of `by_rank`. Where some bead of any rank has moved half the
-    /// skin since the lists were made, or renew() was called, they are made anew first. Collective. Throws SharedError where a position is
-    /// not finite.
+    /// Brings the ghosts' positions. `own`: this rank's beads in the order of `by_rank`. Where some
+    /// bead of any rank has moved half the skin since the lists were made, or renew() was called,
+    /// they are made anew first. Collective. Throws SharedError where a position is not finite.
     void update(std::span<Vec3 const> own);
     void renew() { lists_.renew(); }
     bool is_due() const { return lists_.is_due(); }
@@ -29,7 +30,8 @@ class GhostExchange {
     GhostLists::Moves moves(std::span<Vec3 const> own) const;
 
     GhostLists lists_;
-    std::vector<Vec3> positions_, out_, in_, listed_;  // of ghosts; in messages; of own beads when the lists were made
+    std::vector<Vec3> positions_, out_, in_,
+        listed_;  // of ghosts; in messages; of own beads when the lists were made
 };
 
 }  // namespace catena

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "clock.hpp"
-#include "neighbours/ghosts.hpp"
 #include "mpi/first_rank.hpp"
+#include "neighbours/ghosts.hpp"
 
 namespace catena {
 
@@ -16,16 +16,19 @@ namespace {
 
 /// Blocks of every rank, which need not know each other's lengths. Collective.
 template <class T>
-std::vector<std::vector<T>> blocks_of_ranks(Communicator const& communicator, std::vector<T> const& own) {
+std::vector<std::vector<T>> blocks_of_ranks(Communicator const& communicator,
+                                            std::vector<T> const& own) {
     auto const ranks = static_cast<std::size_t>(communicator.size());
     std::int64_t const bytes = std::ssize(own) * static_cast<std::int64_t>(sizeof(T));
     std::vector<std::int64_t> bytes_of_rank(ranks);
-    communicator.all_gather(std::as_bytes(std::span(&bytes, 1)), std::as_writable_bytes(std::span(bytes_of_rank)),
+    communicator.all_gather(std::as_bytes(std::span(&bytes, 1)),
+                            std::as_writable_bytes(std::span(bytes_of_rank)),
                             std::vector<std::int64_t>(ranks, sizeof(bytes)));
     std::int64_t total = 0;
     for (std::int64_t const b : bytes_of_rank) total += b;
     std::vector<T> all(static_cast<std::size_t>(total) / sizeof(T));
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes_of_rank);
+    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                            bytes_of_rank);
     std::vector<std::vector<T>> blocks;
     auto begin = all.begin();
     for (std::int64_t const b : bytes_of_rank) {
@@ -50,15 +53,20 @@ std::span<std::byte> room_for(std::size_t count, std::vector<T>& values) {
 }  // namespace
 
 void throw_trouble(double bead, char const* trouble) {
-    throw SharedError(fmt::format(fmt::runtime(std::string(trouble) + ": take a smaller step, or a start without overlaps"), bead + 1));
+    throw SharedError(fmt::format(
+        fmt::runtime(std::string(trouble) + ": take a smaller step, or a start without overlaps"),
+        bead + 1));
 }
 
 GhostLists::GhostLists(Communicator const& communicator, Plan plan)
     : communicator_(communicator),
       plan_(std::move(plan)),
       place_(static_cast<std::size_t>(plan_.first_of_rank.back())),
-      executor_(openmp_is_built() ? openmp_executor(plan_.threads > 0 ? plan_.threads : cores_of_rank(communicator)) : serial_executor()) {
-    for (std::int64_t i = 0; i < std::ssize(place_); ++i) place_[plan_.by_rank.empty() ? i : plan_.by_rank[i]] = i;
+      executor_(openmp_is_built() ? openmp_executor(plan_.threads > 0 ? plan_.threads
+                                                                      : cores_of_rank(communicator))
+                                  : serial_executor()) {
+    for (std::int64_t i = 0; i < std::ssize(place_); ++i)
+        place_[plan_.by_rank.empty() ? i : plan_.by_rank[i]] = i;
     std::int64_t const own = plan_.first_of_rank[communicator_.rank() + 1] - first();
     for (std::int64_t k = 0; k < own; k += piece(own_bead(k))) first_of_piece_.push_back(k);
     first_of_piece_.push_back(own);
@@ -66,22 +74,29 @@ GhostLists::GhostLists(Communicator const& communicator, Plan plan)
 
 int GhostLists::owner(std::int64_t bead) const {
     auto const& first = plan_.first_of_rank;
-    return static_cast<int>(std::upper_bound(first.begin(), first.end(), place_[bead]) - first.begin()) - 1;
+    return static_cast<int>(std::upper_bound(first.begin(), first.end(), place_[bead]) -
+                            first.begin()) -
+           1;
 }
 
 void GhostLists::share_partners() {
     auto const partners = blocks_of_ranks(communicator_, plan_.partners);
-    for (std::int64_t i = 0; i < std::ssize(plan_.partners); ++i) partners_[owner(plan_.partners[i])].receive.push_back(i);
+    for (std::int64_t i = 0; i < std::ssize(plan_.partners); ++i)
+        partners_[owner(plan_.partners[i])].receive.push_back(i);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : partners[rank])
-            if (owner(bead) == communicator_.rank()) partners_[rank].send.push_back(place_[bead] - first());
+            if (owner(bead) == communicator_.rank())
+                partners_[rank].send.push_back(place_[bead] - first());
 }
 
 /// The same answer on every rank: the largest of a number each.
 bool GhostLists::are_used_up(Moves const& moves, char const* trouble) {
     double constexpr good = 0, used_up = 1, in_trouble = 2;  // and the bead's number
     bool const far = std::exchange(renew_, false) || (moves.far && !plan_.ranges.empty());
-    double const state = communicator_.max(moves.bead >= 0 ? in_trouble + static_cast<double>(moves.bead) : far ? used_up : good);
+    double const state =
+        communicator_.max(moves.bead >= 0 ? in_trouble + static_cast<double>(moves.bead)
+                          : far           ? used_up
+                                          : good);
     if (state >= in_trouble) throw_trouble(state - in_trouble, trouble);
     return state == used_up;
 }
@@ -105,27 +120,33 @@ void GhostLists::make(std::span<Vec3 const> own) {
     traffic_.seconds_of_lists += seconds_now() - begin;
 }
 
-/// Adds what acts on another rank's beads within reach + skin to what it is sent, and the other way round. Where some rank finds no place
-/// aside all beads are looked for over the longest range: then every bead of another rank is shown there, and one that is no ghost is as
-/// far away as a place aside must be.
+/// Adds what acts on another rank's beads within reach + skin to what it is sent, and the other way
+/// round. Where some rank finds no place aside all beads are looked for over the longest range:
+/// then every bead of another rank is shown there, and one that is no ghost is as far away as a
+/// place aside must be.
 void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
     PairRange const longest{longest_reach(plan_.ranges), {}};
     Grid const grid(longest.reach + plan_.skin, plan_.box);
-    std::vector<PointBlock> const blocks = blocks_of({own, first_of_piece_}, (longest.reach + plan_.skin) / 2);
+    std::vector<PointBlock> const blocks =
+        blocks_of({own, first_of_piece_}, (longest.reach + plan_.skin) / 2);
     CellSet cells;
-    for (PointBlock const& block : blocks) grid.within(block.least(), block.most(), [&](Cell const& cell) { cells.insert(cell); });
+    for (PointBlock const& block : blocks)
+        grid.within(block.least(), block.most(), [&](Cell const& cell) { cells.insert(cell); });
     bool const has_room = own.empty() || find_place_aside(grid, cells);
-    std::vector<PairRange> const ranges = communicator_.max(has_room ? 0.0 : 1.0) > 0 ? std::vector{longest} : plan_.ranges;
+    std::vector<PairRange> const ranges =
+        communicator_.max(has_room ? 0.0 : 1.0) > 0 ? std::vector{longest} : plan_.ranges;
     meet(own, blocks, grid, {cells.begin(), cells.end()});
     show();
     for (auto& [rank, meeting] : meetings_) {
         meeting.taken = near_ones(meeting, ranges);
         find_place_among(meeting.theirs, meeting.taken);
         for (std::size_t i = 0; i < meeting.taken.size(); ++i)
-            if (std::binary_search(plan_.partners.begin(), plan_.partners.end(), meeting.theirs.piece[i]))
+            if (std::binary_search(plan_.partners.begin(), plan_.partners.end(),
+                                   meeting.theirs.piece[i]))
                 meeting.taken[i] = 0;  // it comes
     }
-    swap([](Meeting const& m) { return bytes_of(m.taken); }, [](Meeting& m) { return room_for(m.mine.piece.size(), m.asked); });
+    swap([](Meeting const& m) { return bytes_of(m.taken); },
+         [](Meeting& m) { return room_for(m.mine.piece.size(), m.asked); });
     for (auto const& [rank, meeting] : meetings_) {
         Lists& l = lists[rank];
         for (std::size_t i = 0; i < meeting.asked.size(); ++i)
@@ -155,8 +176,10 @@ void GhostLists::Shown::add(std::int64_t bead, std::span<Vec3 const> positions) 
     first.push_back(std::ssize(position));
 }
 
-/// With each rank whose beads lie in or around this one's cells, which is mutual. `cells`: what `blocks` reach into.
-void GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks, Grid const& grid, std::vector<Cell> const& cells) {
+/// With each rank whose beads lie in or around this one's cells, which is mutual. `cells`: what
+/// `blocks` reach into.
+void GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks,
+                      Grid const& grid, std::vector<Cell> const& cells) {
     std::vector<std::vector<Cell>> const of_ranks = blocks_of_ranks(communicator_, cells);
     PointGroups const pieces{own, first_of_piece_};
     for (auto& [rank, meeting] : meetings_) meeting.mine.clear();
@@ -165,7 +188,8 @@ void GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& 
         CellSet const around = grid.with_surroundings(of_ranks[rank]);
         for (PointBlock const& block : blocks) {
             bool is_shown = false;
-            grid.within(block.least(), block.most(), [&](Cell const& cell) { is_shown = is_shown || around.contains(cell); });
+            grid.within(block.least(), block.most(),
+                        [&](Cell const& cell) { is_shown = is_shown || around.contains(cell); });
             for (std::int64_t i = block.begin; is_shown && i < block.end; ++i)
                 meetings_[rank].mine.add(own_bead(first_of_piece_[i]), pieces.group(i));
         }
@@ -182,47 +206,57 @@ void GhostLists::show() {
          [](Meeting& m) { return room_for(static_cast<std::size_t>(m.expected), m.theirs.piece); });
     for (auto& [rank, m] : meetings_) {
         m.theirs.first.assign(1, 0);
-        for (std::int64_t const bead : m.theirs.piece) m.theirs.first.push_back(m.theirs.first.back() + piece(bead));
+        for (std::int64_t const bead : m.theirs.piece)
+            m.theirs.first.push_back(m.theirs.first.back() + piece(bead));
     }
     swap([](Meeting const& m) { return bytes_of(m.mine.position); },
-         [](Meeting& m) { return room_for(static_cast<std::size_t>(m.theirs.first.back()), m.theirs.position); });
+         [](Meeting& m) {
+             return room_for(static_cast<std::size_t>(m.theirs.first.back()), m.theirs.position);
+         });
 }
 
 /// Of the pieces that another rank shows, 1 for those with a bead near one of mine, else 0.
-std::vector<char> GhostLists::near_ones(Meeting const& meeting, std::vector<PairRange> const& ranges) {
+std::vector<char> GhostLists::near_ones(Meeting const& meeting,
+                                        std::vector<PairRange> const& ranges) {
     std::vector<char> near(meeting.theirs.piece.size(), 0);
     std::vector<char> const none(meeting.mine.piece.size(), 0);
     for (PairRange const& range : ranges) {
         find_acting(meeting.mine, range, none, here_);
         find_acting(meeting.theirs, range, near, there_);
         auto const found =
-            near_groups({there_.position, there_.first}, {here_.position, here_.first}, range.reach + plan_.skin, plan_.box, *executor_);
+            near_groups({there_.position, there_.first}, {here_.position, here_.first},
+                        range.reach + plan_.skin, plan_.box, *executor_);
         for (std::size_t i = 0; i < near.size(); ++i) near[i] = std::max(near[i], found[i]);
     }
     return near;
 }
 
-void GhostLists::find_acting(Shown const& shown, PairRange const& range, std::vector<char> const& left_out, Acting& acting) const {
+void GhostLists::find_acting(Shown const& shown, PairRange const& range,
+                             std::vector<char> const& left_out, Acting& acting) const {
     acting.position.clear();
     acting.first.assign(1, 0);
     for (std::size_t i = 0; i < shown.piece.size(); ++i) {
-        std::int64_t const begin = shown.first[i], end = left_out[i] == 0 ? shown.first[i + 1] : begin;
+        std::int64_t const begin = shown.first[i],
+                           end = left_out[i] == 0 ? shown.first[i + 1] : begin;
         for (std::int64_t k = begin; k < end; ++k)
-            if (range.is_for(shown.piece[i] + k - begin)) acting.position.push_back(shown.position[k]);
+            if (range.is_for(shown.piece[i] + k - begin))
+                acting.position.push_back(shown.position[k]);
         acting.first.push_back(std::ssize(acting.position));
     }
 }
 
-/// That of a bead which is not near, where there is no other. Own beads may come nearer by half the skin.
+/// That of a bead which is not near, where there is no other. Own beads may come nearer by half the
+/// skin.
 void GhostLists::find_place_among(Shown const& theirs, std::vector<char> const& near) {
     auto const far = std::find(near.begin(), near.end(), 0);
     if (!plan_.box || !free_.empty() || far == near.end()) return;
-    free_ = {theirs.position[static_cast<std::size_t>(theirs.first[static_cast<std::size_t>(far - near.begin())])]};
+    free_ = {theirs.position[static_cast<std::size_t>(
+        theirs.first[static_cast<std::size_t>(far - near.begin())])]};
     edge_ = Vec3{{plan_.skin / 4, plan_.skin / 4, plan_.skin / 4}};
 }
 
-/// In cells that are not in or around own beads', or far out where space has no end: nothing acts on own beads from there. False where
-/// every cell of the box is.
+/// In cells that are not in or around own beads', or far out where space has no end: nothing acts
+/// on own beads from there. False where every cell of the box is.
 bool GhostLists::find_place_aside(Grid const& grid, CellSet const& own) {
     CellSet const felt = grid.with_surroundings(own);
     free_.clear();
@@ -254,22 +288,29 @@ void GhostLists::swap(Out const& out, In const& in) {
     exchange(outgoing, incoming);
 }
 
-/// Out of each other's reach where there is room, in a cube: a row would be so long that OpenMM could not sort own beads among them. In a
-/// box scattered over the cells that are free, thousands of them where there are so many: in one they would all feel each other. As many as
-/// OpenMM takes at once stand in the same one.
+/// Out of each other's reach where there is room, in a cube: a row would be so long that OpenMM
+/// could not sort own beads among them. In a box scattered over the cells that are free, thousands
+/// of them where there are so many: in one they would all feel each other. As many as OpenMM takes
+/// at once stand in the same one.
 Vec3 GhostLists::aside(std::int64_t i, std::int64_t count) const {
     std::int64_t constexpr together = 32;
     auto const in_cube = [](std::int64_t k, std::int64_t of) {
         auto const side = static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(of))));
-        return std::pair(Cell{k % side, k / side % side, k / (side * side)}, static_cast<double>(side));
+        return std::pair(Cell{k % side, k / side % side, k / (side * side)},
+                         static_cast<double>(side));
     };
     Vec3 place;
     if (plan_.box) {
-        std::int64_t const cells = std::ssize(free_), groups = (count + together - 1) / together, group = i / together;
-        if (cells == 0) throw ComputationError("no place in the box is out of the beads' reach");  // every bead there is a ghost
+        std::int64_t const cells = std::ssize(free_), groups = (count + together - 1) / together,
+                           group = i / together;
+        if (cells == 0)
+            throw ComputationError(
+                "no place in the box is out of the beads' reach");  // every bead there is a ghost
         place = free_[static_cast<std::size_t>(group % cells)];
-        auto const [at, side] = in_cube(group / cells * together + i % together, (groups + cells - 1) / cells * together);
-        for (int c = 0; c < 3; ++c) place[c] += edge_[c] * ((static_cast<double>(at[c]) + 0.5) / side - 0.5);
+        auto const [at, side] = in_cube(group / cells * together + i % together,
+                                        (groups + cells - 1) / cells * together);
+        for (int c = 0; c < 3; ++c)
+            place[c] += edge_[c] * ((static_cast<double>(at[c]) + 0.5) / side - 0.5);
     } else {
         place = aside_;
         Cell const at = in_cube(i, count).first;
@@ -294,7 +335,8 @@ void GhostLists::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     std::vector<Incoming> in;
     for (Neighbour const& n : neighbours_) {
         if (n.sent > 0) out.push_back({n.rank, std::as_bytes(sent.first(n.sent))});
-        if (n.received > 0) in.push_back({n.rank, std::as_writable_bytes(received.first(n.received))});
+        if (n.received > 0)
+            in.push_back({n.rank, std::as_writable_bytes(received.first(n.received))});
         sent = sent.subspan(n.sent);
         received = received.subspan(n.received);
     }
@@ -321,7 +363,8 @@ void GhostLists::exchange(std::vector<Outgoing> const& out, std::vector<Incoming
 std::vector<Vec3> GhostLists::all_positions(std::span<Vec3 const> own) const {
     std::vector<std::int64_t> bytes;
     for (int rank = 0; rank < communicator_.size(); ++rank)
-        bytes.push_back((plan_.first_of_rank[rank + 1] - plan_.first_of_rank[rank]) * static_cast<std::int64_t>(sizeof(Vec3)));
+        bytes.push_back((plan_.first_of_rank[rank + 1] - plan_.first_of_rank[rank]) *
+                        static_cast<std::int64_t>(sizeof(Vec3)));
     std::vector<Vec3> by_rank(place_.size()), all(place_.size());
     communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(by_rank)), bytes);
     for (std::size_t bead = 0; bead < all.size(); ++bead) all[bead] = by_rank[place_[bead]];
@@ -335,7 +378,8 @@ void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) 
     double const no_bead = -1, count = static_cast<double>(all.size());
     double worst = no_bead;  // a stale ghost's bead, or `count` + a missed one
     for (std::size_t i = 0; i < beads_.size(); ++i)
-        if (!std::equal(ghosts[i].data, ghosts[i].data + 3, all[beads_[i]].data)) worst = std::max(worst, static_cast<double>(beads_[i]));
+        if (!std::equal(ghosts[i].data, ghosts[i].data + 3, all[beads_[i]].data))
+            worst = std::max(worst, static_cast<double>(beads_[i]));
     for (PairRange const& range : plan_.ranges) {
         std::vector<std::int64_t> acting, own_ones;  // beads; own ones by their places among these
         std::vector<Vec3> there;
@@ -346,16 +390,19 @@ void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) 
             there.push_back(all[static_cast<std::size_t>(bead)]);
         }
         for (std::int64_t const i : ghosts_of(there, own_ones, range.reach, plan_.box))
-            if (std::int64_t const bead = acting[static_cast<std::size_t>(i)]; is_known[static_cast<std::size_t>(bead)] == 0)
+            if (std::int64_t const bead = acting[static_cast<std::size_t>(i)];
+                is_known[static_cast<std::size_t>(bead)] == 0)
                 worst = std::max(worst, count + static_cast<double>(bead));
     }
     worst = communicator_.max(worst);
     if (worst >= count)
-        throw SharedError(fmt::format("forces.openmm.audit: bead {} is felt on a rank that has no ghost of it",
-                                      number(static_cast<std::int64_t>(worst - count)) + 1));
+        throw SharedError(
+            fmt::format("forces.openmm.audit: bead {} is felt on a rank that has no ghost of it",
+                        number(static_cast<std::int64_t>(worst - count)) + 1));
     if (worst > no_bead)
         throw SharedError(
-            fmt::format("forces.openmm.audit: a ghost of bead {} is not where the bead is", number(static_cast<std::int64_t>(worst)) + 1));
+            fmt::format("forces.openmm.audit: a ghost of bead {} is not where the bead is",
+                        number(static_cast<std::int64_t>(worst)) + 1));
 }
 
 }  // namespace catena

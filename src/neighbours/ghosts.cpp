@@ -37,7 +37,8 @@ class Window {
         if (all_) return action(std::int64_t{0}, count_ - 1);
         std::int64_t const first = a - width_, last = a + width_;
         if (count_ > 0 && first < 0) action(first + count_, count_ - 1);
-        action(count_ > 0 ? std::max<std::int64_t>(first, 0) : first, count_ > 0 ? std::min(last, count_ - 1) : last);
+        action(count_ > 0 ? std::max<std::int64_t>(first, 0) : first,
+               count_ > 0 ? std::min(last, count_ - 1) : last);
         if (count_ > 0 && last >= count_) action(std::int64_t{0}, last - count_);
     }
 
@@ -48,7 +49,8 @@ class Window {
 
 /// Blocks by the cells of their middles.
 struct BlocksInCells {
-    BlocksInCells(PointGroups const& points, double edge) : groups(points), blocks(blocks_of(points, edge)) {
+    BlocksInCells(PointGroups const& points, double edge)
+        : groups(points), blocks(blocks_of(points, edge)) {
         for (PointBlock const& b : blocks) {
             middles.push_back(b.middle);
             for (int c = 0; c < 3; ++c) half[c] = std::max(half[c], b.half[c]);
@@ -64,7 +66,8 @@ struct BlocksInCells {
 /// Which groups are near others: by blocks of either, most of which are out of reach.
 class Search {
   public:
-    Search(BlocksInCells const& ours, BlocksInCells const& theirs, double radius, std::optional<Vec3> const& box, Executor const& executor)
+    Search(BlocksInCells const& ours, BlocksInCells const& theirs, double radius,
+           std::optional<Vec3> const& box, Executor const& executor)
         : radius_(radius),
           ours_(ours),
           theirs_(theirs),
@@ -76,14 +79,17 @@ class Search {
           in_cells_(grid_, ours.middles, executor),
           their_cells_(grid_, theirs.middles, executor),
           near_(static_cast<std::size_t>(ours.groups.size()), 0) {
-        for (std::int64_t const b : their_cells_.points()) their_blocks_.push_back(theirs.blocks[static_cast<std::size_t>(b)]);
+        for (std::int64_t const b : their_cells_.points())
+            their_blocks_.push_back(theirs.blocks[static_cast<std::size_t>(b)]);
     }
 
     std::vector<char> run(Executor const& executor) {
         std::vector<std::size_t> const rows = row_starts(in_cells_.cells());
         int constexpr cost = 256;  // of a row in bodies
         executor.for_ranges(std::ssize(rows) - 1, cost, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t i = begin; i < end; ++i) search_row(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(i) + 1]);
+            for (std::int64_t i = begin; i < end; ++i)
+                search_row(rows[static_cast<std::size_t>(i)],
+                           rows[static_cast<std::size_t>(i) + 1]);
         });
         return std::move(near_);
     }
@@ -95,7 +101,8 @@ class Search {
     static std::vector<std::size_t> row_starts(std::vector<Cell> const& cells) {
         std::vector<std::size_t> starts;
         for (std::size_t i = 0; i < cells.size(); ++i)
-            if (i == 0 || cells[i][0] != cells[i - 1][0] || cells[i][1] != cells[i - 1][1]) starts.push_back(i);
+            if (i == 0 || cells[i][0] != cells[i - 1][0] || cells[i][1] != cells[i - 1][1])
+                starts.push_back(i);
         starts.push_back(cells.size());
         return starts;
     }
@@ -124,33 +131,40 @@ class Search {
         std::vector<Row> rows;
         std::vector<Cell> const& cells = their_cells_.cells();
         auto const from = [&](Cell const& least) {
-            return static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), least) - cells.begin());
+            return static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), least) -
+                                            cells.begin());
         };
         std::int64_t constexpr lowest = std::numeric_limits<std::int64_t>::min();
         x_.runs(cell[0], [&](std::int64_t x_first, std::int64_t x_last) {
             for (std::int64_t x = x_first; x <= x_last; ++x)
                 y_.runs(cell[1], [&](std::int64_t y_first, std::int64_t y_last) {
-                    for (std::size_t i = from({x, y_first, lowest}); i < cells.size() && cells[i][0] == x && cells[i][1] <= y_last;) {
-                        std::int64_t const y = cells[i][1], dx = x_.apart(cell[0], x), dy = y_.apart(cell[1], y);
+                    for (std::size_t i = from({x, y_first, lowest});
+                         i < cells.size() && cells[i][0] == x && cells[i][1] <= y_last;) {
+                        std::int64_t const y = cells[i][1], dx = x_.apart(cell[0], x),
+                                           dy = y_.apart(cell[1], y);
                         std::size_t const end = from({x, y + 1, lowest});
                         rows.push_back({i, end, dx * dx + dy * dy});
                         i = end;
                     }
                 });
         });
-        std::stable_sort(rows.begin(), rows.end(), [](Row const& a, Row const& b) { return a.away < b.away; });
+        std::stable_sort(rows.begin(), rows.end(),
+                         [](Row const& a, Row const& b) { return a.away < b.away; });
         return rows;
     }
 
     /// Takes the groups of a block that are near blocks of the row from the open ones.
-    void search_along(Row const& row, PointBlock const& block, std::int64_t z, std::vector<std::int64_t>& open) {
+    void search_along(Row const& row, PointBlock const& block, std::int64_t z,
+                      std::vector<std::int64_t>& open) {
         std::vector<Cell> const& cells = their_cells_.cells();
         z_.runs(z, [&](std::int64_t first, std::int64_t last) {
             auto const end = cells.begin() + static_cast<std::ptrdiff_t>(row.last);
-            auto c = std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(row.first), end, first,
-                                      [](Cell const& at, std::int64_t least) { return at[2] < least; });
+            auto c =
+                std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(row.first), end, first,
+                                 [](Cell const& at, std::int64_t least) { return at[2] < least; });
             for (; c != end && (*c)[2] <= last; ++c) {
-                auto const [begin_block, end_block] = their_cells_.range(static_cast<std::size_t>(c - cells.begin()));
+                auto const [begin_block, end_block] =
+                    their_cells_.range(static_cast<std::size_t>(c - cells.begin()));
                 for (std::int64_t k = begin_block; k < end_block && !open.empty(); ++k) {
                     PointBlock const& other = their_blocks_[static_cast<std::size_t>(k)];
                     if (!may_be_near(squared_gap(block.middle, block.half, other))) continue;
@@ -161,9 +175,11 @@ class Search {
     }
 
     bool is_near(std::int64_t g, PointBlock const& block) {
-        std::span<Vec3 const> const points = ours_.groups.group(g), others = theirs_.groups.of(block);
+        std::span<Vec3 const> const points = ours_.groups.group(g),
+                                    others = theirs_.groups.of(block);
         bool const near = std::any_of(points.begin(), points.end(), [&](Vec3 const& x) {
-            return may_be_near(squared_gap(x, Vec3::zero(), block)) && std::any_of(others.begin(), others.end(), [&](Vec3 const& other) {
+            return may_be_near(squared_gap(x, Vec3::zero(), block)) &&
+                   std::any_of(others.begin(), others.end(), [&](Vec3 const& other) {
                        return grid_.squared_distance(x, other) < radius_ * radius_;
                    });
         });
@@ -194,23 +210,26 @@ class Search {
 
 }  // namespace
 
-std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius, std::optional<Vec3> const& box,
-                              Executor const& executor) {
+std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius,
+                              std::optional<Vec3> const& box, Executor const& executor) {
     BlocksInCells const ours(groups, radius / 2), theirs(others, radius / 2);
     return Search(ours, theirs, radius, box, executor).run(executor);
 }
 
-std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
-                                   std::optional<Vec3> const& box) {
-    std::vector<std::int64_t> const first = each_by_itself(points.size()), of_others = each_by_itself(others.size());
-    std::vector<char> const is_near = near_groups({points, first}, {others, of_others}, radius, box, *serial_executor());
+std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others,
+                                   double radius, std::optional<Vec3> const& box) {
+    std::vector<std::int64_t> const first = each_by_itself(points.size()),
+                                    of_others = each_by_itself(others.size());
+    std::vector<char> const is_near =
+        near_groups({points, first}, {others, of_others}, radius, box, *serial_executor());
     std::vector<std::int64_t> near;
     for (std::size_t k = 0; k < is_near.size(); ++k)
         if (is_near[k] != 0) near.push_back(static_cast<std::int64_t>(k));
     return near;
 }
 
-std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,
+std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions,
+                                    std::span<std::int64_t const> own, double radius,
                                     std::optional<Vec3> const& box) {
     std::vector<bool> is_own(positions.size(), false);
     std::vector<Vec3> inside, outside;

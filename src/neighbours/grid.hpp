@@ -1,4 +1,5 @@
-// Space cut into cells that are wider than a radius: what is near a point lies in its cell or in one of the 26 around it.
+// Space cut into cells that are wider than a radius: what is near a point lies in its cell or in
+// one of the 26 around it.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +17,15 @@ namespace catena {
 
 using Cell = std::array<std::int64_t, 3>;
 
-inline bool is_same(Cell const& a, Cell const& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+inline bool is_same(Cell const& a, Cell const& b) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
 
 struct CellHash {
     std::size_t operator()(Cell const& c) const {
         std::uint64_t h = 0;
-        for (std::int64_t i : c) h = (h ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
+        for (std::int64_t i : c)
+            h = (h ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
         return h;
     }
 };
@@ -32,9 +36,12 @@ class Grid {
   public:
     /// `box`: edges of the periodic box; without it space has no end. Precondition: radius > 0.
     Grid(double radius, std::optional<Vec3> const& box) : box_(box) {
-        double const width = radius * (1 + 1e-9);  // wider than the radius however a point's cell is rounded
+        double const width =
+            radius * (1 + 1e-9);  // wider than the radius however a point's cell is rounded
         for (int i = 0; i < 3; ++i) {
-            count_[i] = box ? std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((*box)[i] / width))) : 0;
+            count_[i] = box ? std::max<std::int64_t>(
+                                  1, static_cast<std::int64_t>(std::floor((*box)[i] / width)))
+                            : 0;
             edge_[i] = box ? (*box)[i] / static_cast<double>(count_[i]) : width;
             a_box_[i] = box ? 1 / (*box)[i] : 0;
         }
@@ -62,7 +69,8 @@ class Grid {
     void around(Cell const& c, Visit visit) const {
         for (std::int64_t x = -1; x <= 1; ++x)
             for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t z = -1; z <= 1; ++z) visit(Cell{wrapped(c[0] + x, 0), wrapped(c[1] + y, 1), wrapped(c[2] + z, 2)});
+                for (std::int64_t z = -1; z <= 1; ++z)
+                    visit(Cell{wrapped(c[0] + x, 0), wrapped(c[1] + y, 1), wrapped(c[2] + z, 2)});
     }
 
     template <class Cells>
@@ -83,13 +91,15 @@ class Grid {
         Vec3 const d = nearest_image(a - b);
         return dot(d, d);
     }
-    /// Calls visit(cell) for those that a box reaches into; in a small periodic box for some more than once.
+    /// Calls visit(cell) for those that a box reaches into; in a small periodic box for some more
+    /// than once.
     template <class Visit>
     void within(Vec3 const& least, Vec3 const& most, Visit visit) const {
         Cell const a = unwrapped(least), b = unwrapped(most);
         for (std::int64_t x = a[0]; x <= b[0]; ++x)
             for (std::int64_t y = a[1]; y <= b[1]; ++y)
-                for (std::int64_t z = a[2]; z <= b[2]; ++z) visit(Cell{wrapped(x, 0), wrapped(y, 1), wrapped(z, 2)});
+                for (std::int64_t z = a[2]; z <= b[2]; ++z)
+                    visit(Cell{wrapped(x, 0), wrapped(y, 1), wrapped(z, 2)});
     }
 
     /// A cell's place along an axis, around the box where there is one.
@@ -103,7 +113,8 @@ class Grid {
     Cell unwrapped(Vec3 const& x) const {
         double constexpr far = 1e15;  // an integer still tells neighbours apart there
         Cell c{};
-        for (int i = 0; i < 3; ++i) c[i] = static_cast<std::int64_t>(std::clamp(std::floor(x[i] / edge_[i]), -far, far));
+        for (int i = 0; i < 3; ++i)
+            c[i] = static_cast<std::int64_t>(std::clamp(std::floor(x[i] / edge_[i]), -far, far));
         return c;
     }
 

@@ -15,9 +15,11 @@ inline std::vector<double> equal_cuts(int ranks) {
     return cuts;
 }
 
-/// Cuts that give every rank as much work, were that of each, `work`, spread evenly over what it has now. Where there is none they stay.
-/// Every rank keeps an eighth of an equal share at least: whoever has none would not notice that others have what was its own.
-inline std::vector<double> evened_cuts(std::vector<double> const& cuts, std::span<double const> work) {
+/// Cuts that give every rank as much work, were that of each, `work`, spread evenly over what it
+/// has now. Where there is none they stay. Every rank keeps an eighth of an equal share at least:
+/// whoever has none would not notice that others have what was its own.
+inline std::vector<double> evened_cuts(std::vector<double> const& cuts,
+                                       std::span<double const> work) {
     std::size_t const ranks = work.size();
     double total = 0;
     for (double const w : work) total += w;
@@ -30,7 +32,8 @@ inline std::vector<double> evened_cuts(std::vector<double> const& cuts, std::spa
         double const wanted = total * static_cast<double>(next) / static_cast<double>(ranks);
         while (r + 1 < ranks && before + work[r] < wanted) before += work[r++];
         double const part = work[r] > 0 ? std::min(1.0, (wanted - before) / work[r]) : 1.0;
-        double const most = 1 - least * static_cast<double>(ranks - next), even = cuts[r] + part * (cuts[r + 1] - cuts[r]);
+        double const most = 1 - least * static_cast<double>(ranks - next),
+                     even = cuts[r] + part * (cuts[r + 1] - cuts[r]);
         evened.push_back(std::min(most, std::max(evened.back() + least, even)));
     }
     evened.push_back(1);

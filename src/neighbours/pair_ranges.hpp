@@ -1,4 +1,5 @@
-// How far pairs of beads act on each other, where some act farther than others: what decides which beads are ghosts. No OpenMM here.
+// How far pairs of beads act on each other, where some act farther than others: what decides which
+// beads are ghosts. No OpenMM here.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,9 @@ struct PairRange {
     double reach = 0;
     std::vector<char> acts;  // of each bead; empty: every one
 
-    bool is_for(std::int64_t bead) const { return acts.empty() || acts[static_cast<std::size_t>(bead)] != 0; }
+    bool is_for(std::int64_t bead) const {
+        return acts.empty() || acts[static_cast<std::size_t>(bead)] != 0;
+    }
 };
 
 inline double longest_reach(std::vector<PairRange> const& ranges) {

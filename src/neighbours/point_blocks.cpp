@@ -17,7 +17,9 @@ struct Box {
         add(other.least);
         add(other.most);
     }
-    double edge() const { return std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2]}); }
+    double edge() const {
+        return std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2]});
+    }
 
     Vec3 least, most;
 };
@@ -31,7 +33,8 @@ Box box_of(std::span<Vec3 const> points) {
 /// Around [least, most] however its middle is rounded.
 PointBlock block(Box const& box, std::int64_t begin, std::int64_t end) {
     PointBlock b{0.5 * (box.least + box.most), {}, begin, end};
-    for (int c = 0; c < 3; ++c) b.half[c] = std::max(box.most[c] - b.middle[c], b.middle[c] - box.least[c]);
+    for (int c = 0; c < 3; ++c)
+        b.half[c] = std::max(box.most[c] - b.middle[c], b.middle[c] - box.least[c]);
     return b;
 }
 

@@ -1,5 +1,5 @@
-// Points that follow each other mostly lie together, as beads of a chain do: in blocks, each with a box around it, which decides for all of
-// them at once.
+// Points that follow each other mostly lie together, as beads of a chain do: in blocks, each with a
+// box around it, which decides for all of them at once.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,19 @@ struct PointGroups {
     std::span<std::int64_t const> first;  // of each group, then the number of points
 
     std::int64_t size() const { return std::ssize(first) - 1; }
-    std::span<Vec3 const> group(std::int64_t g) const { return points.subspan(begin(g), begin(g + 1) - begin(g)); }
-    std::span<Vec3 const> of(PointBlock const& b) const { return points.subspan(begin(b.begin), begin(b.end) - begin(b.begin)); }
-    std::size_t begin(std::int64_t g) const { return static_cast<std::size_t>(first[static_cast<std::size_t>(g)]); }
+    std::span<Vec3 const> group(std::int64_t g) const {
+        return points.subspan(begin(g), begin(g + 1) - begin(g));
+    }
+    std::span<Vec3 const> of(PointBlock const& b) const {
+        return points.subspan(begin(b.begin), begin(b.end) - begin(b.begin));
+    }
+    std::size_t begin(std::int64_t g) const {
+        return static_cast<std::size_t>(first[static_cast<std::size_t>(g)]);
+    }
 };
 
-/// All groups that have points, in blocks of up to 32 points within boxes of up to `edge` along each axis; a group alone may be larger.
+/// All groups that have points, in blocks of up to 32 points within boxes of up to `edge` along
+/// each axis; a group alone may be larger.
 std::vector<PointBlock> blocks_of(PointGroups const& groups, double edge);
 
 }  // namespace catena

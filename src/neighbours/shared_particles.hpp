@@ -1,6 +1,7 @@
-// Particles of OpenMM's that several GPUs have, each at the same place of its arrays: positions on their way from the GPU whose bead one is
-// to the others, and forces on their way back. A thread takes one number: i = 3 bead + direction, where beads are counted as they are sent
-// or received, one message after the other. All addresses are GPUs'.
+// Particles of OpenMM's that several GPUs have, each at the same place of its arrays: positions on
+// their way from the GPU whose bead one is to the others, and forces on their way back. A thread
+// takes one number: i = 3 bead + direction, where beads are counted as they are sent or received,
+// one message after the other. All addresses are GPUs'.
 #pragma once
 
 #include <cmath>
@@ -32,7 +33,9 @@ struct ArrivedPositions {
     float* position = nullptr;
     std::int32_t const* place = nullptr;
     float const* arrived = nullptr;
-    CATENA_HD void operator()(std::int64_t i) const { position[4 * static_cast<std::int64_t>(place[i / 3]) + i % 3] = arrived[i]; }
+    CATENA_HD void operator()(std::int64_t i) const {
+        position[4 * static_cast<std::int64_t>(place[i / 3]) + i % 3] = arrived[i];
+    }
 };
 
 /// OpenMM's array of forces (DeviceParticles::force), and where beads are in it.
@@ -40,10 +43,13 @@ struct ForcesOnBeads {
     std::int64_t* force = nullptr;
     std::int64_t places = 0;
     std::int32_t const* place = nullptr;
-    CATENA_HD std::int64_t& at(std::int64_t i) const { return force[place[i / 3] + i % 3 * places]; }
+    CATENA_HD std::int64_t& at(std::int64_t i) const {
+        return force[place[i / 3] + i % 3 * places];
+    }
 };
 
-/// A force on its way: as OpenMM has it, to the bit, or, where OpenMM finds forces in single precision, in single precision.
+/// A force on its way: as OpenMM has it, to the bit, or, where OpenMM finds forces in single
+/// precision, in single precision.
 template <class Number>
 CATENA_HD Number on_its_way(std::int64_t force) {
     if constexpr (std::is_same_v<Number, float>)
@@ -63,8 +69,8 @@ struct SentForces {
     ForcesOnBeads forces;
     int messages = 0;
     std::int64_t end[most_messages] = {};  // beads in each message and those before
-    Number* to[most_messages] = {};        // where bead 0 would be if the message had those before, too
-    bool all = true;                       // false: zeros stay away, where ReturnedForces left some
+    Number* to[most_messages] = {};  // where bead 0 would be if the message had those before, too
+    bool all = true;                 // false: zeros stay away, where ReturnedForces left some
     std::int64_t count() const { return messages > 0 ? end[messages - 1] : 0; }
     /// `box`: where its numbers go
     void add(std::int64_t beads, Number* box) {
@@ -80,8 +86,8 @@ struct SentForces {
     }
 };
 
-/// What others have found of the forces on own beads is added, in whole numbers: their order does not matter. Leaves zeros where numbers
-/// were, for those that are not sent next time.
+/// What others have found of the forces on own beads is added, in whole numbers: their order does
+/// not matter. Leaves zeros where numbers were, for those that are not sent next time.
 template <class Number>
 struct ReturnedForces {
     ForcesOnBeads forces;
@@ -98,7 +104,8 @@ struct ReturnedForces {
             std::int64_t const part = arrived_force(here);
             here = Number{0};
             is_number = is_number && DeviceParticles::is_number(part);
-            sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) + static_cast<std::uint64_t>(part));
+            sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) +
+                                            static_cast<std::uint64_t>(part));
         }
         force = is_number ? sum : INT64_MAX;  // two that are none may add up to one
     }

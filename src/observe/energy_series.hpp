@@ -7,11 +7,13 @@
 
 namespace catena {
 
-/// A series of at most `most` entries. Each is one frame; of a longer run it is the mean of 2, 4, 8, ... frames one after the other.
+/// A series of at most `most` entries. Each is one frame; of a longer run it is the mean of 2, 4,
+/// 8, ... frames one after the other.
 class EnergySeries {
   public:
     static constexpr std::size_t most = 4096;
-    /// The energies of a frame. A step that is not later than the last one is left out: a restart writes its checkpoint's frame again.
+    /// The energies of a frame. A step that is not later than the last one is left out: a restart
+    /// writes its checkpoint's frame again.
     void add(std::int64_t step, double kinetic, std::optional<double> potential);
 
     std::size_t size() const { return entries_.size(); }
@@ -31,7 +33,8 @@ class EnergySeries {
 
     /// All of it, for a checkpoint.
     std::vector<double> state() const;
-    /// Takes what state() gave. Returns false, and takes nothing, where no run of so many steps can have given that.
+    /// Takes what state() gave. Returns false, and takes nothing, where no run of so many steps can
+    /// have given that.
     bool set_state(std::vector<double> const& state, std::int64_t steps);
 
   private:

@@ -17,7 +17,8 @@ Sym3 inverse_of(Sym3 const& m) {
     adjoint(1, 0) = m(0, 2) * m(1, 2) - m(0, 1) * m(2, 2);
     adjoint(2, 0) = m(0, 1) * m(1, 2) - m(0, 2) * m(1, 1);
     adjoint(2, 1) = m(0, 1) * m(0, 2) - m(0, 0) * m(1, 2);
-    double const determinant = m(0, 0) * adjoint(0, 0) + m(0, 1) * adjoint(0, 1) + m(0, 2) * adjoint(0, 2);
+    double const determinant =
+        m(0, 0) * adjoint(0, 0) + m(0, 1) * adjoint(0, 1) + m(0, 2) * adjoint(0, 2);
     for (double& value : adjoint.data) value /= determinant;
     return adjoint;
 }
@@ -30,7 +31,8 @@ double largest_of(Sym3 const& m) {
     return std::sqrt(sum);
 }
 
-/// Magnitudes of what acts on one body, each divided by the root of what it accelerates, added up: loads may come to point the same way.
+/// Magnitudes of what acts on one body, each divided by the root of what it accelerates, added up:
+/// loads may come to point the same way.
 class Pushes {
   public:
     Pushes(double mass, Sym3 const& inertia) : mass_(mass), inverse_(inverse_of(inertia)) {}
@@ -53,11 +55,14 @@ class Pushes {
     double sum_ = 0;
 };
 
-/// A joint's torque on its outboard body and the opposite on the body before, with the arms at which a sliding joint's force acts.
+/// A joint's torque on its outboard body and the opposite on the body before, with the arms at
+/// which a sliding joint's force acts.
 void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
     Vec3 const& torque = b.torque[k];
     double size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
-    if (b.joint[k] == JointType::universal) size /= norm(cross(b.first_axis[k], b.axis[k]));  // axes that are not perpendicular need more
+    if (b.joint[k] == JointType::universal)
+        size /=
+            norm(cross(b.first_axis[k], b.axis[k]));  // axes that are not perpendicular need more
     Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
     switch (b.joint[k]) {
         case JointType::revolute:
@@ -66,7 +71,10 @@ void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes)
             return;
         case JointType::prismatic:
             pushes[k].force(size), pushes[k].torque(size * norm(b.com[k]));
-            if (inboard) inboard->force(size), inboard->torque(size * (norm(b.translation[k] - b.com[k - 1]) + std::abs(b.q[k][0])));
+            if (inboard)
+                inboard->force(size),
+                    inboard->torque(size *
+                                    (norm(b.translation[k] - b.com[k - 1]) + std::abs(b.q[k][0])));
             return;
         default:
             pushes[k].torque(size);
@@ -84,7 +92,8 @@ double square_of(ChainSpec const& chain, double gravity) {
     for (std::size_t k = 0; k < b.size(); ++k) pushes.emplace_back(b.mass[k], b.inertia[k]);
     for (std::size_t k = 0; k < b.size(); ++k) {
         pushes[k].force(gravity * b.mass[k]);
-        if (!b.wrench.empty()) pushes[k].force(norm(b.wrench[k].second)), pushes[k].torque(norm(b.wrench[k].first));
+        if (!b.wrench.empty())
+            pushes[k].force(norm(b.wrench[k].second)), pushes[k].torque(norm(b.wrench[k].first));
         if (!b.torque.empty()) add_torque(b, k, pushes);
     }
     for (Pushes const& each : pushes) sum += each.square();
@@ -93,8 +102,11 @@ double square_of(ChainSpec const& chain, double gravity) {
 
 bool has_load(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
-    return !b.driven.empty() || std::any_of(b.torque.begin(), b.torque.end(), [](Vec3 const& torque) { return norm(torque) > 0; }) ||
-           std::any_of(b.wrench.begin(), b.wrench.end(), [](auto const& w) { return norm(w.first) + norm(w.second) > 0; });
+    return !b.driven.empty() ||
+           std::any_of(b.torque.begin(), b.torque.end(),
+                       [](Vec3 const& torque) { return norm(torque) > 0; }) ||
+           std::any_of(b.wrench.begin(), b.wrench.end(),
+                       [](auto const& w) { return norm(w.first) + norm(w.second) > 0; });
 }
 
 }  // namespace
@@ -105,7 +117,9 @@ double drift_of_step(DynamicsSpec const& d) {
 }
 
 Heating heating_of(Scene const& scene, bool with_gravity) {
-    auto const any = [&](auto const& is) { return std::any_of(scene.chains.begin(), scene.chains.end(), is); };
+    auto const any = [&](auto const& is) {
+        return std::any_of(scene.chains.begin(), scene.chains.end(), is);
+    };
     double const gravity = norm(scene.forces.gravity);
     Heating found;
     found.is_pushed = gravity > 0 || any(has_load);
@@ -117,7 +131,8 @@ Heating heating_of(Scene const& scene, bool with_gravity) {
     double sum = 0;
     for (ChainSpec const& chain : scene.chains) sum += square_of(chain, with_gravity ? gravity : 0);
     double const friction = scene.dynamics.friction / drift_of_step(scene.dynamics);
-    found.excess = sum / (friction * friction * static_cast<double>(degrees_of_freedom(scene)) * scene.boltzmann());
+    found.excess = sum / (friction * friction * static_cast<double>(degrees_of_freedom(scene)) *
+                          scene.boltzmann());
     if (!std::isfinite(found.excess)) found.unknown = "torques act about axes without inertia";
     return found;
 }

@@ -23,7 +23,8 @@ void KineticEnergy::add(ChainSystem::Snapshot const& s) {
             continue;
         }
         bool const linked = chain.is_linked();
-        sum_ += 0.5 * (linked ? chain.linked.mass[body_] : chain.bodies.mass[body_]) * dot(s.velocity[i], s.velocity[i]);
+        sum_ += 0.5 * (linked ? chain.linked.mass[body_] : chain.bodies.mass[body_]) *
+                dot(s.velocity[i], s.velocity[i]);
         Sym3 const& inertia = linked ? chain.linked.inertia[body_] : chain.bodies.inertia[body_];
         sum_ += 0.5 * dot(s.omega[i], inertia * s.omega[i]);
     }
@@ -48,7 +49,9 @@ void Shape::add(double mass, Vec3 const& position) {
 }
 
 double Shape::radius_of_gyration() const { return std::sqrt(square_ / mass_); }
-double Shape::unweighted_radius_of_gyration() const { return std::sqrt(unweighted_square_ / static_cast<double>(sites_)); }
+double Shape::unweighted_radius_of_gyration() const {
+    return std::sqrt(unweighted_square_ / static_cast<double>(sites_));
+}
 
 namespace {
 
@@ -56,9 +59,11 @@ struct ShapeColumn {
     char const* name;
     double (Shape::*value)() const;
 };
-constexpr ShapeColumn unweighted = {"unweighted_radius_of_gyration", &Shape::unweighted_radius_of_gyration};
-constexpr ShapeColumn shape_columns[] = {
-    {"radius_of_gyration", &Shape::radius_of_gyration}, unweighted, {"end_to_end_distance", &Shape::end_to_end_distance}};
+constexpr ShapeColumn unweighted = {"unweighted_radius_of_gyration",
+                                    &Shape::unweighted_radius_of_gyration};
+constexpr ShapeColumn shape_columns[] = {{"radius_of_gyration", &Shape::radius_of_gyration},
+                                         unweighted,
+                                         {"end_to_end_distance", &Shape::end_to_end_distance}};
 
 bool asks_for(Scene const& scene, std::string const& name) {
     auto const& asked = scene.output.observables;
@@ -70,14 +75,19 @@ bool asks_for(Scene const& scene, std::string const& name) {
 
 bool has_energies(Scene const& scene) { return asks_for(scene, "energy"); }
 
-Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
+Observables::Observables(Scene const& scene, Topology const& topology,
+                         std::vector<EnergyTerm> const& terms)
     : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)), kinetic_(scene) {
-    for (ChainSpec const& chain : scene.chains) has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
-    has_temperature_ = has_temperature_ && dof_ > 0 && !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
-    std::string const energy = scene.si ? " [J]" : " [kJ/mol]", length = scene.si ? " [m]" : " [nm]";
+    for (ChainSpec const& chain : scene.chains)
+        has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
+    has_temperature_ = has_temperature_ && dof_ > 0 &&
+                       !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
+    std::string const energy = scene.si ? " [J]" : " [kJ/mol]",
+                      length = scene.si ? " [m]" : " [nm]";
     if (wants("energy")) {
         for (EnergyTerm const& term : terms) columns_.push_back(term.name + "_energy" + energy);
-        for (char const* const name : {"potential_energy", "kinetic_energy", "total_energy"}) columns_.push_back(name + energy);
+        for (char const* const name : {"potential_energy", "kinetic_energy", "total_energy"})
+            columns_.push_back(name + energy);
     }
     if (wants("temperature")) columns_.push_back("temperature [K]");
     if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
@@ -86,7 +96,8 @@ Observables::Observables(Scene const& scene, Topology const& topology, std::vect
         if (scene.chains.size() == 1)
             columns_.push_back(shape + length);
         else if (scene.chains.size() <= most_single_chains_)
-            for (ChainSpec const& chain : scene.chains) columns_.push_back(shape + ("_" + chain.name) + length);
+            for (ChainSpec const& chain : scene.chains)
+                columns_.push_back(shape + ("_" + chain.name) + length);
         else
             columns_.push_back(std::string("mean_") + shape + length);
     }
@@ -108,13 +119,16 @@ void Observables::add(ChainSystem::Snapshot const& bodies, std::vector<Vec3> con
     kinetic_.add(bodies);
     for (Vec3 const& position : positions) {
         shape_.add(topology_.mass[site_++], position);
-        if (static_cast<std::int64_t>(site_) < topology_.chains[chain_].first + topology_.chains[chain_].count) continue;
+        if (static_cast<std::int64_t>(site_) <
+            topology_.chains[chain_].first + topology_.chains[chain_].count)
+            continue;
         shapes_.push_back(std::exchange(shape_, Shape()));
         ++chain_;
     }
 }
 
-std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms, double constraint_error) const {
+std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms,
+                                     double constraint_error) const {
     std::vector<double> row;
     double const kinetic = kinetic_.value();
     if (wants("energy")) {
@@ -125,7 +139,8 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms, doubl
         }
         row.insert(row.end(), {potential, kinetic, potential + kinetic});
     }
-    if (wants("temperature")) row.push_back(2.0 * kinetic / (scene_.boltzmann() * static_cast<double>(dof_)));
+    if (wants("temperature"))
+        row.push_back(2.0 * kinetic / (scene_.boltzmann() * static_cast<double>(dof_)));
     if (wants("constraint_error")) row.push_back(constraint_error);
     for (auto const& [name, value] : shape_columns) {
         if (!wants(name)) continue;
@@ -135,7 +150,8 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms, doubl
             sum += one;
             if (shapes_.size() <= most_single_chains_) row.push_back(one);
         }
-        if (shapes_.size() > most_single_chains_) row.push_back(sum / static_cast<double>(shapes_.size()));
+        if (shapes_.size() > most_single_chains_)
+            row.push_back(sum / static_cast<double>(shapes_.size()));
     }
     return row;
 }

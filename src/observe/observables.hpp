@@ -29,18 +29,21 @@ class KineticEnergy {
     double sum_ = 0;
 };
 
-/// Of a chain's sites as they come, in one pass: mean and square follow Welford (Technometrics 4, 419, 1962).
+/// Of a chain's sites as they come, in one pass: mean and square follow Welford (Technometrics 4,
+/// 419, 1962).
 class Shape {
   public:
     void add(double mass, Vec3 const& position);
-    double radius_of_gyration() const;             // weighted with masses: sqrt(sum m |x - x_m|^2 / sum m), x_m the centre of mass
+    double radius_of_gyration()
+        const;  // weighted with masses: sqrt(sum m |x - x_m|^2 / sum m), x_m the centre of mass
     double unweighted_radius_of_gyration() const;  // every site counts one
     double end_to_end_distance() const { return norm(last_ - first_); }
 
   private:
     std::int64_t sites_ = 0;
     double mass_ = 0, square_ = 0, unweighted_square_ = 0;
-    Vec3 first_ = Vec3::zero(), last_ = Vec3::zero(), mean_ = Vec3::zero(), unweighted_mean_ = Vec3::zero();
+    Vec3 first_ = Vec3::zero(), last_ = Vec3::zero(), mean_ = Vec3::zero(),
+         unweighted_mean_ = Vec3::zero();
 };
 
 /// Whether rows have energies, of which potential ones may cost as much as several steps.
@@ -48,8 +51,8 @@ bool has_energies(Scene const&);
 
 class Observables {
   public:
-    /// `terms`: names of the potential energy terms. The scene's output.observables choose the groups of columns; empty: all that it can
-    /// have, but for the unweighted radius of gyration.
+    /// `terms`: names of the potential energy terms. The scene's output.observables choose the
+    /// groups of columns; empty: all that it can have, but for the unweighted radius of gyration.
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
     /// Names with units, e.g. "total_energy [kJ/mol]".
     std::vector<std::string> const& columns() const { return columns_; }
@@ -69,10 +72,11 @@ class Observables {
     std::int64_t dof_;
     std::vector<std::string> columns_;
     KineticEnergy kinetic_;
-    std::size_t chain_ = 0, site_ = 0;                      // of the topology, next
-    Shape shape_;                                           // of that chain, so far
-    std::vector<Shape> shapes_;                             // of the chains before
-    static constexpr std::size_t most_single_chains_ = 10;  // beyond, shapes are averaged over chains
+    std::size_t chain_ = 0, site_ = 0;  // of the topology, next
+    Shape shape_;                       // of that chain, so far
+    std::vector<Shape> shapes_;         // of the chains before
+    static constexpr std::size_t most_single_chains_ =
+        10;  // beyond, shapes are averaged over chains
 };
 
 }  // namespace catena

@@ -5,9 +5,11 @@
 namespace catena {
 namespace {
 
-constexpr char const *array_of_error = "largest_constraint_error", *step_of_error = "largest_constraint_error_at",
-                     *array_of_coordinate = "largest_coordinate", *array_of_frames = "verdict_frames",
-                     *whether_midway = "verdict_begins_midway", *step_covered_from = "verdict_covers_from";
+constexpr char const *array_of_error = "largest_constraint_error",
+                     *step_of_error = "largest_constraint_error_at",
+                     *array_of_coordinate = "largest_coordinate",
+                     *array_of_frames = "verdict_frames", *whether_midway = "verdict_begins_midway",
+                     *step_covered_from = "verdict_covers_from";
 
 }  // namespace
 
@@ -26,11 +28,13 @@ void RunVerdict::save(Checkpoint& c) const {
 
 std::string RunVerdict::restore(Checkpoint const& c) {
     for (double const error : few_numbers_of(c, array_of_error, 1)) worst_ = {c.step, error};
-    for (double const largest : few_numbers_of(c, array_of_coordinate, 1)) largest_coordinate_ = largest;
+    for (double const largest : few_numbers_of(c, array_of_coordinate, 1))
+        largest_coordinate_ = largest;
     worst_.step = step_of(c, step_of_error, worst_.step);
     auto const frames = c.arrays.find(array_of_frames);
     if (frames != c.arrays.end()) {
-        if (!energies_.set_state(frames->second, c.step)) refuse_checkpoint(std::string(array_of_frames) + " are no frames of its run");
+        if (!energies_.set_state(frames->second, c.step))
+            refuse_checkpoint(std::string(array_of_frames) + " are no frames of its run");
         if (c.integers.contains(step_covered_from)) covers_from_ = step_of(c, step_covered_from, 0);
         auto const midway = c.integers.find(whether_midway);
         if (midway != c.integers.end() && midway->second != 0) energies_.begins_midway();
@@ -39,7 +43,8 @@ std::string RunVerdict::restore(Checkpoint const& c) {
         energies_.begins_midway();
     }
     if (!covers_from_) return "";
-    return "a checkpoint of this run kept no energies of the frames before it: the verdict on energy and temperature covers only the steps "
+    return "a checkpoint of this run kept no energies of the frames before it: the verdict on "
+           "energy and temperature covers only the steps "
            "from " +
            std::to_string(*covers_from_) + " on";
 }
@@ -48,8 +53,9 @@ std::vector<RunCheck> RunVerdict::checks() const {
     double const tolerance = scene_.dynamics.constraint_tolerance;
     JointError const& worst = end_.error > worst_.error ? end_ : worst_;
     std::vector<RunCheck> all{joints_verdict(worst.error, tolerance, worst.step, "dynamics.step")};
-    for (auto const& verdict : {energies_.energy(), energies_.temperature(),
-                                coordinates_verdict(largest_coordinate_, shortest_link(scene_), tolerance, end_.step)})
+    for (auto const& verdict :
+         {energies_.energy(), energies_.temperature(),
+          coordinates_verdict(largest_coordinate_, shortest_link(scene_), tolerance, end_.step)})
         if (verdict) all.push_back(*verdict);
     return all;
 }

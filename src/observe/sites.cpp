@@ -5,14 +5,17 @@
 namespace catena {
 
 Sites::Sites(Scene const& scene) : Sites(scene, {{0, scene.bodies()}}, true) {}
-Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& own) : Sites(scene, own, false) {}
+Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& own)
+    : Sites(scene, own, false) {}
 
-Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, bool with_topology) : runs_(runs) {
+Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, bool with_topology)
+    : runs_(runs) {
     topology_.title = scene.title;
     topology_.box = scene.box;
     topology_.si = scene.si;
     topology_.body_states = scene.output.coordinates;
-    topology_.joint_states = scene.output.coordinates && uses_joint_coordinates(scene.dynamics.integrator);
+    topology_.joint_states =
+        scene.output.coordinates && uses_joint_coordinates(scene.dynamics.integrator);
     std::size_t most = 0;
     for (ChainSpec const& chain : scene.chains) most += std::max(chain.size(), chain.bead_count());
     if (with_topology) {
@@ -25,10 +28,11 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
         add(chain, with_topology);
         if (!with_topology) continue;
         std::size_t const count = next_site_ - first;
-        bool const all_beads = chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == count);
+        bool const all_beads =
+            chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == count);
         if (chain.tip == Tip::jointed) topology_.tips.push_back(std::ssize(topology_.chains));
-        topology_.chains.push_back(
-            {chain.name, static_cast<std::int64_t>(first), static_cast<std::int64_t>(count), all_beads, chain.is_ring()});
+        topology_.chains.push_back({chain.name, static_cast<std::int64_t>(first),
+                                    static_cast<std::int64_t>(count), all_beads, chain.is_ring()});
     }
 }
 
@@ -43,7 +47,8 @@ void Sites::add(ChainSpec const& chain, bool with_topology) {
     CarriedBeads const& carried = chain.carried();
     for (std::size_t k = 0; k < chain.size(); ++k, ++next_body_) {
         bool const shown = shows_next();
-        auto const add_site = [&](Vec3 const& place, bool is_first, double mass, std::string const& residue) {
+        auto const add_site = [&](Vec3 const& place, bool is_first, double mass,
+                                  std::string const& residue) {
             if (shown) sites_.push_back({next_body_, next_site_, place, is_first});
             ++next_site_;
             if (!with_topology) return;
@@ -60,24 +65,33 @@ void Sites::add(ChainSpec const& chain, bool with_topology) {
             ++next_turning_;
             if (with_topology) topology_.bodies.push_back(static_cast<std::int64_t>(next_site_));
         }
-        std::int64_t const begin = carried.offset.empty() ? 0 : carried.offset[k], end = carried.offset.empty() ? 0 : carried.offset[k + 1];
+        std::int64_t const begin = carried.offset.empty() ? 0 : carried.offset[k],
+                           end = carried.offset.empty() ? 0 : carried.offset[k + 1];
         if (begin == end)
-            add_site(Vec3::zero(), true, chain.is_linked() ? chain.linked.mass[k] : chain.bodies.mass[k], is_bead ? "UNK" : "BDY");
+            add_site(Vec3::zero(), true,
+                     chain.is_linked() ? chain.linked.mass[k] : chain.bodies.mass[k],
+                     is_bead ? "UNK" : "BDY");
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            Vec3 const place = chain.is_linked() ? carried.position[i] : carried.position[i] - chain.bodies.com[k];
-            add_site(place, i == static_cast<std::size_t>(begin), carried.mass[i], carried.residue[i]);
+            Vec3 const place =
+                chain.is_linked() ? carried.position[i] : carried.position[i] - chain.bodies.com[k];
+            add_site(place, i == static_cast<std::size_t>(begin), carried.mass[i],
+                     carried.residue[i]);
         }
     }
 }
 
-Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities, Executor const& executor) const {
-    auto const first = static_cast<std::size_t>(bodies.first), end = first + bodies.motion.position.size();
+Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
+                  Executor const& executor) const {
+    auto const first = static_cast<std::size_t>(bodies.first),
+               end = first + bodies.motion.position.size();
     auto const of_body = [&](std::size_t body) {
-        return std::lower_bound(sites_.begin(), sites_.end(), body, [](Site const& site, std::size_t b) { return site.body < b; });
+        return std::lower_bound(sites_.begin(), sites_.end(), body,
+                                [](Site const& site, std::size_t b) { return site.body < b; });
     };
     auto const begin = of_body(first);
     auto const turning =
-        std::lower_bound(turning_.begin(), turning_.end(), first, [](Turning const& one, std::size_t b) { return one.body < b; });
+        std::lower_bound(turning_.begin(), turning_.end(), first,
+                         [](Turning const& one, std::size_t b) { return one.body < b; });
     Frame part;
     part.first_site = begin != sites_.end() ? begin->site : next_site_;
     part.first_body = turning != turning_.end() ? turning->number : next_turning_;
@@ -93,9 +107,11 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities, Executor c
         Mat3 const turn = to_matrix(s.orientation[k]);
         part.positions[i] = s.position[k] + turn * site.place;
         if (velocities) part.velocities[i] = s.velocity[k] + turn * cross(s.omega[k], site.place);
-        if (!bodies.joint_force.empty() && site.is_first) part.joint_forces[i] = bodies.joint_force[k];
+        if (!bodies.joint_force.empty() && site.is_first)
+            part.joint_forces[i] = bodies.joint_force[k];
     });
-    for (auto one = turning; one != turning_.end() && one->body < end; ++one) add_state(bodies, one->body - first, part);
+    for (auto one = turning; one != turning_.end() && one->body < end; ++one)
+        add_state(bodies, one->body - first, part);
     return part;
 }
 

@@ -1,4 +1,5 @@
-// What a trajectory shows of a scene: one site a bead, a bead that a body carries, or the centre of mass of a body that carries none.
+// What a trajectory shows of a scene: one site a bead, a bead that a body carries, or the centre of
+// mass of a body that carries none.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +39,8 @@ class Sites {
     std::vector<Site> sites_;
     std::vector<Turning> turning_;  // bodies that are no point beads
     std::vector<SceneWindows::Run> runs_;
-    std::size_t run_ = 0, next_body_ = 0, next_site_ = 0, next_turning_ = 0;  // while they are counted
+    std::size_t run_ = 0, next_body_ = 0, next_site_ = 0,
+                next_turning_ = 0;  // while they are counted
 };
 
 }  // namespace catena

@@ -1,11 +1,12 @@
 #include <string>
 
-#include "oracle/linked.hpp"
 #include "error.hpp"
+#include "oracle/linked.hpp"
 
-// Articulated-body algorithm. For every body F = I A + p with F = [torque; force] through the inboard joint, about the
-// joint's centre, A = [alpha; acceleration of the origin], I and p of the body and everything outboard of it, all in B.
-// The 6 x 6 inertia is kept as its blocks: [rot, cross; cross^T, lin].
+// Articulated-body algorithm. For every body F = I A + p with F = [torque; force] through the
+// inboard joint, about the joint's centre, A = [alpha; acceleration of the origin], I and p of the
+// body and everything outboard of it, all in B. The 6 x 6 inertia is kept as its blocks: [rot,
+// cross; cross^T, lin].
 namespace catena::oracle {
 namespace {
 
@@ -15,10 +16,12 @@ struct Inertia {
 };
 template <class S>
 SpatialForce<S> operator*(Inertia<S> const& i, Motion<S> const& a) {
-    return {i.rot * a.angular + i.cross * a.linear, transposed_times(i.cross, a.angular) + i.lin * a.linear};
+    return {i.rot * a.angular + i.cross * a.linear,
+            transposed_times(i.cross, a.angular) + i.lin * a.linear};
 }
 
-/// One coordinate as it is eliminated: q'' = (rest - carry . A) / inertia, A the acceleration with it and those outboard locked.
+/// One coordinate as it is eliminated: q'' = (rest - carry . A) / inertia, A the acceleration with
+/// it and those outboard locked.
 template <class S>
 struct Coordinate {
     SpatialForce<S> carry;
@@ -30,23 +33,28 @@ struct Articulated {
     Inertia<S> inertia;  // with the inboard joint locked
     SpatialForce<S> bias;
     Motion<S> closure;  // velocity-dependent part of A across the joint, B
-    // Behind the joint, as the inboard body feels it: F = behind (A carried over from the inboard body) + bias_behind.
+    // Behind the joint, as the inboard body feels it: F = behind (A carried over from the inboard
+    // body) + bias_behind.
     Inertia<S> behind;
     SpatialForce<S> bias_behind;
     std::array<Coordinate<S>, 2> coordinate;
 };
 
 [[noreturn]] void not_definite(std::size_t k) {
-    throw ComputationError("articulated inertia is not positive definite (body " + std::to_string(k + 1) +
+    throw ComputationError("articulated inertia is not positive definite (body " +
+                           std::to_string(k + 1) +
                            "): check the mass and inertia of this body and those outboard of it");
 }
 
 template <class S>
-void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gravity, Articulated<S>& a) {
+void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gravity,
+                    Articulated<S>& a) {
     V3<S> const& w = at.omega;
-    V3<S> const applied = transposed_times(at.orientation, link.applied_force + link.mass * gravity);
+    V3<S> const applied =
+        transposed_times(at.orientation, link.applied_force + link.mass * gravity);
     V3<S> const net = link.mass * cross(w, cross(w, link.com)) - applied;
-    V3<S> const gyroscopic = cross(w, link.inertia * w) - transposed_times(at.orientation, link.applied_torque);
+    V3<S> const gyroscopic =
+        cross(w, link.inertia * w) - transposed_times(at.orientation, link.applied_torque);
     M3<S> const c = skew(link.com);
     a.inertia.rot = plus(a.inertia.rot, plus(link.inertia, scaled(-link.mass, c * c)));
     a.inertia.cross = plus(a.inertia.cross, scaled(link.mass, c));
@@ -54,8 +62,9 @@ void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gra
     a.bias = a.bias + SpatialForce<S>{gyroscopic + cross(link.com, net), net};
 }
 
-/// Coordinates one after the other from the outboard side (a universal joint is two pins with a massless body between):
-/// I - U D^-1 U^T with U = I P, D = P^T U; the bias behind carries the force along the coordinate.
+/// Coordinates one after the other from the outboard side (a universal joint is two pins with a
+/// massless body between): I - U D^-1 U^T with U = I P, D = P^T U; the bias behind carries the
+/// force along the coordinate.
 template <class S>
 void pass_coordinates(Link<S> const& link, std::size_t k, Articulated<S>& a) {
     a.behind = a.inertia;
@@ -82,23 +91,30 @@ void pass_spherical(Link<S> const& link, std::size_t k, Articulated<S>& a) {
     if (!d.definite()) not_definite(k);
     M3<S> alpha_per_linear;
     for (int j = 0; j < 3; ++j) alpha_per_linear.set_column(j, d.solve(a.inertia.cross.column(j)));
-    a.behind.lin = plus(a.inertia.lin, scaled(S(-1), transposed_times(a.inertia.cross, alpha_per_linear)));
-    a.bias_behind = {link.effort, a.bias.force + transposed_times(alpha_per_linear, link.effort - a.bias.torque)};
+    a.behind.lin =
+        plus(a.inertia.lin, scaled(S(-1), transposed_times(a.inertia.cross, alpha_per_linear)));
+    a.bias_behind = {link.effort, a.bias.force + transposed_times(alpha_per_linear,
+                                                                  link.effort - a.bias.torque)};
 }
 
-/// Adds what `outboard` passes through its joint to the inboard body, in the inboard body's axes about its origin.
+/// Adds what `outboard` passes through its joint to the inboard body, in the inboard body's axes
+/// about its origin.
 template <class S>
 void hand_inboard(Link<S> const& link, Articulated<S> const& outboard, Articulated<S>& inboard) {
     M3<S> const& r = link.rotation;
     M3<S> const t = skew(link.translation);
-    M3<S> const lin = symmetrized(turned(r, outboard.behind.lin)), cross_block = turned(r, outboard.behind.cross);
+    M3<S> const lin = symmetrized(turned(r, outboard.behind.lin)),
+                cross_block = turned(r, outboard.behind.cross);
     M3<S> const cross_t = cross_block * t;
-    M3<S> const moved = plus(turned(r, outboard.behind.rot), scaled(S(-1), plus(plus(cross_t, transpose(cross_t)), t * (lin * t))));
+    M3<S> const moved = plus(turned(r, outboard.behind.rot),
+                             scaled(S(-1), plus(plus(cross_t, transpose(cross_t)), t * (lin * t))));
     inboard.inertia.rot = plus(inboard.inertia.rot, symmetrized(moved));
     inboard.inertia.cross = plus(inboard.inertia.cross, plus(cross_block, t * lin));
     inboard.inertia.lin = plus(inboard.inertia.lin, lin);
     V3<S> const force = r * outboard.bias_behind.force;
-    inboard.bias = inboard.bias + SpatialForce<S>{r * outboard.bias_behind.torque + cross(link.translation, force), force};
+    inboard.bias =
+        inboard.bias +
+        SpatialForce<S>{r * outboard.bias_behind.torque + cross(link.translation, force), force};
 }
 
 /// Acceleration of a free body 1.
@@ -126,11 +142,13 @@ template <class S>
 V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S> motion) {
     if (link.driven) return link.prescribed;
     if (link.type == JointType::spherical)
-        return Cholesky<S, 3>(a.inertia.rot).solve(link.effort - a.bias.torque - (a.inertia * motion).torque);
+        return Cholesky<S, 3>(a.inertia.rot)
+            .solve(link.effort - a.bias.torque - (a.inertia * motion).torque);
     V3<S> qdd = V3<S>::zero();
     for (int i = 0; i < link.dof; ++i) {
         auto const at = static_cast<std::size_t>(i);
-        qdd[i] = (a.coordinate[at].rest - power(motion, a.coordinate[at].carry)) / a.coordinate[at].inertia;
+        qdd[i] = (a.coordinate[at].rest - power(motion, a.coordinate[at].carry)) /
+                 a.coordinate[at].inertia;
         motion = motion + Motion<S>{qdd[i] * link.free[at].angular, qdd[i] * link.free[at].linear};
     }
     return qdd;
@@ -153,7 +171,8 @@ class Solver {
     }
 
   private:
-    /// A free body 1 is taken about its centre of mass: about its origin m c^2 would cover a small inertia in the 6 x 6 solve.
+    /// A free body 1 is taken about its centre of mass: about its origin m c^2 would cover a small
+    /// inertia in the 6 x 6 solve.
     void refer_to_com() {
         from_origin_ = links_[0].com;
         links_[0].com = V3<S>::zero();
@@ -166,9 +185,11 @@ class Solver {
         Link<S> const& link = links_[k];
         add_rigid_body(link, attitude_[k], gravity_, a);
         if (link.type == JointType::free) return;
-        V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega, w_here = attitude_[k].omega - link.rate;
+        V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega,
+                    w_here = attitude_[k].omega - link.rate;
         a.closure = {cross(w_here, link.rate) + link.drift,
-                     transposed_times(link.rotation, cross(w, cross(w, link.translation))) + S(2) * cross(w_here, link.slide)};
+                     transposed_times(link.rotation, cross(w, cross(w, link.translation))) +
+                         S(2) * cross(w_here, link.slide)};
         if (link.driven) a.closure = a.closure + along(link, link.prescribed);
         a.closure = a.closure + link.gap;
         if (link.type == JointType::spherical)
@@ -179,7 +200,8 @@ class Solver {
         if (k > 0) hand_inboard(link, a, bodies_[k - 1]);
     }
 
-    /// From the base: acceleration of body k from that of its inboard body, and everything that is reported about it.
+    /// From the base: acceleration of body k from that of its inboard body, and everything that is
+    /// reported about it.
     Motion<S> release(std::size_t k, Motion<S> const& inboard, OracleResult<S>& result) const {
         Link<S> const& link = links_[k];
         Articulated<S> const& a = bodies_[k];
@@ -187,31 +209,39 @@ class Solver {
         if (link.type == JointType::free) {
             Motion<S> const motion = solve_free(a);
             V3<S> const &w = attitude_[k].omega, r = -from_origin_;
-            result.base_acceleration = to_world * (motion.linear + cross(motion.angular, r) + cross(w, cross(w, r)));
+            result.base_acceleration =
+                to_world * (motion.linear + cross(motion.angular, r) + cross(w, cross(w, r)));
             report(k, motion, motion.angular, result);
             return motion;
         }
-        Motion<S> const carried{transposed_times(link.rotation, inboard.angular),
-                                transposed_times(link.rotation, inboard.linear + cross(inboard.angular, link.translation))};
+        Motion<S> const carried{
+            transposed_times(link.rotation, inboard.angular),
+            transposed_times(link.rotation,
+                             inboard.linear + cross(inboard.angular, link.translation))};
         Motion<S> motion = carried + a.closure;
         V3<S> const qdd = joint_acceleration(link, a, motion);
         if (!link.driven) motion = motion + along(link, qdd);
         report(k, motion, qdd, result);
         SpatialForce<S> const f = a.behind * carried + a.bias_behind;
-        SpatialForce<S> const given = spread(link, link.effort), found = spread(link, efforts(link, f));
+        SpatialForce<S> const given = spread(link, link.effort),
+                              found = spread(link, efforts(link, f));
         bool const held = link.unknown() == 0;
-        V3<S> const torque = held ? f.torque : f.torque - found.torque, force = held ? f.force : f.force - found.force;
+        V3<S> const torque = held ? f.torque : f.torque - found.torque,
+                    force = held ? f.force : f.force - found.force;
         result.constraint_force[k] = {to_world * torque, to_world * force};
-        result.joint_force[k] = {to_world * (torque + given.torque), to_world * (force + given.force)};
+        result.joint_force[k] = {to_world * (torque + given.torque),
+                                 to_world * (force + given.force)};
         return motion;
     }
 
-    void report(std::size_t k, Motion<S> const& motion, V3<S> const& qdd, OracleResult<S>& result) const {
+    void report(std::size_t k, Motion<S> const& motion, V3<S> const& qdd,
+                OracleResult<S>& result) const {
         V3<S> const &w = attitude_[k].omega, &c = links_[k].com;
         M3<S> const& to_world = attitude_[k].orientation;
         result.qdd.push_back(qdd);
         result.alpha.push_back(to_world * motion.angular);
-        result.com_acceleration.push_back(to_world * (motion.linear + cross(motion.angular, c) + cross(w, cross(w, c))));
+        result.com_acceleration.push_back(
+            to_world * (motion.linear + cross(motion.angular, c) + cross(w, cross(w, c))));
         result.joint_force.emplace_back();
         result.constraint_force.emplace_back();
     }
@@ -220,7 +250,8 @@ class Solver {
     std::vector<Attitude<S>> attitude_;
     std::vector<Articulated<S>> bodies_;
     V3<S> gravity_;
-    V3<S> from_origin_ = V3<S>::zero();  // free base: from the origin of body 1 to its centre of mass, B
+    V3<S> from_origin_ =
+        V3<S>::zero();  // free base: from the origin of body 1 to its centre of mass, B
 };
 
 }  // namespace
@@ -233,7 +264,8 @@ OracleResult<S> aba_links(std::vector<Link<S>> const& links, V3<S> const& gravit
 template <class S>
 OracleResult<S> aba(ChainSpec const& chain, Loads const& loads) {
     if (chain.is_beads()) return aba_beads<S>(chain, loads);
-    if (chain.is_linked()) return chain.is_ring() ? dense<S>(chain, loads) : tridiagonal_linked<S>(chain, loads);
+    if (chain.is_linked())
+        return chain.is_ring() ? dense<S>(chain, loads) : tridiagonal_linked<S>(chain, loads);
     if (chain.tip == Tip::jointed && chain.size() > 0) return aba_with_tip<S>(chain, loads);
     return aba_links(read_links<S>(chain, loads), lift<S>(loads.gravity));
 }

@@ -1,5 +1,5 @@
-#include "oracle/joint.hpp"
 #include "error.hpp"
+#include "oracle/joint.hpp"
 
 namespace catena::oracle {
 
@@ -25,7 +25,8 @@ std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
     auto const x = [&](std::size_t k) { return lift<S>(b.position[k]); };
     auto const v = [&](std::size_t k) { return lift<S>(b.velocity[k]); };
     if (chain.base == Base::fixed) links[0] = bead_link(x(0) - lift<S>(b.anchor), v(0));
-    for (std::size_t k = 1; k < b.size(); ++k) links[k] = bead_link(x(k) - x(k - 1), v(k) - v(k - 1));
+    for (std::size_t k = 1; k < b.size(); ++k)
+        links[k] = bead_link(x(k) - x(k - 1), v(k) - v(k - 1));
     std::size_t const last = b.size() - 1;
     if (chain.is_ring())
         links.push_back(bead_link(x(0) - x(last), v(0) - v(last)));
@@ -38,7 +39,8 @@ template <class S>
 V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
     V3<S> const weight = S(chain.beads.mass[k]) * lift<S>(loads.gravity);
     V3<S> const drag = S(loads.linear_drag) * lift<S>(chain.beads.velocity[k]);
-    return loads.bead_forces.empty() ? weight - drag : weight + lift<S>(loads.bead_forces[k]) - drag;
+    return loads.bead_forces.empty() ? weight - drag
+                                     : weight + lift<S>(loads.bead_forces[k]) - drag;
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): S is a type

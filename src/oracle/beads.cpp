@@ -1,10 +1,11 @@
 #include <string>
 
-#include "oracle/joint.hpp"
 #include "error.hpp"
+#include "oracle/joint.hpp"
 
-// Articulated masses of point beads on rigid links: a bead and everything outboard of it answers the force lambda u of its
-// inboard link by M a + p = lambda u. The link pushes the inboard bead with -lambda u; the tension is -lambda.
+// Articulated masses of point beads on rigid links: a bead and everything outboard of it answers
+// the force lambda u of its inboard link by M a + p = lambda u. The link pushes the inboard bead
+// with -lambda u; the tension is -lambda.
 namespace catena::oracle {
 namespace {
 
@@ -19,16 +20,19 @@ template <class S>
 Cholesky<S, 3> factor(ArticulatedBead<S> const& bead, std::size_t k) {
     Cholesky<S, 3> const f(bead.mass);
     if (!f.definite())
-        throw ComputationError("articulated mass is not positive definite (bead " + std::to_string(k + 1) + "): check the beads' masses");
+        throw ComputationError("articulated mass is not positive definite (bead " +
+                               std::to_string(k + 1) + "): check the beads' masses");
     return f;
 }
 
 /// The chain without its tip link, under `forces`.
 template <class S>
-OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> const& links, std::vector<V3<S>> const& forces) {
+OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> const& links,
+                           std::vector<V3<S>> const& forces) {
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
     std::vector<ArticulatedBead<S>> beads(n);
-    for (std::size_t k = 0; k < n; ++k) beads[k] = {scaled(S(chain.beads.mass[k]), M3<S>::identity()), -forces[k], S(0), S(0)};
+    for (std::size_t k = 0; k < n; ++k)
+        beads[k] = {scaled(S(chain.beads.mass[k]), M3<S>::identity()), -forces[k], S(0), S(0)};
     for (std::size_t k = n; k-- > first;) {
         V3<S> const& u = links[k].direction;
         V3<S> const softness = factor(beads[k], k).solve(u);
@@ -36,13 +40,16 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
         beads[k].drive = dot(softness, beads[k].bias);
         if (k == 0) break;
         beads[k - 1].mass = plus_outer(beads[k - 1].mass, S(S(1) / beads[k].compliance), u, u);
-        beads[k - 1].bias = plus_scaled(beads[k - 1].bias, S((links[k].closure + beads[k].drive) / beads[k].compliance), u);
+        beads[k - 1].bias = plus_scaled(
+            beads[k - 1].bias, S((links[k].closure + beads[k].drive) / beads[k].compliance), u);
     }
     OracleResult<S> result;
     V3<S> a = V3<S>::zero();
     for (std::size_t k = 0; k < n; ++k) {
         V3<S> const& u = links[k].direction;
-        S const lambda = k < first ? S(0) : S((links[k].closure + beads[k].drive + dot(u, a)) / beads[k].compliance);
+        S const lambda =
+            k < first ? S(0)
+                      : S((links[k].closure + beads[k].drive + dot(u, a)) / beads[k].compliance);
         a = factor(beads[k], k).solve(lambda * u - beads[k].bias);
         result.com_acceleration.push_back(a);
         result.tension.push_back(-lambda);
@@ -53,10 +60,12 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
 /// Acceleration of the last bead against what its tip's link joins it to.
 template <class S>
 V3<S> apart_at_tip(ChainSpec const& chain, OracleResult<S> const& r) {
-    return chain.is_ring() ? r.com_acceleration.back() - r.com_acceleration.front() : r.com_acceleration.back();
+    return chain.is_ring() ? r.com_acceleration.back() - r.com_acceleration.front()
+                           : r.com_acceleration.back();
 }
 
-/// How the last bead yields along u to a unit force along u, in a ring with the opposite force on the first.
+/// How the last bead yields along u to a unit force along u, in a ring with the opposite force on
+/// the first.
 template <class S>
 S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
     V3<S> const u = links.back().direction;
@@ -66,7 +75,8 @@ S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
     if (chain.is_ring()) push.front() = -u;
     S const yields = dot(u, apart_at_tip(chain, open_chain(chain, links, push)));
     if (!(yields > S(0)))
-        throw ComputationError("the tip link has nothing to give (bead " + std::to_string(chain.size()) +
+        throw ComputationError("the tip link has nothing to give (bead " +
+                               std::to_string(chain.size()) +
                                "): a chain stretched straight between its ends has no answer");
     return yields;
 }
@@ -76,7 +86,8 @@ S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
 template <class S>
 OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
     std::vector<BeadLink<S>> links = read_bead_links<S>(chain);
-    for (std::size_t k = 0; k < loads.link_gaps.size(); ++k) links[k].closure += S(loads.link_gaps[k]);
+    for (std::size_t k = 0; k < loads.link_gaps.size(); ++k)
+        links[k].closure += S(loads.link_gaps[k]);
     std::vector<V3<S>> forces;
     for (std::size_t k = 0; k < chain.size(); ++k) forces.push_back(bead_force<S>(chain, loads, k));
     OracleResult<S> result = open_chain(chain, links, forces);

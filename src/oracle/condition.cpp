@@ -5,7 +5,8 @@
 namespace catena::oracle {
 namespace {
 
-/// First row of each body's freedoms; behind the last, the number of freedoms. A free base's linear part comes first.
+/// First row of each body's freedoms; behind the last, the number of freedoms. A free base's linear
+/// part comes first.
 template <class S>
 std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
     Index dof = !links.empty() && links[0].type == JointType::free ? 3 : 0;
@@ -18,11 +19,14 @@ std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
     return first;
 }
 
-/// Joint-space inertia: column j holds the joint forces that a unit acceleration of freedom j needs, at rest and unloaded.
+/// Joint-space inertia: column j holds the joint forces that a unit acceleration of freedom j
+/// needs, at rest and unloaded.
 template <class S>
 Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
     std::vector<Link<S>> links = read_links<S>(chain, loads);
-    for (Link<S>& link : links) link.rate = link.slide = link.drift = link.applied_torque = link.applied_force = V3<S>::zero();
+    for (Link<S>& link : links)
+        link.rate = link.slide = link.drift = link.applied_torque = link.applied_force =
+            V3<S>::zero();
     std::vector<Index> const first = freedoms(links);
     Inverse<S> const inverse(links, V3<S>::zero());
     Dense<S> inertia(first.back(), first.back());
@@ -31,12 +35,15 @@ Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
         V3<S> base = V3<S>::zero();
         for (Index i = 0; i < first[0]; ++i) base[static_cast<int>(i)] = S(i == j ? 1 : 0);
         for (std::size_t k = 0; k < links.size(); ++k)
-            for (Index i = first[k]; i < first[k + 1]; ++i) qdd[k][static_cast<int>(i - first[k])] = S(i == j ? 1 : 0);
+            for (Index i = first[k]; i < first[k + 1]; ++i)
+                qdd[k][static_cast<int>(i - first[k])] = S(i == j ? 1 : 0);
         std::vector<InverseBody<S>> const bodies = inverse(qdd, base);
-        for (Index i = 0; i < first[0]; ++i) inertia(i, j) = bodies[0].force.sum[static_cast<int>(i)];
+        for (Index i = 0; i < first[0]; ++i)
+            inertia(i, j) = bodies[0].force.sum[static_cast<int>(i)];
         for (std::size_t k = 0; k < links.size(); ++k) {
             V3<S> const effort = inverse.needed(k, bodies[k]);
-            for (Index i = first[k]; i < first[k + 1]; ++i) inertia(i, j) = effort[static_cast<int>(i - first[k])];
+            for (Index i = first[k]; i < first[k + 1]; ++i)
+                inertia(i, j) = effort[static_cast<int>(i - first[k])];
         }
     }
     return inertia;
@@ -55,7 +62,8 @@ Dense<S> bead_link_matrix(ChainSpec const& chain) {
         if (k == n) continue;
         S const mobility = S(1) / S(chain.beads.mass[k]);
         t(i, i) += mobility;
-        if (i + 1 < count) t(i, i + 1) = t(i + 1, i) = -mobility * dot(links[k].direction, links[k + 1].direction);
+        if (i + 1 < count)
+            t(i, i + 1) = t(i + 1, i) = -mobility * dot(links[k].direction, links[k + 1].direction);
     }
     return t;
 }
@@ -82,8 +90,10 @@ double condition_estimate(ChainSpec const& chain, Loads const& loads) {
                             : chain.is_linked() ? linked_matrix<double>(chain)
                                                 : joint_space_inertia<double>(chain, loads);
     if (m.rows() == 0) return 1;
-    Eigen::SelfAdjointEigenSolver<Dense<double>> const eigen((m + m.transpose()) / 2, Eigen::EigenvaluesOnly);
-    double const largest = eigen.eigenvalues().maxCoeff(), smallest = eigen.eigenvalues().minCoeff();
+    Eigen::SelfAdjointEigenSolver<Dense<double>> const eigen((m + m.transpose()) / 2,
+                                                             Eigen::EigenvaluesOnly);
+    double const largest = eigen.eigenvalues().maxCoeff(),
+                 smallest = eigen.eigenvalues().minCoeff();
     return largest / std::max(smallest, largest * Eigen::NumTraits<double>::epsilon());
 }
 

@@ -2,17 +2,19 @@
 
 #include "oracle/system.hpp"
 
-// Newton's and Euler's equations of every body beside the second time derivative of every joint's closure, all in ground
-// axes about the centres of mass, as one linear system for the accelerations and the joint forces.
+// Newton's and Euler's equations of every body beside the second time derivative of every joint's
+// closure, all in ground axes about the centres of mass, as one linear system for the accelerations
+// and the joint forces.
 namespace catena::oracle {
 namespace {
 
 /// Body k and its inboard joint in ground axes.
 template <class S>
 struct Body {
-    M3<S> orientation;              // B to W
-    V3<S> omega, to_inboard;        // to_inboard: from com to the body's origin, where the joint acts
-    Motion<S> closure;              // relative acceleration across the joint that its coordinates' q'' do not give
+    M3<S> orientation;        // B to W
+    V3<S> omega, to_inboard;  // to_inboard: from com to the body's origin, where the joint acts
+    Motion<S>
+        closure;  // relative acceleration across the joint that its coordinates' q'' do not give
     SpatialForce<S> given;          // of the joint along its coordinates
     std::vector<Motion<S>> locked;  // directions of the constraint wrench
     Index motion = 0, joint = 0;    // first rows of [a; alpha] and of the constraint's components
@@ -26,7 +28,8 @@ Motion<S> rotated(M3<S> const& r, Motion<S> const& m) {
 template <class S>
 class Assembly {
   public:
-    Assembly(ChainSpec const& chain, Loads const& loads) : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
+    Assembly(ChainSpec const& chain, Loads const& loads)
+        : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
         size_ = 6 * static_cast<Index>(links_.size());
         attitude_ = attitudes(links_);
         for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -80,9 +83,12 @@ class Assembly {
         }
         if (tip_) {
             std::vector<S> components;
-            for (std::size_t i = 0; i < tip_->locked.size(); ++i) components.push_back(x[tip_joint_.joint + static_cast<Index>(i)]);
+            for (std::size_t i = 0; i < tip_->locked.size(); ++i)
+                components.push_back(x[tip_joint_.joint + static_cast<Index>(i)]);
             result.tip_force = tip_wrench(*tip_, components, tip_->frame);
-            if (tip_->ring) result.joint_force[0] = result.constraint_force[0] = wrench_on_first(*tip_, components, V3<S>::zero());
+            if (tip_->ring)
+                result.joint_force[0] = result.constraint_force[0] =
+                    wrench_on_first(*tip_, components, V3<S>::zero());
         }
         return result;
     }
@@ -90,9 +96,12 @@ class Assembly {
   private:
     void add_joint(std::size_t k, Body<S>& b) {
         Link<S> const& link = links_[k];
-        V3<S> const inboard = k == 0 ? V3<S>::zero() : bodies_[k - 1].omega, slide = b.orientation * link.slide;
-        b.closure = {cross(inboard, b.orientation * link.rate) + b.orientation * link.drift, S(2) * cross(inboard, slide)};
-        if (link.driven) b.closure = b.closure + rotated(b.orientation, along(link, link.prescribed));
+        V3<S> const inboard = k == 0 ? V3<S>::zero() : bodies_[k - 1].omega,
+                    slide = b.orientation * link.slide;
+        b.closure = {cross(inboard, b.orientation * link.rate) + b.orientation * link.drift,
+                     S(2) * cross(inboard, slide)};
+        if (link.driven)
+            b.closure = b.closure + rotated(b.orientation, along(link, link.prescribed));
         b.closure = b.closure + rotated(b.orientation, link.gap);
         SpatialForce<S> const given = spread(link, link.effort);
         b.given = {b.orientation * given.torque, b.orientation * given.force};
@@ -109,7 +118,9 @@ class Assembly {
     }
 
     /// From the centre of mass of joint k's inboard body to the joint.
-    V3<S> to_outboard(std::size_t k) const { return bodies_[k - 1].orientation * (links_[k].translation - links_[k - 1].com); }
+    V3<S> to_outboard(std::size_t k) const {
+        return bodies_[k - 1].orientation * (links_[k].translation - links_[k - 1].com);
+    }
 
     void add_body(std::size_t k, System<S>& s) const {
         Body<S> const& b = bodies_[k];
@@ -126,8 +137,10 @@ class Assembly {
         s.add(b.motion + 3, -next.torque - cross(to_outboard(k + 1), next.force));
     }
 
-    /// One end of a joint: `arm` from the body's centre of mass to the joint; sign +1 on the outboard body, -1 on the inboard.
-    void add_joint_end(Body<S> const& body, V3<S> const& arm, Body<S> const& joint, S sign, System<S>& s) const {
+    /// One end of a joint: `arm` from the body's centre of mass to the joint; sign +1 on the
+    /// outboard body, -1 on the inboard.
+    void add_joint_end(Body<S> const& body, V3<S> const& arm, Body<S> const& joint, S sign,
+                       System<S>& s) const {
         V3<S> const centripetal = cross(body.omega, cross(body.omega, arm));
         Index row = joint.joint;
         for (Motion<S> const& d : joint.locked) {
@@ -139,7 +152,8 @@ class Assembly {
     void add_closure(Body<S> const& joint, System<S>& s) const {
         Index row = joint.joint;
         for (Motion<S> const& d : joint.locked)
-            s.right[row++] += dot(d.angular, joint.closure.angular) + dot(d.linear, joint.closure.linear);
+            s.right[row++] +=
+                dot(d.angular, joint.closure.angular) + dot(d.linear, joint.closure.linear);
     }
 
     SpatialForce<S> constraint(Body<S> const& joint, Column<S> const& x) const {
@@ -166,8 +180,10 @@ class Assembly {
             Motion<S> const inboard = at_point(bodies_[k - 1], to_outboard(k), x);
             relative = {relative.angular - inboard.angular, relative.linear - inboard.linear};
         }
-        V3<S> const angular = relative.angular - b.closure.angular, linear = relative.linear - b.closure.linear;
-        return coordinates(links_[k], Motion<S>{transposed_times(b.orientation, angular), transposed_times(b.orientation, linear)});
+        V3<S> const angular = relative.angular - b.closure.angular,
+                    linear = relative.linear - b.closure.linear;
+        return coordinates(links_[k], Motion<S>{transposed_times(b.orientation, angular),
+                                                transposed_times(b.orientation, linear)});
     }
 
     std::vector<Link<S>> links_;

@@ -12,7 +12,15 @@ struct NumTraits<catena::oracle::Quad> : GenericNumTraits<double> {
     using NonInteger = catena::oracle::Quad;
     using Nested = catena::oracle::Quad;
     using Literal = catena::oracle::Quad;
-    enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 2, AddCost = 40, MulCost = 40 };
+    enum {
+        IsComplex = 0,
+        IsInteger = 0,
+        IsSigned = 1,
+        RequireInitialization = 0,
+        ReadCost = 2,
+        AddCost = 40,
+        MulCost = 40
+    };
     static Real epsilon() { return Real::epsilon(); }
     static Real dummy_precision() { return Real(0x1p-104); }
     static int digits10() { return 33; }

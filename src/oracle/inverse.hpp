@@ -1,4 +1,5 @@
-// Inside the oracles: recursive Newton-Euler inverse dynamics in ground axes (Featherstone 2008, section 5.3).
+// Inside the oracles: recursive Newton-Euler inverse dynamics in ground axes (Featherstone 2008,
+// section 5.3).
 #pragma once
 
 #include <algorithm>
@@ -21,56 +22,68 @@ struct Balance {
 template <class S>
 struct InverseBody {
     V3<S> omega, alpha, com_acceleration;  // W
-    V3<S> to_com, from_inboard;            // from the body's origin; from the inboard body's origin to it, W
-    Balance<S> force, torque;              // through the inboard joint, W, about its centre
+    V3<S> to_com, from_inboard;  // from the body's origin; from the inboard body's origin to it, W
+    Balance<S> force, torque;    // through the inboard joint, W, about its centre
 };
 
 template <class S>
 class Inverse {
   public:
-    Inverse(std::vector<Link<S>> const& links, V3<S> const& gravity) : links_(links), attitude_(attitudes(links)), gravity_(gravity) {}
+    Inverse(std::vector<Link<S>> const& links, V3<S> const& gravity)
+        : links_(links), attitude_(attitudes(links)), gravity_(gravity) {}
 
-    /// Joint wrenches that the accelerations need; `qdd` and `base_acceleration` as in OracleResult.
-    std::vector<InverseBody<S>> operator()(std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration) const {
+    /// Joint wrenches that the accelerations need; `qdd` and `base_acceleration` as in
+    /// OracleResult.
+    std::vector<InverseBody<S>> operator()(std::vector<V3<S>> const& qdd,
+                                           V3<S> const& base_acceleration) const {
         std::vector<InverseBody<S>> bodies(links_.size());
         forward(qdd, base_acceleration, bodies);
         for (std::size_t k = links_.size(); k-- > 0;) backward(k, bodies);
         return bodies;
     }
 
-    /// Wrenches at the last and first bodies' centres of mass beside their own loads, W: a jointed tip's.
+    /// Wrenches at the last and first bodies' centres of mass beside their own loads, W: a jointed
+    /// tip's.
     void push_ends(SpatialForce<S> const& last, SpatialForce<S> const& first) {
         pushed_ = last;
         pushed_first_ = first;
     }
 
     /// Components in body k's axes of a vector given in W.
-    V3<S> in_body(std::size_t k, V3<S> const& v) const { return transposed_times(attitude_[k].orientation, v); }
+    V3<S> in_body(std::size_t k, V3<S> const& v) const {
+        return transposed_times(attitude_[k].orientation, v);
+    }
     /// What the accelerations need along the coordinates of joint k.
     V3<S> needed(std::size_t k, InverseBody<S> const& b) const {
-        return efforts(links_[k], SpatialForce<S>{in_body(k, b.torque.sum), in_body(k, b.force.sum)});
+        return efforts(links_[k],
+                       SpatialForce<S>{in_body(k, b.torque.sum), in_body(k, b.force.sum)});
     }
 
   private:
-    void forward(std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration, std::vector<InverseBody<S>>& bodies) const {
+    void forward(std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration,
+                 std::vector<InverseBody<S>>& bodies) const {
         M3<S> inboard = M3<S>::identity();
-        V3<S> omega = V3<S>::zero(), alpha = omega, linear = omega;  // of the inboard body; linear: its origin's acceleration
+        V3<S> omega = V3<S>::zero(), alpha = omega,
+              linear = omega;  // of the inboard body; linear: its origin's acceleration
         for (std::size_t k = 0; k < links_.size(); ++k) {
             Link<S> const& link = links_[k];
             InverseBody<S>& b = bodies[k];
             M3<S> const& r = attitude_[k].orientation;
             b.from_inboard = inboard * link.translation;  // the joint's shift included
-            linear = linear + cross(alpha, b.from_inboard) + cross(omega, cross(omega, b.from_inboard));
+            linear =
+                linear + cross(alpha, b.from_inboard) + cross(omega, cross(omega, b.from_inboard));
             if (link.type == JointType::free) linear = base_acceleration;
             Motion<S> const relative = along(link, qdd[k]);
-            if (link.type != JointType::free) linear = linear + S(2) * cross(omega, r * link.slide) + r * relative.linear;
+            if (link.type != JointType::free)
+                linear = linear + S(2) * cross(omega, r * link.slide) + r * relative.linear;
             alpha = alpha + r * (relative.angular + link.drift) + cross(omega, r * link.rate);
             omega = r * attitude_[k].omega;
             inboard = r;
             b.omega = omega;
             b.alpha = alpha;
             b.to_com = r * link.com;
-            b.com_acceleration = linear + cross(alpha, b.to_com) + cross(omega, cross(omega, b.to_com));
+            b.com_acceleration =
+                linear + cross(alpha, b.to_com) + cross(omega, cross(omega, b.to_com));
         }
     }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "oracle/rotations.hpp"
 #include "error.hpp"
+#include "oracle/rotations.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -22,16 +22,18 @@ V3<S> unit_direction(int i) {
 }
 
 template <class S>
-struct CourseAt {
+struct PrescribedMotionAt {
     S q, rate, acceleration;
 };
 template <class S>
-CourseAt<S> at(Course const& c, double time) {
+PrescribedMotionAt<S> at(PrescribedMotion const& c, double time) {
     using std::atan2;
     using std::cos;
     using std::sin;
-    S const t(time), turns = S(2) * S(atan2(S(0), S(-1))) * S(c.frequency), phase = turns * t + S(c.phase), a(c.amplitude);
-    return {S(c.offset) + S(c.rate) * t + a * S(sin(phase)), S(c.rate) + a * turns * S(cos(phase)), -a * turns * turns * S(sin(phase))};
+    S const t(time), turns = S(2) * S(atan2(S(0), S(-1))) * S(c.frequency),
+                     phase = turns * t + S(c.phase), a(c.amplitude);
+    return {S(c.offset) + S(c.rate) * t + a * S(sin(phase)), S(c.rate) + a * turns * S(cos(phase)),
+            -a * turns * turns * S(sin(phase))};
 }
 
 /// Coordinates and rates of joint k, by its course where it is driven.
@@ -43,12 +45,15 @@ struct JointState {
 template <class S>
 JointState<S> state_of(BodyArrays const& b, std::size_t k, double time, Link<S>& link) {
     JointState<S> state{{S(b.q[k][0]), S(b.q[k][1])}, lift<S>(b.qd[k])};
-    auto const by_body = [](DrivenJoint const& d, std::size_t body) { return static_cast<std::size_t>(d.body) < body; };
+    auto const by_body = [](DrivenJoint const& d, std::size_t body) {
+        return static_cast<std::size_t>(d.body) < body;
+    };
     auto const driven = std::lower_bound(b.driven.begin(), b.driven.end(), k, by_body);
     link.driven = driven != b.driven.end() && static_cast<std::size_t>(driven->body) == k;
     if (!link.driven) return state;
     for (int i = 0; i < 2; ++i) {
-        CourseAt<S> const course = at<S>(driven->course[static_cast<std::size_t>(i)], time);
+        PrescribedMotionAt<S> const course =
+            at<S>(driven->course[static_cast<std::size_t>(i)], time);
         state.q[static_cast<std::size_t>(i)] = course.q;
         state.rates[i] = course.rate;
         state.accelerations[i] = course.acceleration;
@@ -63,7 +68,8 @@ void read_springs(BodyArrays const& b, std::size_t k, JointState<S> const& state
     for (int i = 0; i < link.dof; ++i) {
         auto const at = static_cast<std::size_t>(i);
         S const stretch = state.q[at] - S(rest[at]);
-        link.effort[i] = S(entry(b.torque, k)[i]) - stiffness[i] * stretch - damping[i] * state.rates[i];
+        link.effort[i] =
+            S(entry(b.torque, k)[i]) - stiffness[i] * stretch - damping[i] * state.rates[i];
         link.spring_energy += stiffness[i] * stretch * stretch / S(2);
     }
 }
@@ -87,9 +93,12 @@ void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<
     bool const base = b.joint[k] == JointType::free;
     JointState<S> const state = state_of(b, k, loads.time, link);
     bool const ball = base || b.joint[k] == JointType::spherical;
-    if (base != (k == 0 && chain.base == Base::free) || (ball && link.driven) || (b.joint[k] == JointType::weld && link.driven))
-        throw ComputationError("a free joint beyond body 1, or a driven joint of a type that cannot be driven (joint " +
-                               std::to_string(k + 1) + "): choose another type");
+    if (base != (k == 0 && chain.base == Base::free) || (ball && link.driven) ||
+        (b.joint[k] == JointType::weld && link.driven))
+        throw ComputationError(
+            "a free joint beyond body 1, or a driven joint of a type that cannot be driven "
+            "(joint " +
+            std::to_string(k + 1) + "): choose another type");
     JointShape<S> shape{b.joint[k],
                         lift<S>(b.axis[k]),
                         lift<S>(entry(b.first_axis, k)),
@@ -104,7 +113,8 @@ void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<
     link.rate = velocity.angular;
     link.slide = base ? lift<S>(b.free_velocity) : velocity.linear;
     if (link.type == JointType::universal)
-        link.drift = S(state.rates[0] * state.rates[1]) * cross(link.free[0].angular, link.free[1].angular);
+        link.drift =
+            S(state.rates[0] * state.rates[1]) * cross(link.free[0].angular, link.free[1].angular);
     if (link.driven)
         for (int i = 0; i < link.dof; ++i) link.prescribed[i] = state.accelerations[i];
     else if (link.type == JointType::spherical)
@@ -115,12 +125,15 @@ void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<
 
 /// Forces of OpenMM's beads at the body's centre of mass.
 template <class S>
-void add_bead_forces(CarriedBeads const& beads, std::size_t k, Loads const& loads, M3<S> const& orientation, Link<S>& link) {
+void add_bead_forces(CarriedBeads const& beads, std::size_t k, Loads const& loads,
+                     M3<S> const& orientation, Link<S>& link) {
     if (loads.bead_forces.empty() || beads.offset.empty()) return;
-    for (auto i = static_cast<std::size_t>(beads.offset[k]); i < static_cast<std::size_t>(beads.offset[k + 1]); ++i) {
+    for (auto i = static_cast<std::size_t>(beads.offset[k]);
+         i < static_cast<std::size_t>(beads.offset[k + 1]); ++i) {
         V3<S> const force = lift<S>(loads.bead_forces[i]);
         link.applied_force = link.applied_force + force;
-        link.applied_torque = link.applied_torque + cross(orientation * (lift<S>(beads.position[i]) - link.com), force);
+        link.applied_torque = link.applied_torque +
+                              cross(orientation * (lift<S>(beads.position[i]) - link.com), force);
     }
 }
 
@@ -131,13 +144,17 @@ void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& l
         Link<S>& link = links[k];
         M3<S> const& r = attitude[k].orientation;
         auto const wrench = entry(b.wrench, k);
-        auto const drag = b.drag.empty() ? std::array<double, 2>{loads.linear_drag, loads.angular_drag} : b.drag[k];
-        V3<S> const omega = r * attitude[k].omega, velocity = attitude[k].velocity + cross(omega, r * link.com);
+        auto const drag = b.drag.empty()
+                              ? std::array<double, 2>{loads.linear_drag, loads.angular_drag}
+                              : b.drag[k];
+        V3<S> const omega = r * attitude[k].omega,
+                    velocity = attitude[k].velocity + cross(omega, r * link.com);
         link.applied_torque = lift<S>(wrench.first) - S(drag[1]) * omega;
         link.applied_force = lift<S>(wrench.second) - S(drag[0]) * velocity;
         add_bead_forces(b.carried, k, loads, r, link);
         auto const gap = entry(loads.gaps, k);
-        link.gap = {transposed_times(r, lift<S>(gap.first)), transposed_times(r, lift<S>(gap.second))};
+        link.gap = {transposed_times(r, lift<S>(gap.first)),
+                    transposed_times(r, lift<S>(gap.second))};
     }
 }
 
@@ -147,8 +164,10 @@ V3<S> over_gram(Link<S> const& link, V3<S> x) {
     Motion<S> const &p = link.free[0], &p2 = link.free[1];
     if (link.dof == 1) x[0] = x[0] / (dot(p.angular, p.angular) + dot(p.linear, p.linear));
     if (link.dof != 2) return x;
-    V3<S> const normal = cross(p.angular, p2.angular);  // both are rotations: Cramer's rule with |a1 x a2|^2
-    S const a = dot(p.angular, p.angular), b = dot(p.angular, p2.angular), c = dot(p2.angular, p2.angular), det = dot(normal, normal);
+    V3<S> const normal =
+        cross(p.angular, p2.angular);  // both are rotations: Cramer's rule with |a1 x a2|^2
+    S const a = dot(p.angular, p.angular), b = dot(p.angular, p2.angular),
+            c = dot(p2.angular, p2.angular), det = dot(normal, normal);
     return {{(c * x[0] - b * x[1]) / det, (a * x[1] - b * x[0]) / det, S(0)}};
 }
 
@@ -159,10 +178,14 @@ void place(JointShape<S> const& j, std::string const& where, Link<S>& link) {
     link.type = j.type;
     link.rotation = j.rotation;
     link.translation = j.translation;
-    V3<S> const axis =
-        link.type == JointType::spherical || link.type == JointType::weld || link.type == JointType::free ? V3<S>::zero() : unit(j.axis);
+    V3<S> const axis = link.type == JointType::spherical || link.type == JointType::weld ||
+                               link.type == JointType::free
+                           ? V3<S>::zero()
+                           : unit(j.axis);
     auto const turn = [&] { link.rotation = link.rotation * turn_about(axis, j.q[0]); };
-    auto const shift = [&](S by) { link.translation = link.translation + j.rotation * (by * axis); };
+    auto const shift = [&](S by) {
+        link.translation = link.translation + j.rotation * (by * axis);
+    };
     link.dof = 1;
     if (link.type == JointType::revolute) {
         turn();
@@ -183,12 +206,14 @@ void place(JointShape<S> const& j, std::string const& where, Link<S>& link) {
         link.dof = 2;
     } else if (link.type == JointType::spherical || link.type == JointType::free) {
         link.rotation = j.rotation * matrix(unit<S>(j.quaternion));
-        for (int i = 0; i < 3; ++i) link.free[static_cast<std::size_t>(i)].angular = unit_direction<S>(i);
+        for (int i = 0; i < 3; ++i)
+            link.free[static_cast<std::size_t>(i)].angular = unit_direction<S>(i);
         link.dof = 3;
     } else if (link.type == JointType::weld) {
         link.dof = 0;
     } else {
-        throw ComputationError("the oracles know no such joint between rigid bodies (" + where + "): choose another type");
+        throw ComputationError("the oracles know no such joint between rigid bodies (" + where +
+                               "): choose another type");
     }
 }
 
@@ -226,8 +251,10 @@ template <class S>
 std::vector<Motion<S>> restricted(Link<S> const& link) {
     std::vector<Motion<S>> d;
     V3<S> const none = V3<S>::zero();
-    bool const turns = !link.driven && link.type != JointType::weld && link.type != JointType::prismatic;
-    bool const shifts = !link.driven && (link.type == JointType::prismatic || link.type == JointType::helical);
+    bool const turns =
+        !link.driven && link.type != JointType::weld && link.type != JointType::prismatic;
+    bool const shifts =
+        !link.driven && (link.type == JointType::prismatic || link.type == JointType::helical);
     if (!turns)
         for (int i = 0; i < 3; ++i) d.push_back({unit_direction<S>(i), none});
     else if (link.dof == 1)
@@ -265,11 +292,14 @@ std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links) {
     std::vector<Attitude<S>> all;
     Attitude<S> a{M3<S>::identity(), V3<S>::zero(), V3<S>::zero(), V3<S>::zero()};
     for (Link<S> const& link : links) {
-        V3<S> const to_origin = a.orientation * link.translation, carried = cross(a.orientation * a.omega, to_origin);
+        V3<S> const to_origin = a.orientation * link.translation,
+                    carried = cross(a.orientation * a.omega, to_origin);
         a.origin = a.origin + to_origin;
         a.orientation = a.orientation * link.rotation;
         a.omega = transposed_times(link.rotation, a.omega) + link.rate;
-        a.velocity = link.type == JointType::free ? link.slide : a.velocity + carried + a.orientation * link.slide;
+        a.velocity = link.type == JointType::free
+                         ? link.slide
+                         : a.velocity + carried + a.orientation * link.slide;
         all.push_back(a);
     }
     return all;

@@ -33,7 +33,8 @@ Kinematics<S> of_bodies(ChainSpec const& chain, Loads const& loads) {
         result.com_position.push_back(position);
         result.com_velocity.push_back(velocity);
         result.omega.push_back(omega);
-        result.kinetic_energy += (link.mass * dot(velocity, velocity) + dot(at.omega, link.inertia * at.omega)) / S(2);
+        result.kinetic_energy +=
+            (link.mass * dot(velocity, velocity) + dot(at.omega, link.inertia * at.omega)) / S(2);
         result.potential_energy -= link.mass * dot(lift<S>(loads.gravity), position);
         result.spring_energy += link.spring_energy;
     }
@@ -52,7 +53,8 @@ Kinematics<S> of_linked(ChainSpec const& chain, Loads const& loads) {
         result.com_position.push_back(x);
         result.com_velocity.push_back(v);
         result.omega.push_back(body.omega);
-        result.kinetic_energy += (body.mass * dot(v, v) + dot(body.omega, body.inertia * body.omega)) / S(2);
+        result.kinetic_energy +=
+            (body.mass * dot(v, v) + dot(body.omega, body.inertia * body.omega)) / S(2);
         result.potential_energy -= body.mass * dot(lift<S>(loads.gravity), x);
     }
     return result;

@@ -45,7 +45,8 @@ void project_bodies(ChainSpec& chain, double time) {
         numbers.push_back(&number);
     };
     for (std::size_t k = 0; k < links.size(); ++k) {
-        for (int i = 0; i < links[k].unknown(); ++i) add(chain.bodies.qd[k][i], k, links[k].free[static_cast<std::size_t>(i)]);
+        for (int i = 0; i < links[k].unknown(); ++i)
+            add(chain.bodies.qd[k][i], k, links[k].free[static_cast<std::size_t>(i)]);
         if (links[k].type != JointType::free) continue;
         for (int i = 0; i < 3; ++i) {
             Motion<double> unit;
@@ -60,7 +61,8 @@ void project_bodies(ChainSpec& chain, double time) {
 
 /// Rates at which the links lengthen, by every component of every velocity.
 template <class Directions, class AddEnd>
-void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& chain, AddEnd const& add_end) {
+void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& chain,
+                   AddEnd const& add_end) {
     for (std::size_t k = first; k < links.size(); ++k) {
         if (k < chain.size()) add_end(k, k, std::size_t{0}, 1.0);
         if (k == chain.size() && chain.is_ring()) add_end(k, std::size_t{0}, std::size_t{0}, 1.0);
@@ -71,36 +73,47 @@ void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& 
 void project_beads(ChainSpec& chain) {
     std::vector<BeadLink<double>> const links = read_bead_links<double>(chain);
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
-    Dense<double> jacobian = Dense<double>::Zero(static_cast<Index>(links.size()), static_cast<Index>(3 * n));
+    Dense<double> jacobian =
+        Dense<double>::Zero(static_cast<Index>(links.size()), static_cast<Index>(3 * n));
     Column<double> velocity(static_cast<Index>(3 * n));
-    add_link_rows(links, first, chain, [&](std::size_t link, std::size_t k, std::size_t, double sign) {
-        for (int i = 0; i < 3; ++i) jacobian(static_cast<Index>(link), static_cast<Index>(3 * k) + i) = sign * links[link].direction[i];
-    });
+    add_link_rows(links, first, chain,
+                  [&](std::size_t link, std::size_t k, std::size_t, double sign) {
+                      for (int i = 0; i < 3; ++i)
+                          jacobian(static_cast<Index>(link), static_cast<Index>(3 * k) + i) =
+                              sign * links[link].direction[i];
+                  });
     for (Index i = 0; i < velocity.size(); ++i)
-        velocity[i] = chain.beads.velocity[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
+        velocity[i] =
+            chain.beads.velocity[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
     velocity += least_change(jacobian, jacobian * velocity);
     for (Index i = 0; i < velocity.size(); ++i)
-        chain.beads.velocity[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)] = velocity[i];
+        chain.beads.velocity[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)] =
+            velocity[i];
 }
 
 void project_linked(ChainSpec& chain) {
     LinkedModel<double> const model = read_linked<double>(chain, {});
     std::size_t const n = chain.size();
-    Dense<double> jacobian = Dense<double>::Zero(static_cast<Index>(model.links.size()), static_cast<Index>(6 * n));
+    Dense<double> jacobian =
+        Dense<double>::Zero(static_cast<Index>(model.links.size()), static_cast<Index>(6 * n));
     Column<double> velocity(static_cast<Index>(6 * n));
     auto const number = [&](Index i) -> double& {
         auto const k = static_cast<std::size_t>(i / 6);
         auto const c = static_cast<int>(i % 6);
         return c < 3 ? chain.linked.velocity[k][c] : chain.linked.omega[k][c - 3];
     };
-    add_link_rows(model.links, model.first, chain, [&](std::size_t link, std::size_t k, std::size_t end, double sign) {
-        LinkedBody<double> const& body = model.bodies[k];
-        Vec3 const &u = model.links[link].direction, lever = transposed_times(body.orientation, cross(body.end[end], u));
-        for (int i = 0; i < 3; ++i) {
-            jacobian(static_cast<Index>(link), static_cast<Index>(6 * k) + i) += sign * u[i];
-            jacobian(static_cast<Index>(link), static_cast<Index>(6 * k) + 3 + i) += sign * lever[i];
-        }
-    });
+    add_link_rows(
+        model.links, model.first, chain,
+        [&](std::size_t link, std::size_t k, std::size_t end, double sign) {
+            LinkedBody<double> const& body = model.bodies[k];
+            Vec3 const &u = model.links[link].direction,
+                       lever = transposed_times(body.orientation, cross(body.end[end], u));
+            for (int i = 0; i < 3; ++i) {
+                jacobian(static_cast<Index>(link), static_cast<Index>(6 * k) + i) += sign * u[i];
+                jacobian(static_cast<Index>(link), static_cast<Index>(6 * k) + 3 + i) +=
+                    sign * lever[i];
+            }
+        });
     for (Index i = 0; i < velocity.size(); ++i) velocity[i] = number(i);
     velocity += least_change(jacobian, jacobian * velocity);
     for (Index i = 0; i < velocity.size(); ++i) number(i) = velocity[i];
@@ -109,7 +122,8 @@ void project_linked(ChainSpec& chain) {
 }  // namespace
 
 void project_velocities(ChainSpec& chain, double time) {
-    for (int pass = 0; pass < 2 && chain.size() > 0; ++pass) {  // the second takes back the rounding of the first
+    for (int pass = 0; pass < 2 && chain.size() > 0;
+         ++pass) {  // the second takes back the rounding of the first
         if (chain.is_beads())
             project_beads(chain);
         else if (chain.is_linked())

@@ -1,4 +1,5 @@
-// A scalar of 113 bits for the oracles: wide enough to judge every other scalar by. Slow (software arithmetic).
+// A scalar of 113 bits for the oracles: wide enough to judge every other scalar by. Slow (software
+// arithmetic).
 #pragma once
 
 #include <cmath>
@@ -11,8 +12,9 @@ using QuadBits = __float128;
 using QuadBits = long double;  // IEEE quadruple where the compiler has no __float128 (64-bit ARM)
 #endif
 
-/// IEEE quadruple precision as a class, so that its functions are found by argument-dependent look-up and no compiler
-/// extension or run-time library beside libgcc is needed. sqrt, sin, cos and atan2 are good to a few units in the last place.
+/// IEEE quadruple precision as a class, so that its functions are found by argument-dependent
+/// look-up and no compiler extension or run-time library beside libgcc is needed. sqrt, sin, cos
+/// and atan2 are good to a few units in the last place.
 class Quad {
   public:
     Quad() = default;
@@ -57,19 +59,22 @@ inline bool isfinite(Quad x) { return x - x == Quad(0); }
 
 inline Quad sqrt(Quad x) {
     if (!(x > Quad(0))) return x;
-    Quad const s(std::sqrt(static_cast<long double>(x)));  // 64 bits, doubled by one step of Newton's iteration
+    Quad const s(std::sqrt(
+        static_cast<long double>(x)));  // 64 bits, doubled by one step of Newton's iteration
     return s + (x - s * s) / (s + s);
 }
 
 /// Reduces x to r in [-pi/4, pi/4] with x = r + quadrant pi/2. Precondition: |x| < 1e9.
 inline Quad reduce_angle(Quad x, int& quadrant) {
-    double const parts[] = {0x1.921fb54442d18p0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110, 0x1.4cf98e804177dp-164};  // pi/2
+    double const parts[] = {0x1.921fb54442d18p0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110,
+                            0x1.4cf98e804177dp-164};  // pi/2
     double const k = std::nearbyint(static_cast<double>(x) / parts[0]);
     for (double const part : parts) x -= Quad(k) * Quad(part);
     quadrant = static_cast<int>(static_cast<long long>(k) & 3);
     return x;
 }
-/// term + its successors, each -r^2 / (i (i + 1)) times the one before: the tail of the series of sine and cosine.
+/// term + its successors, each -r^2 / (i (i + 1)) times the one before: the tail of the series of
+/// sine and cosine.
 inline Quad alternating_series(Quad term, Quad r, int i) {
     Quad sum = term;
     Quad const r2 = r * r;
@@ -80,7 +85,8 @@ inline Quad alternating_series(Quad term, Quad r, int i) {
     return sum;
 }
 inline Quad sin_of_quadrant(Quad r, int quadrant) {
-    Quad const value = (quadrant & 1) ? alternating_series(Quad(1), r, 1) : alternating_series(r, r, 2);
+    Quad const value =
+        (quadrant & 1) ? alternating_series(Quad(1), r, 1) : alternating_series(r, r, 2);
     return (quadrant & 2) ? -value : value;
 }
 inline Quad sin(Quad x) {
@@ -95,8 +101,9 @@ inline Quad cos(Quad x) {
 }
 inline Quad atan2(Quad y, Quad x) {
     Quad const t(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
-    Quad const across = y * cos(t) - x * sin(t), along = x * cos(t) + y * sin(t);  // the direction turned back by t
-    return along > Quad(0) ? t + across / along : t;                               // tan d = d: d is below 2^-63
+    Quad const across = y * cos(t) - x * sin(t),
+               along = x * cos(t) + y * sin(t);       // the direction turned back by t
+    return along > Quad(0) ? t + across / along : t;  // tan d = d: d is below 2^-63
 }
 
 }  // namespace catena::oracle

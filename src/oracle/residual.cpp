@@ -1,6 +1,6 @@
+#include "error.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
-#include "error.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -10,24 +10,28 @@ S ratio(S error, S size) {
     return size > S(0) ? S(error / size) : S(0);
 }
 
-/// Along the coordinates of one joint: what is needed less what is given, over the largest term of its balance (a sliding
-/// coordinate: of the forces; a helical one: of both).
+/// Along the coordinates of one joint: what is needed less what is given, over the largest term of
+/// its balance (a sliding coordinate: of the forces; a helical one: of both).
 template <class S>
 S joint_residual(Link<S> const& link, V3<S> const& needed, InverseBody<S> const& body) {
     S size = norm(link.effort);
     if (norm(link.free[0].angular) > S(0)) size = std::max(size, body.torque.largest);
-    if (norm(link.free[0].linear) > S(0)) size = std::max(size, S(norm(link.free[0].linear) * body.force.largest));
+    if (norm(link.free[0].linear) > S(0))
+        size = std::max(size, S(norm(link.free[0].linear) * body.force.largest));
     return ratio(norm(needed - link.effort), size);
 }
 
-/// What is needed less what is given, along all coordinates and (free base) in the force balance of the whole.
+/// What is needed less what is given, along all coordinates and (free base) in the force balance of
+/// the whole.
 template <class S>
-std::vector<S> errors(std::vector<Link<S>> const& links, Inverse<S> const& inverse, std::vector<InverseBody<S>> const& bodies) {
+std::vector<S> errors(std::vector<Link<S>> const& links, Inverse<S> const& inverse,
+                      std::vector<InverseBody<S>> const& bodies) {
     std::vector<S> all;
     for (std::size_t k = 0; k < links.size(); ++k) {
         V3<S> const error = inverse.needed(k, bodies[k]) - links[k].effort;
         for (int i = 0; i < links[k].unknown(); ++i) all.push_back(error[i]);
-        for (int i = 0; i < 3 && links[k].type == JointType::free; ++i) all.push_back(bodies[k].force.sum[i]);
+        for (int i = 0; i < 3 && links[k].type == JointType::free; ++i)
+            all.push_back(bodies[k].force.sum[i]);
     }
     return all;
 }
@@ -39,12 +43,14 @@ Column<S> as_column(std::vector<S> const& values) {
 
 template <class S>
 void push(Inverse<S>& inverse, TipClosure<S> const& tip, std::vector<S> const& components) {
-    inverse.push_ends(tip_wrench(tip, components, V3<S>::zero()), wrench_on_first(tip, components, tip.first_arm));
+    inverse.push_ends(tip_wrench(tip, components, V3<S>::zero()),
+                      wrench_on_first(tip, components, tip.first_arm));
 }
 
 /// Components of the tip joint's wrench that fit the accelerations best.
 template <class S>
-std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& links, Inverse<S> inverse, std::vector<V3<S>> const& qdd,
+std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& links,
+                        Inverse<S> inverse, std::vector<V3<S>> const& qdd,
                         V3<S> const& base_acceleration) {
     auto const error = [&](std::vector<S> const& components) {
         push(inverse, tip, components);
@@ -59,7 +65,8 @@ std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& li
         response.col(static_cast<Index>(j)) = error(one) - open;
     }
     if (open.size() == 0 || none.empty()) return none;
-    // Differences of large numbers: a column below this is their rounding, of a component that no coordinate feels.
+    // Differences of large numbers: a column below this is their rounding, of a component that no
+    // coordinate feels.
     Eigen::ColPivHouseholderQR<Dense<S>> responses;
     responses.setThreshold(S(1e-9));
     Column<S> const found = responses.compute(response).solve(-open);
@@ -67,7 +74,8 @@ std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& li
 }
 
 template <class S>
-S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration) {
+S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& qdd,
+                     V3<S> const& base_acceleration) {
     std::vector<Link<S>> const links = read_links<S>(chain, loads);
     Inverse<S> inverse(links, lift<S>(loads.gravity));
     if (chain.tip == Tip::jointed) {
@@ -77,16 +85,21 @@ S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<
     std::vector<InverseBody<S>> const bodies = inverse(qdd, base_acceleration);
     S worst(0);
     for (std::size_t k = 0; k < links.size(); ++k) {
-        if (links[k].unknown() > 0) worst = std::max(worst, joint_residual(links[k], inverse.needed(k, bodies[k]), bodies[k]));
-        if (links[k].type == JointType::free) worst = std::max(worst, ratio(norm(bodies[k].force.sum), bodies[k].force.largest));
+        if (links[k].unknown() > 0)
+            worst =
+                std::max(worst, joint_residual(links[k], inverse.needed(k, bodies[k]), bodies[k]));
+        if (links[k].type == JointType::free)
+            worst = std::max(worst, ratio(norm(bodies[k].force.sum), bodies[k].force.largest));
     }
     return worst;
 }
 
-/// Balances of the beads from the last to the first, under a force `pushed` on the last; each but for what its link can take.
+/// Balances of the beads from the last to the first, under a force `pushed` on the last; each but
+/// for what its link can take.
 template <class S>
-std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& acceleration,
-                                      V3<S> const& pushed, std::vector<V3<S>>& left) {
+std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads,
+                                      std::vector<V3<S>> const& acceleration, V3<S> const& pushed,
+                                      std::vector<V3<S>>& left) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
     std::vector<Balance<S>> all;
     V3<S> outboard = -pushed;
@@ -106,7 +119,8 @@ std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads
 }
 
 template <class S>
-S residual_of_beads(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& acceleration) {
+S residual_of_beads(ChainSpec const& chain, Loads const& loads,
+                    std::vector<V3<S>> const& acceleration) {
     std::vector<V3<S>> left, with_unit;
     V3<S> pushed = V3<S>::zero();
     std::vector<Balance<S>> balances = bead_balances(chain, loads, acceleration, pushed, left);
@@ -123,24 +137,30 @@ S residual_of_beads(ChainSpec const& chain, Loads const& loads, std::vector<V3<S
         balances = bead_balances(chain, loads, acceleration, pushed, left);
     }
     S worst(0);
-    for (std::size_t i = 0; i < left.size(); ++i) worst = std::max(worst, ratio(norm(left[i]), balances[i].largest));
+    for (std::size_t i = 0; i < left.size(); ++i)
+        worst = std::max(worst, ratio(norm(left[i]), balances[i].largest));
     return worst;
 }
 
 }  // namespace
 
 template <class S>
-S rnea_residual(ChainSpec const& chain, Loads const& loads, std::vector<Vector<S, 3>> const& accelerations,
+S rnea_residual(ChainSpec const& chain, Loads const& loads,
+                std::vector<Vector<S, 3>> const& accelerations,
                 Vector<S, 3> const& base_acceleration) {
     if (chain.is_linked())
-        throw ComputationError("no inverse dynamics of linked bodies (" + chain.name + "): compare with the oracles' accelerations");
+        throw ComputationError("no inverse dynamics of linked bodies (" + chain.name +
+                               "): compare with the oracles' accelerations");
     return chain.is_beads() ? residual_of_beads(chain, loads, accelerations)
                             : residual_of_bodies(chain, loads, accelerations, base_acceleration);
 }
 
-template double rnea_residual<double>(ChainSpec const&, Loads const&, std::vector<V3<double>> const&, V3<double> const&);
-template long double rnea_residual<long double>(ChainSpec const&, Loads const&, std::vector<V3<long double>> const&,
+template double rnea_residual<double>(ChainSpec const&, Loads const&,
+                                      std::vector<V3<double>> const&, V3<double> const&);
+template long double rnea_residual<long double>(ChainSpec const&, Loads const&,
+                                                std::vector<V3<long double>> const&,
                                                 V3<long double> const&);
-template Quad rnea_residual<Quad>(ChainSpec const&, Loads const&, std::vector<V3<Quad>> const&, V3<Quad> const&);
+template Quad rnea_residual<Quad>(ChainSpec const&, Loads const&, std::vector<V3<Quad>> const&,
+                                  V3<Quad> const&);
 
 }  // namespace catena::oracle

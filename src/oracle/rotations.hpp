@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "oracle/algebra.hpp"
 #include "math/rotation.hpp"
+#include "oracle/algebra.hpp"
 
 namespace catena::oracle {
 
@@ -38,8 +38,8 @@ M3<S> turn_about(V3<S> const& axis, S angle) {
     return rodrigues(axis, S(sin(angle)), S(S(2) * half * half));
 }
 
-/// The rotation nearest to r, which is one to about double precision: Newton's iteration for the polar factor, so that the
-/// transpose is the inverse in wider scalars too.
+/// The rotation nearest to r, which is one to about double precision: Newton's iteration for the
+/// polar factor, so that the transpose is the inverse in wider scalars too.
 template <class S>
 M3<S> orthonormal(Mat3 const& r) {
     M3<S> m;
@@ -51,7 +51,8 @@ M3<S> orthonormal(Mat3 const& r) {
     return m;
 }
 
-/// Rotation vector (length at most pi) of rest^-1 q; its components are the same in B and in the rest frame.
+/// Rotation vector (length at most pi) of rest^-1 q; its components are the same in B and in the
+/// rest frame.
 template <class S>
 V3<S> deflection(Quaternion<S> const& rest, Quaternion<S> const& q) {
     using std::atan2;
@@ -66,8 +67,9 @@ V3<S> deflection(Quaternion<S> const& rest, Quaternion<S> const& q) {
     return s > S(0) ? S(S(2) * atan2(s, w) / s) * v : v;
 }
 
-/// Torque (B) of the potential 1/2 sum k_i e_i^2 in the rotation vector e, moment = K e: - J^-T K e with J^-1 the matrix of
-/// e' = J^-1(e) omega_B (inverse right Jacobian of the rotation group). For equal k_i it is - k e.
+/// Torque (B) of the potential 1/2 sum k_i e_i^2 in the rotation vector e, moment = K e: - J^-T K e
+/// with J^-1 the matrix of e' = J^-1(e) omega_B (inverse right Jacobian of the rotation group). For
+/// equal k_i it is - k e.
 template <class S>
 V3<S> spring_torque(V3<S> const& e, V3<S> const& moment) {
     using std::cos;

@@ -10,7 +10,8 @@ namespace catena::oracle {
 
 template <class S>
 struct System {
-    explicit System(Index size) : matrix(Dense<S>::Zero(size, size)), right(Column<S>::Zero(size)) {}
+    explicit System(Index size)
+        : matrix(Dense<S>::Zero(size, size)), right(Column<S>::Zero(size)) {}
     void add(Index row, Index column, M3<S> const& m) {
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) matrix(row + i, column + j) += m(i, j);
@@ -18,7 +19,8 @@ struct System {
     void add(Index row, V3<S> const& v) {
         for (int i = 0; i < 3; ++i) right[row + i] += v[i];
     }
-    /// A constraint of the acceleration at rows `motion` .. + 2: `direction` . a in row `row`, and its force along it.
+    /// A constraint of the acceleration at rows `motion` .. + 2: `direction` . a in row `row`, and
+    /// its force along it.
     void add_constraint(Index motion, Index row, S sign, V3<S> const& direction) {
         for (int i = 0; i < 3; ++i) {
             matrix(motion + i, row) -= sign * direction[i];

@@ -10,7 +10,8 @@ namespace {
 /// A link with nothing that moves or pushes it: what is left answers to applied forces linearly.
 template <class S>
 Link<S> silent(Link<S> link) {
-    link.rate = link.slide = link.drift = link.prescribed = link.effort = link.applied_torque = link.applied_force = V3<S>::zero();
+    link.rate = link.slide = link.drift = link.prescribed = link.effort = link.applied_torque =
+        link.applied_force = V3<S>::zero();
     link.gap = {};
     return link;
 }
@@ -19,7 +20,8 @@ Link<S> silent(Link<S> link) {
 template <class S>
 class OpenChain {
   public:
-    OpenChain(ChainSpec const& chain, Loads const& loads) : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
+    OpenChain(ChainSpec const& chain, Loads const& loads)
+        : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
         std::vector<Attitude<S>> const attitude = attitudes(links_);
         tip_ = read_tip(chain, links_, attitude);
         omega_ = attitude.back().orientation * attitude.back().omega;
@@ -27,19 +29,25 @@ class OpenChain {
         for (Link<S> const& link : links_) silent_.push_back(silent(link));
     }
     TipClosure<S> const& tip() const { return tip_; }
-    OracleResult<S> solve(std::vector<S> const& components) const { return aba_links(pushed(links_, components), gravity_); }
-    Column<S> defect(OracleResult<S> const& r) const { return as_column(tip_, omega_, first_omega_, r); }
+    OracleResult<S> solve(std::vector<S> const& components) const {
+        return aba_links(pushed(links_, components), gravity_);
+    }
+    Column<S> defect(OracleResult<S> const& r) const {
+        return as_column(tip_, omega_, first_omega_, r);
+    }
     /// Minus the change of `defect` for a unit of component j: symmetric, positive (semi)definite.
     Column<S> response(std::size_t j) const {
         std::vector<S> components(tip_.locked.size(), S(0));
         components[j] = S(1);
         TipClosure<S> still = tip_;
         still.closure = {};
-        return -as_column(still, V3<S>::zero(), V3<S>::zero(), aba_links(pushed(silent_, components), V3<S>::zero()));
+        return -as_column(still, V3<S>::zero(), V3<S>::zero(),
+                          aba_links(pushed(silent_, components), V3<S>::zero()));
     }
 
   private:
-    std::vector<Link<S>> pushed(std::vector<Link<S>> links, std::vector<S> const& components) const {
+    std::vector<Link<S>> pushed(std::vector<Link<S>> links,
+                                std::vector<S> const& components) const {
         SpatialForce<S> const f = tip_wrench(tip_, components, V3<S>::zero());
         links.back().applied_torque = links.back().applied_torque + f.torque;
         links.back().applied_force = links.back().applied_force + f.force;
@@ -48,9 +56,11 @@ class OpenChain {
         links.front().applied_force = links.front().applied_force + on_first.force;
         return links;
     }
-    static Column<S> as_column(TipClosure<S> const& tip, V3<S> const& omega, V3<S> const& first_omega, OracleResult<S> const& r) {
-        std::vector<S> const d = tip_defect<S>(tip, {r.com_acceleration.back(), r.alpha.back(), omega},
-                                               {r.com_acceleration.front(), r.alpha.front(), first_omega});
+    static Column<S> as_column(TipClosure<S> const& tip, V3<S> const& omega,
+                               V3<S> const& first_omega, OracleResult<S> const& r) {
+        std::vector<S> const d =
+            tip_defect<S>(tip, {r.com_acceleration.back(), r.alpha.back(), omega},
+                          {r.com_acceleration.front(), r.alpha.front(), first_omega});
         return Eigen::Map<Column<S> const>(d.data(), static_cast<Index>(d.size()));
     }
 
@@ -59,7 +69,8 @@ class OpenChain {
     TipClosure<S> tip_;
 };
 
-/// Rows and columns scaled to a unit diagonal: moments and forces then weigh alike when the rank is judged.
+/// Rows and columns scaled to a unit diagonal: moments and forces then weigh alike when the rank is
+/// judged.
 template <class S>
 class TipSystem {
   public:
@@ -78,7 +89,8 @@ class TipSystem {
         if (components.empty()) return;
         Column<S> const scaled = scale_.cwiseProduct(defect);
         Column<S> const x = lu_.solve(scaled);
-        for (Index i = 0; i < x.size(); ++i) components[static_cast<std::size_t>(i)] += scale_[i] * x[i];
+        for (Index i = 0; i < x.size(); ++i)
+            components[static_cast<std::size_t>(i)] += scale_[i] * x[i];
     }
 
   private:
@@ -89,7 +101,8 @@ class TipSystem {
 }  // namespace
 
 template <class S>
-TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links, std::vector<Attitude<S>> const& attitude) {
+TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links,
+                       std::vector<Attitude<S>> const& attitude) {
     TipJoint const& j = chain.tip_joint;
     Link<S> g;
     JointShape<S> const shape{j.type,
@@ -106,56 +119,70 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         g.rotation = transposed_times(last.orientation, first.orientation);
         g.translation = transposed_times(last.orientation, first.origin - last.origin);
         // The first axis in G, where it is not constant.
-        if (g.type == JointType::universal) g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
+        if (g.type == JointType::universal)
+            g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
     }
     M3<S> const axes = last.orientation * g.rotation;  // of G
     V3<S> const omega = last.orientation * last.omega, to_g = last.orientation * g.translation;
     V3<S> const com = last.orientation * links.back().com;
-    V3<S> const turning = j.ring ? first.orientation * first.omega : V3<S>::zero(), moving_g = j.ring ? first.velocity : V3<S>::zero();
-    Motion<S> const relative{transposed_times(axes, turning - omega),
-                             transposed_times(axes, moving_g - (last.velocity + cross(omega, to_g)))};
+    V3<S> const turning = j.ring ? first.orientation * first.omega : V3<S>::zero(),
+                moving_g = j.ring ? first.velocity : V3<S>::zero();
+    Motion<S> const relative{
+        transposed_times(axes, turning - omega),
+        transposed_times(axes, moving_g - (last.velocity + cross(omega, to_g)))};
     V3<S> const rates = coordinates(g, relative);
     Motion<S> const moving = along(g, rates);
-    TipClosure<S> tip{j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
+    TipClosure<S> tip{
+        j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
     if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
     V3<S> drift = V3<S>::zero();
-    if (g.type == JointType::universal) drift = S(rates[0] * rates[1]) * cross(g.free[0].angular, g.free[1].angular);
-    tip.closure = {cross(omega, axes * moving.angular) + axes * drift, S(2) * cross(omega, axes * moving.linear)};
-    for (Motion<S> const& d : restricted(g)) tip.locked.push_back({axes * d.angular, axes * d.linear});
+    if (g.type == JointType::universal)
+        drift = S(rates[0] * rates[1]) * cross(g.free[0].angular, g.free[1].angular);
+    tip.closure = {cross(omega, axes * moving.angular) + axes * drift,
+                   S(2) * cross(omega, axes * moving.linear)};
+    for (Motion<S> const& d : restricted(g))
+        tip.locked.push_back({axes * d.angular, axes * d.linear});
     return tip;
 }
 
 template <class S>
 std::vector<S> tip_defect(TipClosure<S> const& tip, TipEnd<S> const& last, TipEnd<S> const& first) {
     auto const at = [](TipEnd<S> const& end, V3<S> const& arm) {
-        return end.com_acceleration + cross(end.alpha, arm) + cross(end.omega, cross(end.omega, arm));
+        return end.com_acceleration + cross(end.alpha, arm) +
+               cross(end.omega, cross(end.omega, arm));
     };
-    V3<S> linear = at(last, tip.arm) + tip.closure.linear, angular = last.alpha + tip.closure.angular;
+    V3<S> linear = at(last, tip.arm) + tip.closure.linear,
+          angular = last.alpha + tip.closure.angular;
     if (tip.ring) {
         linear = linear - at(first, tip.first_arm);
         angular = angular - first.alpha;
     }
     std::vector<S> defect;
-    for (Motion<S> const& d : tip.locked) defect.push_back(dot(d.angular, angular) + dot(d.linear, linear));
+    for (Motion<S> const& d : tip.locked)
+        defect.push_back(dot(d.angular, angular) + dot(d.linear, linear));
     return defect;
 }
 
 template <class S>
-SpatialForce<S> tip_wrench(TipClosure<S> const& tip, std::vector<S> const& along_locked, V3<S> const& about) {
+SpatialForce<S> tip_wrench(TipClosure<S> const& tip, std::vector<S> const& along_locked,
+                           V3<S> const& about) {
     SpatialForce<S> f;
     for (std::size_t i = 0; i < along_locked.size(); ++i) {
         Motion<S> const& d = tip.locked[i];
-        f = f + SpatialForce<S>{-along_locked[i] * (d.angular + cross(tip.arm - about, d.linear)), -along_locked[i] * d.linear};
+        f = f + SpatialForce<S>{-along_locked[i] * (d.angular + cross(tip.arm - about, d.linear)),
+                                -along_locked[i] * d.linear};
     }
     return f;
 }
 
 template <class S>
-SpatialForce<S> wrench_on_first(TipClosure<S> const& tip, std::vector<S> const& along_locked, V3<S> const& arm) {
+SpatialForce<S> wrench_on_first(TipClosure<S> const& tip, std::vector<S> const& along_locked,
+                                V3<S> const& arm) {
     SpatialForce<S> f;
     for (std::size_t i = 0; i < along_locked.size() && tip.ring; ++i) {
         Motion<S> const& d = tip.locked[i];
-        f = f + SpatialForce<S>{along_locked[i] * (d.angular + cross(arm, d.linear)), along_locked[i] * d.linear};
+        f = f + SpatialForce<S>{along_locked[i] * (d.angular + cross(arm, d.linear)),
+                                along_locked[i] * d.linear};
     }
     return f;
 }
@@ -174,16 +201,22 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
         result = open.solve(components);
     }
     result.tip_force = tip_wrench(open.tip(), components, open.tip().frame);
-    if (open.tip().ring) result.joint_force[0] = result.constraint_force[0] = wrench_on_first(open.tip(), components, V3<S>::zero());
+    if (open.tip().ring)
+        result.joint_force[0] = result.constraint_force[0] =
+            wrench_on_first(open.tip(), components, V3<S>::zero());
     return result;
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): S is a type
-#define CATENA_ORACLE(S)                                                                                                \
-    template TipClosure<S> read_tip<S>(ChainSpec const&, std::vector<Link<S>> const&, std::vector<Attitude<S>> const&); \
-    template std::vector<S> tip_defect<S>(TipClosure<S> const&, TipEnd<S> const&, TipEnd<S> const&);                    \
-    template SpatialForce<S> tip_wrench<S>(TipClosure<S> const&, std::vector<S> const&, V3<S> const&);                  \
-    template SpatialForce<S> wrench_on_first<S>(TipClosure<S> const&, std::vector<S> const&, V3<S> const&);             \
+#define CATENA_ORACLE(S)                                                                     \
+    template TipClosure<S> read_tip<S>(ChainSpec const&, std::vector<Link<S>> const&,        \
+                                       std::vector<Attitude<S>> const&);                     \
+    template std::vector<S> tip_defect<S>(TipClosure<S> const&, TipEnd<S> const&,            \
+                                          TipEnd<S> const&);                                 \
+    template SpatialForce<S> tip_wrench<S>(TipClosure<S> const&, std::vector<S> const&,      \
+                                           V3<S> const&);                                    \
+    template SpatialForce<S> wrench_on_first<S>(TipClosure<S> const&, std::vector<S> const&, \
+                                                V3<S> const&);                               \
     template OracleResult<S> aba_with_tip<S>(ChainSpec const&, Loads const&);
 CATENA_ORACLE(double)
 CATENA_ORACLE(long double)

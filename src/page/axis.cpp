@@ -24,14 +24,16 @@ std::string power_of_ten(int exponent) {
     if (exponent == 0) return "1";
     std::string text = "10";
     for (char const c : std::to_string(exponent)) {
-        static constexpr char const* superscript[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+        static constexpr char const* superscript[] = {"⁰", "¹", "²", "³", "⁴",
+                                                      "⁵", "⁶", "⁷", "⁸", "⁹"};
         text += c == '-' ? "⁻" : superscript[c - '0'];
     }
     return text;
 }
 
 void write_labels(Axis& axis, double step) {
-    double const largest = std::max(std::abs(axis.ticks.front().value), std::abs(axis.ticks.back().value));
+    double const largest =
+        std::max(std::abs(axis.ticks.front().value), std::abs(axis.ticks.back().value));
     double const offset = largest > label_digits * step ? axis.ticks.front().value : 0;
     double const shown = offset == 0 ? largest : axis.ticks.back().value - offset;
     int exponent = shown > 0 ? static_cast<int>(std::floor(std::log10(shown) + 1e-9)) : 0;
@@ -40,15 +42,19 @@ void write_labels(Axis& axis, double step) {
     int const decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step / unit) + 1e-9)));
     for (Axis::Tick& tick : axis.ticks) {
         double const value = (tick.value - offset) / unit;
-        tick.label = fmt::format("{:.{}f}", std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value, decimals);
+        tick.label = fmt::format(
+            "{:.{}f}", std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value, decimals);
     }
     if (exponent != 0) axis.note = "× " + power_of_ten(exponent);
-    if (offset != 0) axis.note += fmt::format(" {} {:.10g}", offset < 0 ? "−" : "+", std::abs(offset));
+    if (offset != 0)
+        axis.note += fmt::format(" {} {:.10g}", offset < 0 ? "−" : "+", std::abs(offset));
 }
 
 }  // namespace
 
-double Axis::place(double value) const { return ((logarithmic ? std::log10(value) : value) - low) / (high - low); }
+double Axis::place(double value) const {
+    return ((logarithmic ? std::log10(value) : value) - low) / (high - low);
+}
 
 Axis linear_axis(double low, double high, double margin, int ticks) {
     double const smallest = std::max(1e-12 * std::max(std::abs(low), std::abs(high)), 1e-300);
@@ -63,7 +69,8 @@ Axis linear_axis(double low, double high, double margin, int ticks) {
     double const step = round_step(axis.high - axis.low, ticks);
     auto const first = static_cast<std::int64_t>(std::ceil(axis.low / step - 1e-9));
     auto const last = static_cast<std::int64_t>(std::floor(axis.high / step + 1e-9));
-    for (std::int64_t k = first; k <= last; ++k) axis.ticks.push_back({static_cast<double>(k) * step, ""});
+    for (std::int64_t k = first; k <= last; ++k)
+        axis.ticks.push_back({static_cast<double>(k) * step, ""});
     if (!axis.ticks.empty()) write_labels(axis, step);
     return axis;
 }
@@ -74,7 +81,8 @@ Axis logarithmic_axis(double low, double high) {
     axis.low = std::floor(std::log10(low));
     axis.high = std::max(axis.low + 1, std::ceil(std::log10(high)));
     int const each = 1 + static_cast<int>((axis.high - axis.low) / 7);
-    for (int power = static_cast<int>(axis.low); power <= static_cast<int>(axis.high); power += each)
+    for (int power = static_cast<int>(axis.low); power <= static_cast<int>(axis.high);
+         power += each)
         axis.ticks.push_back({std::pow(10.0, power), power_of_ten(power)});
     return axis;
 }

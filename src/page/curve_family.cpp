@@ -13,11 +13,14 @@
 namespace catena {
 namespace {
 
-constexpr double width = 760, height = 420, left = 66, right = 190, top = 40, bottom = 46, line_height = 18;
+constexpr double width = 760, height = 420, left = 66, right = 190, top = 40, bottom = 46,
+                 line_height = 18;
 constexpr double inner_width = width - left - right, inner_height = height - top - bottom;
 // Okabe and Ito's colours and two dark ones; with the marks no two of 45 curves look alike.
-constexpr char const* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255", "#332288", "#475569"};
-constexpr std::string_view marks[] = {"M-3.2,0a3.2,3.2 0 1,0 6.4,0a3.2,3.2 0 1,0 -6.4,0z", "M-3,-3h6v6h-6z", "M0,-4l3.7,6.6h-7.4z",
+constexpr char const* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
+                                   "#56b4e9", "#882255", "#332288", "#475569"};
+constexpr std::string_view marks[] = {"M-3.2,0a3.2,3.2 0 1,0 6.4,0a3.2,3.2 0 1,0 -6.4,0z",
+                                      "M-3,-3h6v6h-6z", "M0,-4l3.7,6.6h-7.4z",
                                       "M0,-4.3l3.4,4.3l-3.4,4.3l-3.4,-4.3z", "M0,4l3.7,-6.6h-7.4z"};
 constexpr std::string_view cross = "M-3,-3L3,3M-3,3L3,-3";
 
@@ -26,13 +29,14 @@ bool drawn(double x, double y) { return x > 0 && y > 0 && std::isfinite(x) && st
 char const* colour_of(std::size_t curve) { return colours[curve % std::size(colours)]; }
 
 std::string mark_at(std::size_t curve, double x, double y) {
-    return fmt::format("<path fill=\"{}\" transform=\"translate({:.1f},{:.1f})\" d=\"{}\"/>", colour_of(curve), x, y,
-                       marks[curve % std::size(marks)]);
+    return fmt::format("<path fill=\"{}\" transform=\"translate({:.1f},{:.1f})\" d=\"{}\"/>",
+                       colour_of(curve), x, y, marks[curve % std::size(marks)]);
 }
 /// A value that could not be resolved, on the axis.
 std::string gap_at(std::size_t curve, double x) {
     return fmt::format(
-        "<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" transform=\"translate({:.1f},{:.1f})\" d=\"{}\"><title>not "
+        "<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" "
+        "transform=\"translate({:.1f},{:.1f})\" d=\"{}\"><title>not "
         "resolved</title></path>",
         colour_of(curve), x, height - bottom, cross);
 }
@@ -56,31 +60,42 @@ std::string curve_family(CurveFamily const& family) {
             else if (std::isnan(curve.y[i]) && curve.x[i] > 0)
                 xs.add(curve.x[i]);
     std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\">\n"
-        "<style>text {{ fill: #1b2733; font: 12px system-ui, \"Segoe UI\", Roboto, Arial, sans-serif; }} .grid {{ stroke: #e9edf1; }} "
-        ".axis {{ stroke: #9aa8b5; }} polyline {{ fill: none; stroke-width: 1.8; stroke-linejoin: round; }}</style>\n"
-        "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n<text x=\"4\" y=\"14\" font-weight=\"600\">{2}</text>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+        "height=\"{1}\" role=\"img\">\n"
+        "<style>text {{ fill: #1b2733; font: 12px system-ui, \"Segoe UI\", Roboto, Arial, "
+        "sans-serif; }} .grid {{ stroke: #e9edf1; }} "
+        ".axis {{ stroke: #9aa8b5; }} polyline {{ fill: none; stroke-width: 1.8; stroke-linejoin: "
+        "round; }}</style>\n"
+        "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n<text x=\"4\" y=\"14\" "
+        "font-weight=\"600\">{2}</text>\n",
         width, height, escaped(family.title));
     if (ys.high == 0) return svg + "<text x=\"4\" y=\"40\">No values.</text></svg>\n";
-    Axis const x_axis = logarithmic_axis(xs.low, xs.high), y_axis = logarithmic_axis(ys.low, ys.high);
+    Axis const x_axis = logarithmic_axis(xs.low, xs.high),
+               y_axis = logarithmic_axis(ys.low, ys.high);
     auto const at_x = [&](double x) { return left + inner_width * x_axis.place(x); };
     auto const at_y = [&](double y) { return top + inner_height * (1 - y_axis.place(y)); };
     for (Axis::Tick const& tick : y_axis.ticks)
         svg += fmt::format(
-            "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text text-anchor=\"end\" x=\"{3}\" "
+            "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text "
+            "text-anchor=\"end\" x=\"{3}\" "
             "y=\"{4:.1f}\">{5}</text>\n",
             left, left + inner_width, at_y(tick.value), left - 8, at_y(tick.value) + 4, tick.label);
     for (Axis::Tick const& tick : x_axis.ticks)
         svg += fmt::format(
-            "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/><text text-anchor=\"middle\" x=\"{0:.1f}\" "
+            "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/><text "
+            "text-anchor=\"middle\" x=\"{0:.1f}\" "
             "y=\"{3}\">{4}</text>\n",
             at_x(tick.value), top, height - bottom, height - bottom + 18, tick.label);
-    svg += fmt::format("<line class=\"axis\" x1=\"{0}\" x2=\"{1}\" y1=\"{2}\" y2=\"{2}\"/>\n", left, left + inner_width, height - bottom);
-    svg += fmt::format("<text text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text><text x=\"4\" y=\"32\">{}</text>\n", left + inner_width / 2,
-                       height - 6, escaped(family.x_label), escaped(family.y_label));
+    svg += fmt::format("<line class=\"axis\" x1=\"{0}\" x2=\"{1}\" y1=\"{2}\" y2=\"{2}\"/>\n", left,
+                       left + inner_width, height - bottom);
+    svg += fmt::format(
+        "<text text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text><text x=\"4\" "
+        "y=\"32\">{}</text>\n",
+        left + inner_width / 2, height - 6, escaped(family.x_label), escaped(family.y_label));
     for (std::size_t i = 0; i < family.curves.size(); ++i) {
         NamedCurve const& curve = family.curves[i];
-        std::string const style = fmt::format("stroke=\"{}\"{}", colour_of(i), curve.dashed ? " stroke-dasharray=\"5 4\"" : "");
+        std::string const style = fmt::format("stroke=\"{}\"{}", colour_of(i),
+                                              curve.dashed ? " stroke-dasharray=\"5 4\"" : "");
         std::string lines, line, dots;
         auto const end_line = [&] {
             if (!line.empty()) lines += "<polyline " + style + " points=\"" + line + "\"/>";
@@ -92,16 +107,21 @@ std::string curve_family(CurveFamily const& family) {
                 end_line();
                 continue;
             }
-            if (curve.joined) line += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[k]), at_y(curve.y[k]));
+            if (curve.joined)
+                line += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[k]), at_y(curve.y[k]));
             if (curve.marked) dots += mark_at(i, at_x(curve.x[k]), at_y(curve.y[k]));
         }
         end_line();
-        double const y = top + 8 + line_height * static_cast<double>(i), x = left + inner_width + 12;
+        double const y = top + 8 + line_height * static_cast<double>(i),
+                     x = left + inner_width + 12;
         svg += lines;
         if (curve.joined)
-            svg += fmt::format("<line {} stroke-width=\"1.8\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/>", style, x, x + 22, y, y);
+            svg += fmt::format(
+                "<line {} stroke-width=\"1.8\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/>", style, x,
+                x + 22, y, y);
         if (curve.marked) svg += mark_at(i, x + 11, y);
-        svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", x + 28, y + 4, escaped(curve.name));
+        svg +=
+            fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", x + 28, y + 4, escaped(curve.name));
         svg += dots + (dots.empty() ? "" : "\n");
     }
     return svg + "</svg>\n";

@@ -8,7 +8,8 @@ namespace catena {
 
 struct NamedCurve {
     std::string name;
-    std::vector<double> x, y;  // of one length; what is not positive is a gap, NaN a gap with a cross on the axis
+    std::vector<double> x,
+        y;  // of one length; what is not positive is a gap, NaN a gap with a cross on the axis
     bool dashed = false;
     bool marked = false;  // every point by a mark of the curve's own shape
     bool joined = true;   // points by lines

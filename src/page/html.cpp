@@ -78,7 +78,8 @@ std::string readable_name(std::string_view key) {
     std::string name(key);
     for (char& c : name)
         if (c == '_') c = ' ';
-    if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+    if (!name.empty() && name[0] >= 'a' && name[0] <= 'z')
+        name[0] = static_cast<char>(name[0] - 'a' + 'A');
     return name;
 }
 
@@ -87,7 +88,8 @@ std::string readable_number(double value) { return fmt::format("{:.6g}", value);
 std::string html_page(std::string const& title, std::string const& body) {
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{}</style>\n</head>\n"
+        "<meta name=\"viewport\" content=\"width=device-width, "
+        "initial-scale=1\">\n<title>{}</title>\n<style>{}</style>\n</head>\n"
         "<body>\n<main>\n{}</main>\n</body>\n</html>\n",
         escaped(title), style, body);
 }

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
-#include "page/html.hpp"
-#include "page/line_chart.hpp"
 #include "io/observables_table.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
+#include "page/html.hpp"
+#include "page/line_chart.hpp"
 #include "page/summary_tables.hpp"
 #include "page/timeline_picture.hpp"
 
@@ -25,7 +25,8 @@ Json read_json(fs::path const& file) {
     try {
         return Json::parse(read_text_file(file.string()));
     } catch (Json::exception const& error) {
-        throw InputError("not JSON, " + std::string(error.what()), file.string(), "mend or remove the file");
+        throw InputError("not JSON, " + std::string(error.what()), file.string(),
+                         "mend or remove the file");
     }
 }
 
@@ -43,48 +44,63 @@ std::string statistics(std::vector<double> const& values) {
     double const mean = count > 0 ? sum / count : 0;
     for (double const value : values)
         if (std::isfinite(value)) squares += (value - mean) * (value - mean);
-    std::string text = fmt::format("mean {}, standard deviation {}, last {}", readable_number(mean),
-                                   readable_number(count > 1 ? std::sqrt(squares / (count - 1)) : 0), readable_number(values.back()));
-    if (count < static_cast<double>(values.size())) text += fmt::format("; {} not finite", values.size() - static_cast<std::size_t>(count));
+    std::string text =
+        fmt::format("mean {}, standard deviation {}, last {}", readable_number(mean),
+                    readable_number(count > 1 ? std::sqrt(squares / (count - 1)) : 0),
+                    readable_number(values.back()));
+    if (count < static_cast<double>(values.size()))
+        text += fmt::format("; {} not finite", values.size() - static_cast<std::size_t>(count));
     return text;
 }
 
 /// A line that says nothing.
 bool is_constant(std::vector<double> const& values) {
-    return values.size() > 1 && std::all_of(values.begin(), values.end(), [&](double value) { return value == values[0]; });
+    return values.size() > 1 && std::all_of(values.begin(), values.end(),
+                                            [&](double value) { return value == values[0]; });
 }
 
 std::string charts(ObservablesTable const& table) {
     if (table.columns[0].empty()) return "<p>No record was written.</p>\n";
     auto const [time, time_unit] = name_and_unit(table.names[1]);
-    std::string const time_label = time_unit.empty() ? time : fmt::format("{} / {}", time, time_unit);
+    std::string const time_label =
+        time_unit.empty() ? time : fmt::format("{} / {}", time, time_unit);
     std::string html = "<div class=\"charts\">\n", constant;
     for (std::size_t k = 2; k < table.names.size(); ++k) {
         auto const [name, unit] = name_and_unit(table.names[k]);
         if (is_constant(table.columns[k])) {
-            constant += fmt::format("{}{}: {} {}", constant.empty() ? "" : ", ", escaped(readable_name(name)),
+            constant += fmt::format("{}{}: {} {}", constant.empty() ? "" : ", ",
+                                    escaped(readable_name(name)),
                                     readable_number(table.columns[k][0]), escaped(unit));
             continue;
         }
         Curve const curve{time_label, unit == "1" ? "" : unit, table.columns[1], table.columns[k]};
-        html += fmt::format("<figure>\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n", escaped(readable_name(name)),
-                            line_chart(curve), statistics(table.columns[k]));
+        html += fmt::format("<figure>\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n",
+                            escaped(readable_name(name)), line_chart(curve),
+                            statistics(table.columns[k]));
     }
-    return html + "</div>\n" + (constant.empty() ? "" : "<p>The same all the time: " + constant + ".</p>\n");
+    return html + "</div>\n" +
+           (constant.empty() ? "" : "<p>The same all the time: " + constant + ".</p>\n");
 }
 
 std::string files_in(fs::path const& folder) {
     static constexpr std::pair<char const*, char const*> known[] = {
-        {"trajectory.h5md", "trajectory (H5MD 1.1)"},    {"topology.pdb", "topology for the trajectory"},
-        {"topology.cif", "topology for the trajectory"}, {"observables.csv", "observables"},
-        {"checkpoint.h5", "checkpoint for --restart"},   {"checkpoint.previous.h5", "the checkpoint before"},
-        {"summary.json", "the numbers above"},           {"timeline.json", "phases of recorded steps"},
+        {"trajectory.h5md", "trajectory (H5MD 1.1)"},
+        {"topology.pdb", "topology for the trajectory"},
+        {"topology.cif", "topology for the trajectory"},
+        {"observables.csv", "observables"},
+        {"checkpoint.h5", "checkpoint for --restart"},
+        {"checkpoint.previous.h5", "the checkpoint before"},
+        {"summary.json", "the numbers above"},
+        {"timeline.json", "phases of recorded steps"},
         {"picture.png", "observables and conformation"}};
     std::string rows;
     for (auto const& [name, use] : known)
         if (fs::exists(folder / name))
-            rows += fmt::format("<tr><th><a href=\"{}\"><code>{}</code></a></th><td>{}</td></tr>\n", name, name, use);
-    return rows.empty() ? "" : "<h2>Files</h2>\n<section class=\"card files\">\n<table>\n" + rows + "</table>\n</section>\n";
+            rows += fmt::format("<tr><th><a href=\"{}\"><code>{}</code></a></th><td>{}</td></tr>\n",
+                                name, name, use);
+    return rows.empty() ? ""
+                        : "<h2>Files</h2>\n<section class=\"card files\">\n<table>\n" + rows +
+                              "</table>\n</section>\n";
 }
 
 std::string timeline_section(fs::path const& file) {
@@ -92,13 +108,15 @@ std::string timeline_section(fs::path const& file) {
         std::string const picture = timeline_picture(read_json(file));
         return picture.empty() ? "" : "<h2>One step</h2>\n" + picture;
     } catch (Json::exception const& error) {
-        throw InputError("not a timeline, " + std::string(error.what()), file.string(), "mend or remove the file");
+        throw InputError("not a timeline, " + std::string(error.what()), file.string(),
+                         "mend or remove the file");
     }
 }
 
 std::string title_of(Json const& summary, fs::path const& folder) {
     for (char const* key : {"title", "scene"})
-        if (summary.contains(key) && summary[key].is_string() && !summary[key].get<std::string>().empty())
+        if (summary.contains(key) && summary[key].is_string() &&
+            !summary[key].get<std::string>().empty())
             return summary[key].get<std::string>();
     return fs::absolute(folder).lexically_normal().filename().string();
 }
@@ -106,16 +124,20 @@ std::string title_of(Json const& summary, fs::path const& folder) {
 }  // namespace
 
 void write_run_report(std::string const& folder) {
-    fs::path const in(folder), summary_file = in / "summary.json", observables = in / "observables.csv", timeline = in / "timeline.json";
+    fs::path const in(folder), summary_file = in / "summary.json",
+                               observables = in / "observables.csv",
+                               timeline = in / "timeline.json";
     if (!fs::exists(summary_file) && !fs::exists(observables) && !fs::exists(timeline))
         throw InputError("nothing to report", folder, "name the folder of a run");
     Json summary = fs::exists(summary_file) ? read_json(summary_file) : Json::object();
-    if (!summary.is_object()) throw InputError("not an object", summary_file.string(), "mend or remove the file");
+    if (!summary.is_object())
+        throw InputError("not an object", summary_file.string(), "mend or remove the file");
     std::string const title = title_of(summary, in);
     std::string body = fmt::format("<h1>{}</h1>\n<p>A run of Catena</p>\n", escaped(title));
     summary.erase("files");  // they are listed with links at the end
     if (!summary.empty()) body += "<h2>Summary</h2>\n" + summary_tables(summary);
-    if (fs::exists(observables)) body += "<h2>Observables</h2>\n" + charts(read_observables(observables.string()));
+    if (fs::exists(observables))
+        body += "<h2>Observables</h2>\n" + charts(read_observables(observables.string()));
     if (fs::exists(timeline)) body += timeline_section(timeline);
     body += files_in(in);
     replace_text_file((in / "report.html").string(), html_page(title + " – Catena", body));

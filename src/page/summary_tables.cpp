@@ -13,7 +13,8 @@ constexpr std::size_t most_entries = 8, most_rows = 40, most_columns = 4, longes
 
 bool is_rows(Json const& value) {
     return value.is_array() && !value.empty() &&
-           std::all_of(value.begin(), value.end(), [](Json const& entry) { return entry.is_object(); });
+           std::all_of(value.begin(), value.end(),
+                       [](Json const& entry) { return entry.is_object(); });
 }
 
 std::string cell(Json const& value) {
@@ -23,8 +24,10 @@ std::string cell(Json const& value) {
     if (value.is_number_float()) return readable_number(value.get<double>());
     if (value.is_array()) {
         std::string text;
-        for (std::size_t k = 0; k < std::min(value.size(), most_entries); ++k) text += (k == 0 ? "" : ", ") + cell(value[k]);
-        return value.size() > most_entries ? text + fmt::format(", … ({} in all)", value.size()) : text;
+        for (std::size_t k = 0; k < std::min(value.size(), most_entries); ++k)
+            text += (k == 0 ? "" : ", ") + cell(value[k]);
+        return value.size() > most_entries ? text + fmt::format(", … ({} in all)", value.size())
+                                           : text;
     }
     return escaped(value.dump());
 }
@@ -37,22 +40,27 @@ bool is_empty(Json const& value) {
 std::string row(std::string const& key, Json const& value) {
     std::string const name = escaped(readable_name(key)), text = cell(value);
     // Sentences get the whole width.
-    if (text.size() > longest_cell) return fmt::format("<tr><td colspan=\"2\" class=\"text\"><span>{}</span> {}</td></tr>\n", name, text);
+    if (text.size() > longest_cell)
+        return fmt::format("<tr><td colspan=\"2\" class=\"text\"><span>{}</span> {}</td></tr>\n",
+                           name, text);
     return fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", name, text);
 }
 
 /// Columns are the keys of the first row.
 std::string table_of_rows(Json const& rows) {
     std::string table = "<table class=\"rows\">\n<thead><tr>";
-    for (auto const& column : rows[0].items()) table += "<th>" + escaped(readable_name(column.key())) + "</th>";
+    for (auto const& column : rows[0].items())
+        table += "<th>" + escaped(readable_name(column.key())) + "</th>";
     table += "</tr></thead>\n<tbody>\n";
     for (std::size_t k = 0; k < std::min(rows.size(), most_rows); ++k) {
         table += "<tr>";
         for (auto const& column : rows[0].items())
-            table += "<td>" + (rows[k].contains(column.key()) ? cell(rows[k][column.key()]) : "") + "</td>";
+            table += "<td>" + (rows[k].contains(column.key()) ? cell(rows[k][column.key()]) : "") +
+                     "</td>";
         table += "</tr>\n";
     }
-    if (rows.size() > most_rows) table += fmt::format("<tr><td>… {} in all</td></tr>\n", rows.size());
+    if (rows.size() > most_rows)
+        table += fmt::format("<tr><td>… {} in all</td></tr>\n", rows.size());
     return table + "</tbody>\n</table>\n";
 }
 
@@ -61,16 +69,19 @@ struct Sections {
     std::string cards, wide;
 
     static std::string card(std::string const& title, std::string const& table) {
-        return fmt::format("<section class=\"card\">\n<h3>{}</h3>\n{}</section>\n", escaped(readable_name(title)), table);
+        return fmt::format("<section class=\"card\">\n<h3>{}</h3>\n{}</section>\n",
+                           escaped(readable_name(title)), table);
     }
 
     void add(std::string const& title, Json const& object) {
         std::string own;
         for (auto const& [key, value] : object.items())
             if (!is_empty(value) && !value.is_object() && !is_rows(value)) own += row(key, value);
-        if (!own.empty()) cards += card(title.empty() ? "overview" : title, "<table>\n" + own + "</table>\n");
+        if (!own.empty())
+            cards += card(title.empty() ? "overview" : title, "<table>\n" + own + "</table>\n");
         for (auto const& [key, value] : object.items()) {
-            std::string const full = title.empty() ? key : fmt::format("{}: {}", title, readable_name(key));
+            std::string const full =
+                title.empty() ? key : fmt::format("{}: {}", title, readable_name(key));
             if (value.is_object())
                 add(full, value);
             else if (is_rows(value) && value.size() == 1)

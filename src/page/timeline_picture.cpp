@@ -17,7 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double width = 1160, left = 170, right = 14, lane_height = 26, bar_height = 19, rank_gap = 10, axis_height = 40;
+constexpr double width = 1160, left = 170, right = 14, lane_height = 26, bar_height = 19,
+                 rank_gap = 10, axis_height = 40;
 constexpr double character_width = 6.4;
 constexpr std::size_t most_ranks = 8, colours = 9, idle_colour = 9;  // of the page's style
 
@@ -43,8 +44,8 @@ Step read_step(Json const& json) {
     step.begin = std::numeric_limits<double>::infinity();
     step.end = -step.begin;
     for (Json const& entry : json.at("phases")) {
-        Phase phase{entry.at("name").get<std::string>(), entry.at("lane").get<std::string>(), entry.at("begin").get<double>(),
-                    entry.at("end").get<double>()};
+        Phase phase{entry.at("name").get<std::string>(), entry.at("lane").get<std::string>(),
+                    entry.at("begin").get<double>(), entry.at("end").get<double>()};
         step.begin = std::min(step.begin, phase.begin);
         step.end = std::max(step.end, phase.end);
         step.phases.push_back(std::move(phase));
@@ -58,7 +59,8 @@ std::vector<Rank> read_ranks(Json const& timeline) {
         Rank rank;
         rank.number = json.at("rank").get<std::int64_t>();
         for (Json const& step : json.at("steps"))
-            if (Step read = read_step(step); !read.phases.empty()) rank.steps.push_back(std::move(read));
+            if (Step read = read_step(step); !read.phases.empty())
+                rank.steps.push_back(std::move(read));
         if (!rank.steps.empty()) ranks.push_back(std::move(rank));
     }
     return ranks;
@@ -79,8 +81,10 @@ class Picture {
     Picture(std::vector<Rank> const& ranks, std::int64_t step) : step_(step) {
         for (Rank const& rank : ranks)
             for (Step const& candidate : rank.steps)
-                if (candidate.number == step && rows_.size() < most_ranks) rows_.emplace_back(rank.number, &candidate);
-        for (auto const& [rank, recorded] : rows_) length_ = std::max(length_, recorded->end - recorded->begin);
+                if (candidate.number == step && rows_.size() < most_ranks)
+                    rows_.emplace_back(rank.number, &candidate);
+        for (auto const& [rank, recorded] : rows_)
+            length_ = std::max(length_, recorded->end - recorded->begin);
         scale_ = length_ < 1e-3 ? 1e6 : length_ < 1 ? 1e3 : 1;
         axis_ = linear_axis(0, length_ * scale_, 0, 10);
     }
@@ -93,14 +97,19 @@ class Picture {
             y += rank_gap;
         }
         std::string const unit = scale_ == 1 ? "s" : scale_ == 1e3 ? "ms" : "µs";
-        std::string svg =
-            fmt::format("<svg viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"timeline of step {}\">\n", width, y + axis_height, step_);
+        std::string svg = fmt::format(
+            "<svg viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"timeline of step {}\">\n",
+            width, y + axis_height, step_);
         for (Axis::Tick const& tick : axis_.ticks) {
             double const x = at(tick.value);
-            svg += fmt::format("<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"4\" y2=\"{:.1f}\"/>", x, x, y);
-            svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x, y + 16, tick.label);
+            svg += fmt::format(
+                "<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"4\" y2=\"{:.1f}\"/>", x, x,
+                y);
+            svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x,
+                               y + 16, tick.label);
         }
-        svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">time in {}{}</text>\n", at(axis_.high / 2), y + 34, unit,
+        svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">time in {}{}</text>\n",
+                           at(axis_.high / 2), y + 34, unit,
                            axis_.note.empty() ? "" : " " + axis_.note);
         return svg + bars + "</svg>\n" + legend();
     }
@@ -110,7 +119,8 @@ class Picture {
 
     std::size_t colour_of(std::string const& name) {
         if (name.starts_with("wait")) return idle_colour;  // labelled in its bar
-        auto const place = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+        auto const place = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) -
+                                                    names_.begin());
         if (place == names_.size()) names_.push_back(name);
         return place % colours;
     }
@@ -118,10 +128,13 @@ class Picture {
     std::string draw_rank(std::int64_t rank, Step const& step, double& y) {
         std::vector<std::string> lanes;
         for (Phase const& phase : step.phases)
-            if (std::find(lanes.begin(), lanes.end(), phase.lane) == lanes.end()) lanes.push_back(phase.lane);
-        std::string svg = fmt::format("<text class=\"strong\" x=\"4\" y=\"{:.1f}\">rank {}</text>\n", y + 14, rank);
+            if (std::find(lanes.begin(), lanes.end(), phase.lane) == lanes.end())
+                lanes.push_back(phase.lane);
+        std::string svg = fmt::format(
+            "<text class=\"strong\" x=\"4\" y=\"{:.1f}\">rank {}</text>\n", y + 14, rank);
         for (std::string const& lane : lanes) {
-            svg += fmt::format("<text class=\"end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", left - 10, y + 14, escaped(lane));
+            svg += fmt::format("<text class=\"end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", left - 10,
+                               y + 14, escaped(lane));
             for (Phase const& phase : step.phases)
                 if (phase.lane == lane) svg += draw_bar(phase, step.begin, y);
             y += lane_height;
@@ -130,21 +143,25 @@ class Picture {
     }
 
     std::string draw_bar(Phase const& phase, double start, double y) {
-        double const from = at((phase.begin - start) * scale_), wide = std::max(0.8, at((phase.end - start) * scale_) - from);
+        double const from = at((phase.begin - start) * scale_),
+                     wide = std::max(0.8, at((phase.end - start) * scale_) - from);
         std::string svg = fmt::format(
-            "<rect class=\"c{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\" rx=\"2\"><title>{}: {:.4g} to "
+            "<rect class=\"c{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\" "
+            "rx=\"2\"><title>{}: {:.4g} to "
             "{:.4g}</title></rect>",
-            colour_of(phase.name), from, y, wide, bar_height, escaped(phase.name), (phase.begin - start) * scale_,
-            (phase.end - start) * scale_);
+            colour_of(phase.name), from, y, wide, bar_height, escaped(phase.name),
+            (phase.begin - start) * scale_, (phase.end - start) * scale_);
         if (wide > character_width * static_cast<double>(phase.name.size()) + 8)
-            svg += fmt::format("<text class=\"inside\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", from + 5, y + 13.5, escaped(phase.name));
+            svg += fmt::format("<text class=\"inside\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
+                               from + 5, y + 13.5, escaped(phase.name));
         return svg + "\n";
     }
 
     std::string legend() const {
         std::string html = "<div class=\"legend\">";
         for (std::size_t k = 0; k < names_.size(); ++k)
-            html += fmt::format("<span><i class=\"c{}\"></i>{}</span>", k % colours, escaped(names_[k]));
+            html += fmt::format("<span><i class=\"c{}\"></i>{}</span>", k % colours,
+                                escaped(names_[k]));
         return html + "</div>\n";
     }
 
@@ -162,10 +179,13 @@ std::string timeline_picture(Json const& timeline) {
     if (ranks.empty()) return "";
     std::int64_t const step = typical_step(ranks.front());
     std::size_t const recorded = ranks.front().steps.size();
-    std::string caption =
-        fmt::format("Step {}{}.", step, recorded > 1 ? fmt::format(", of median length among the {} recorded", recorded) : "");
-    if (ranks.size() > most_ranks) caption += fmt::format(" The first {} of {} ranks.", most_ranks, ranks.size());
-    return "<figure>\n" + Picture(ranks, step).draw() + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
+    std::string caption = fmt::format(
+        "Step {}{}.", step,
+        recorded > 1 ? fmt::format(", of median length among the {} recorded", recorded) : "");
+    if (ranks.size() > most_ranks)
+        caption += fmt::format(" The first {} of {} ranks.", most_ranks, ranks.size());
+    return "<figure>\n" + Picture(ranks, step).draw() + "<figcaption>" + caption +
+           "</figcaption>\n</figure>\n";
 }
 
 }  // namespace catena

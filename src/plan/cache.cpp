@@ -22,7 +22,8 @@ std::string cache_file(Machine const& machine) {
     Checksum sum;
     sum.add(std::string_view(machine.identity));
     char name[40];
-    std::snprintf(name, sizeof name, "calibration-%016llx.json", static_cast<unsigned long long>(sum.value()));
+    std::snprintf(name, sizeof name, "calibration-%016llx.json",
+                  static_cast<unsigned long long>(sum.value()));
     return folder / "catena" / name;
 }
 
@@ -45,7 +46,8 @@ bool write_cache(Machine const& machine, Calibration const& calibration) {
         std::filesystem::create_directories(std::filesystem::path(file).parent_path());
         nlohmann::json json = calibration.json();
         json["machine"] = machine.identity;
-        write_text_file(file, json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_text_file(file,
+                        json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
         return true;
     } catch (std::exception const&) {
         return false;

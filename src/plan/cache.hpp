@@ -1,5 +1,6 @@
-// A calibration that outlives the program: a file for each machine under $XDG_CACHE_HOME or ~/.cache, in catena/. It only saves time: one
-// that cannot be read or belongs to another machine or build is as good as none, and one that cannot be written is not missed.
+// A calibration that outlives the program: a file for each machine under $XDG_CACHE_HOME or
+// ~/.cache, in catena/. It only saves time: one that cannot be read or belongs to another machine
+// or build is as good as none, and one that cannot be written is not missed.
 #pragma once
 
 #include "plan/machine.hpp"

@@ -36,21 +36,31 @@ std::size_t count(std::map<std::string, Curve<N>> const& curves) {
     return sum;
 }
 
-std::string name_of(Family const& family, Arrangement const& arrangement) { return family.name() + " | " + arrangement.name(); }
+std::string name_of(Family const& family, Arrangement const& arrangement) {
+    return family.name() + " | " + arrangement.name();
+}
 
 }  // namespace
 
-PhaseCurve& Calibration::of(Family const& family, Arrangement const& arrangement) { return phases_[name_of(family, arrangement)]; }
+PhaseCurve& Calibration::of(Family const& family, Arrangement const& arrangement) {
+    return phases_[name_of(family, arrangement)];
+}
 
-DriftCurve& Calibration::of_drifts(Family const& family, Arrangement const& arrangement) { return drifts_[name_of(family, arrangement)]; }
+DriftCurve& Calibration::of_drifts(Family const& family, Arrangement const& arrangement) {
+    return drifts_[name_of(family, arrangement)];
+}
 
 LevelCurve& Calibration::of(Family const& family, Place place, int threads) {
-    return levels_[family.name() + " | " + (place == Place::gpu ? "GPU" : "host, " + std::to_string(threads))];
+    return levels_[family.name() + " | " +
+                   (place == Place::gpu ? "GPU" : "host, " + std::to_string(threads))];
 }
 
 std::size_t Calibration::points() const { return count(phases_) + count(drifts_) + count(levels_); }
 
-json Calibration::json() const { return {{"phases", json_of(phases_)}, {"drifts", json_of(drifts_)}, {"levels", json_of(levels_)}}; }
+json Calibration::json() const {
+    return {
+        {"phases", json_of(phases_)}, {"drifts", json_of(drifts_)}, {"levels", json_of(levels_)}};
+}
 
 void Calibration::read(nlohmann::json const& from) {
     read_curves(from.at("phases"), phases_);

@@ -17,20 +17,25 @@ std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (scene.solver.refine > 0) return "what refined solutions lack is looked for on the host";
     return scene.dynamics.why_host_alone();
 }
-/// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and the solver.
+/// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and
+/// the solver.
 bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {
     if (!scene.forces.openmm || ranks > 1) return false;
     OpenMmSpec const& openmm = *scene.forces.openmm;
-    bool const free = openmm.platform.empty() && openmm.device < 0 && (openmm.path == "auto" || openmm.path == "device");
-    bool const beads = std::all_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) { return chain.is_beads(); });
+    bool const free = openmm.platform.empty() && openmm.device < 0 &&
+                      (openmm.path == "auto" || openmm.path == "device");
+    bool const beads = std::all_of(scene.chains.begin(), scene.chains.end(),
+                                   [](ChainSpec const& chain) { return chain.is_beads(); });
     return free && beads && machine.openmm_on_gpu();
 }
 
-/// Seconds that OpenMM's forces take of a step at the least, where they are computed on processors: a microsecond a bead.
+/// Seconds that OpenMM's forces take of a step at the least, where they are computed on processors:
+/// a microsecond a bead.
 double least_seconds_of_forces(Scene const& scene, Machine const& machine, int ranks) {
     if (!scene.forces.openmm) return 0;
     std::string const& platform = scene.forces.openmm->platform;
-    if (platform.empty() ? machine.openmm_on_gpu() : platform != "CPU" && platform != "Reference") return 0;
+    if (platform.empty() ? machine.openmm_on_gpu() : platform != "CPU" && platform != "Reference")
+        return 0;
     double constexpr a_bead = 1e-6;
     std::size_t beads = 0;
     for (ChainSpec const& chain : scene.chains) beads += chain.bead_count();
@@ -38,30 +43,40 @@ double least_seconds_of_forces(Scene const& scene, Machine const& machine, int r
 }
 
 std::string text_of(Prediction const& p) {
-    return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(), 1e3 * p.seconds[typical_evaluation])
+    return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(),
+                                            1e3 * p.seconds[typical_evaluation])
                               : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
 }
 
-/// A GPU that would be chosen must hold the scene, with room for what a sample chain does not show (lists of short chains, OpenMM).
-void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<Share> const& shares, Machine const& machine) {
+/// A GPU that would be chosen must hold the scene, with room for what a sample chain does not show
+/// (lists of short chains, OpenMM).
+void refuse_what_does_not_fit(std::vector<Prediction>& predictions,
+                              std::vector<Share> const& shares, Machine const& machine) {
     double constexpr reserve = 1 << 28, margin = 1.25;
     double needed = reserve;
-    for (Share const& share : shares) needed += margin * machine.gpu_memory(share.family, share.bodies);
+    for (Share const& share : shares)
+        needed += margin * machine.gpu_memory(share.family, share.bodies);
     for (Prediction& p : predictions)
         if (uses_gpu(p.arrangement.backend) && p.unusable.empty())
-            p.unusable = cuda::too_little_memory(static_cast<std::int64_t>(needed), static_cast<std::int64_t>(machine.free_gpu_memory()));
+            p.unusable =
+                cuda::too_little_memory(static_cast<std::int64_t>(needed),
+                                        static_cast<std::int64_t>(machine.free_gpu_memory()));
 }
 
 Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     std::string const no_gpu = no_gpu_for(scene, planner.machine());
     std::string const without = no_gpu.empty() ? "" : "; " + no_gpu;
     std::vector<Arrangement> usable = planner.machine().alike;
-    if (!no_gpu.empty()) std::erase_if(usable, [](Arrangement const& a) { return uses_gpu(a.backend); });
+    if (!no_gpu.empty())
+        std::erase_if(usable, [](Arrangement const& a) { return uses_gpu(a.backend); });
     std::string beside;
     if (int const spare = planner.machine().spare; spare > 0) {
         // Threads that wait for each other would wait for other programs.
-        if (std::erase_if(usable, [&](Arrangement const& a) { return a.backend == Backend::openmp && a.threads > spare; }) > 0)
-            beside = fmt::format("; other programs leave {} of {} cores", spare, planner.machine().threads);
+        if (std::erase_if(usable, [&](Arrangement const& a) {
+                return a.backend == Backend::openmp && a.threads > spare;
+            }) > 0)
+            beside = fmt::format("; other programs leave {} of {} cores", spare,
+                                 planner.machine().threads);
     }
     if (usable.size() == 1) return {usable.front(), {}, "auto: one core" + beside + without};
     std::vector<Share> const shares = shares_of(scene, axes, ranks);
@@ -69,14 +84,19 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     for (Arrangement const& each : usable) predictions.push_back(planner.predict(shares, each));
     bool const for_forces = no_gpu.empty() && forces_ask_for_gpu(scene, planner.machine(), ranks);
     double const forces = least_seconds_of_forces(scene, planner.machine(), ranks);
-    if (forces > 0) beside += fmt::format("; beside forces of {:.3g} ms and more, gains under a tenth of both do not count", 1e3 * forces);
+    if (forces > 0)
+        beside += fmt::format(
+            "; beside forces of {:.3g} ms and more, gains under a tenth of both do not count",
+            1e3 * forces);
     if (for_forces || uses_gpu(quickest(predictions, forces).arrangement.backend))
         refuse_what_does_not_fit(predictions, shares, planner.machine());
-    auto const on_gpu = std::find_if(predictions.begin(), predictions.end(),
-                                     [](Prediction const& p) { return uses_gpu(p.arrangement.backend) && p.unusable.empty(); });
+    auto const on_gpu = std::find_if(
+        predictions.begin(), predictions.end(),
+        [](Prediction const& p) { return uses_gpu(p.arrangement.backend) && p.unusable.empty(); });
     bool const with_forces = for_forces && on_gpu != predictions.end();
     Prediction const& best = with_forces ? *on_gpu : quickest(predictions, forces);
-    std::string reason = std::string(with_forces ? "auto: where OpenMM's forces are, " : "auto: ") + "predicted " + text_of(best);
+    std::string reason = std::string(with_forces ? "auto: where OpenMM's forces are, " : "auto: ") +
+                         "predicted " + text_of(best);
     for (Prediction const& p : predictions)
         if (&p != &best) reason += ", " + text_of(p);
     return {best.arrangement, {}, reason + beside + without};
@@ -85,39 +105,50 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
 Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     LevelPlan const levels = planner.plan_levels(shares_of(scene, axes, ranks));
     GpuLevels const best = levels.best();
-    return {{Backend::cuda_levels, planner.machine().threads},
-            best,
-            fmt::format("levels auto: {},{} of {} predicted {:.3g} ms, all {:.3g} ms, none {:.3g} ms", best.up, best.down, levels.levels(),
-                        1e3 * levels.seconds(best), 1e3 * levels.seconds({}), 1e3 * levels.seconds({0, 0}))};
+    return {
+        {Backend::cuda_levels, planner.machine().threads},
+        best,
+        fmt::format("levels auto: {},{} of {} predicted {:.3g} ms, all {:.3g} ms, none {:.3g} ms",
+                    best.up, best.down, levels.levels(), 1e3 * levels.seconds(best),
+                    1e3 * levels.seconds({}), 1e3 * levels.seconds({0, 0}))};
 }
 
-bool levels_are_open(SolverSpec const& solver) { return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto"; }
+bool levels_are_open(SolverSpec const& solver) {
+    return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto";
+}
 
 }  // namespace
 
-bool leaves_open(Scene const& scene) { return scene.solver.backend == Backend::automatic || levels_are_open(scene.solver); }
+bool leaves_open(Scene const& scene) {
+    return scene.solver.backend == Backend::automatic || levels_are_open(scene.solver);
+}
 
 Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     SolverSpec const& solver = scene.solver;
     if (solver.backend == Backend::automatic) return choose_backend(scene, axes, planner, ranks);
-    if (levels_are_open(solver) && planner.machine().no_gpu.empty()) return choose_levels(scene, axes, planner, ranks);
+    if (levels_are_open(solver) && planner.machine().no_gpu.empty())
+        return choose_levels(scene, axes, planner, ranks);
     return {{solver.backend, solver.threads}, solver.levels_on_gpu(), "asked for"};
 }
 
-Choice choose(Scene const& scene, Axes axes, Communicator const& communicator, std::string const& no_gpu) {
-    Choice choice{{scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
+Choice choose(Scene const& scene, Axes axes, Communicator const& communicator,
+              std::string const& no_gpu) {
+    Choice choice{
+        {scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
     if (!leaves_open(scene)) return choice;
-    with_planner(communicator, scene.solver.threads, largest_at_start, no_gpu,
-                 [&](Planner& planner) { choice = choose(scene, axes, planner, communicator.size()); });
+    with_planner(
+        communicator, scene.solver.threads, largest_at_start, no_gpu,
+        [&](Planner& planner) { choice = choose(scene, axes, planner, communicator.size()); });
     share(communicator, choice);
     return choice;
 }
 
-void with_planner(Communicator const& communicator, int threads, std::int64_t largest, std::string const& no_gpu,
-                  std::function<void(Planner&)> const& action) {
+void with_planner(Communicator const& communicator, int threads, std::int64_t largest,
+                  std::string const& no_gpu, std::function<void(Planner&)> const& action) {
     Machine machine = this_machine(communicator, threads);
     // Every rank needs a GPU, or none gets one.
-    if (communicator.max(machine.no_gpu.empty() ? 0 : 1) > 0) without_gpu(machine, "not every rank has one");
+    if (communicator.max(machine.no_gpu.empty() ? 0 : 1) > 0)
+        without_gpu(machine, "not every rank has one");
     if (!no_gpu.empty()) without_gpu(machine, no_gpu);
     on_first_rank(communicator, [&] {
         Planner planner(machine, read_cache(machine), largest);
@@ -127,8 +158,9 @@ void with_planner(Communicator const& communicator, int threads, std::int64_t la
 }
 
 void share(Communicator const& communicator, Choice& choice) {
-    std::int64_t numbers[] = {static_cast<std::int64_t>(choice.arrangement.backend), choice.arrangement.threads, choice.levels.up,
-                              choice.levels.down, std::ssize(choice.reason)};
+    std::int64_t numbers[] = {static_cast<std::int64_t>(choice.arrangement.backend),
+                              choice.arrangement.threads, choice.levels.up, choice.levels.down,
+                              std::ssize(choice.reason)};
     communicator.broadcast(std::as_writable_bytes(std::span(numbers)));
     choice.arrangement = {static_cast<Backend>(numbers[0]), static_cast<int>(numbers[1])};
     choice.levels = {static_cast<int>(numbers[2]), static_cast<int>(numbers[3])};
@@ -141,7 +173,8 @@ Scene with_choice(Scene scene, Choice const& choice) {
     scene.solver.backend = choice.arrangement.backend;
     scene.solver.threads = choice.arrangement.threads;
     if (levels_are_open(scene.solver))
-        scene.solver.gpu_levels = std::to_string(choice.levels.up) + "," + std::to_string(choice.levels.down);
+        scene.solver.gpu_levels =
+            std::to_string(choice.levels.up) + "," + std::to_string(choice.levels.down);
     return scene;
 }
 

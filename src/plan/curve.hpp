@@ -9,8 +9,9 @@
 
 namespace catena::plan {
 
-/// N times, each a function of the number of bodies: between measured numbers the logarithm of the time is linear in that of the number;
-/// beyond them each further body takes, and below them each body fewer saves, what a body of the nearest interval took.
+/// N times, each a function of the number of bodies: between measured numbers the logarithm of the
+/// time is linear in that of the number; beyond them each further body takes, and below them each
+/// body fewer saves, what a body of the nearest interval took.
 template <std::size_t N>
 class Curve {
   public:
@@ -27,10 +28,12 @@ class Curve {
         if (above == points_.begin()) return on_line(bodies, above, std::next(above));
         auto const below = std::prev(above);
         if (above == points_.end()) return on_line(bodies, below, std::prev(below));
-        double const share = std::log(ratio(bodies, below->first)) / std::log(ratio(above->first, below->first));
+        double const share =
+            std::log(ratio(bodies, below->first)) / std::log(ratio(above->first, below->first));
         Values seconds;
         for (std::size_t i = 0; i < N; ++i) {
-            double const low = std::max(below->second[i], least), high = std::max(above->second[i], least);
+            double const low = std::max(below->second[i], least),
+                         high = std::max(above->second[i], least);
             seconds[i] = low * std::pow(high / low, share);
         }
         return seconds;
@@ -38,17 +41,22 @@ class Curve {
 
   private:
     static constexpr double least = 1e-12;  // what no clock tells from nothing
-    static double ratio(std::int64_t a, std::int64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
+    static double ratio(std::int64_t a, std::int64_t b) {
+        return static_cast<double>(a) / static_cast<double>(b);
+    }
     using Point = typename std::map<std::int64_t, Values>::const_iterator;
-    /// From `near` on with the slope between it and `far`, as far as more bodies take longer and none at all takes no less than nothing.
+    /// From `near` on with the slope between it and `far`, as far as more bodies take longer and
+    /// none at all takes no less than nothing.
     Values on_line(std::int64_t bodies, Point near, Point far) const {
         Values seconds;
         auto const steps = static_cast<double>(bodies - near->first);
         for (std::size_t i = 0; i < N; ++i) {
             double const proportional = near->second[i] / static_cast<double>(near->first);
-            double const slope =
-                near == far ? proportional : (far->second[i] - near->second[i]) / static_cast<double>(far->first - near->first);
-            seconds[i] = near->second[i] + steps * std::max(0.0, steps < 0 ? std::min(slope, proportional) : slope);
+            double const slope = near == far ? proportional
+                                             : (far->second[i] - near->second[i]) /
+                                                   static_cast<double>(far->first - near->first);
+            seconds[i] = near->second[i] +
+                         steps * std::max(0.0, steps < 0 ? std::min(slope, proportional) : slope);
         }
         return seconds;
     }

@@ -29,11 +29,14 @@ std::string tip_name(ChainSpec const& chain) {
 char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
 
 bool alike(ChainSpec const& a, ChainSpec const& b) {
-    return a.size() == b.size() && a.base == b.base && std::string(contents_of(a)) == contents_of(b) && tip_name(a) == tip_name(b) &&
+    return a.size() == b.size() && a.base == b.base &&
+           std::string(contents_of(a)) == contents_of(b) && tip_name(a) == tip_name(b) &&
            scene::handle_kind(a) == scene::handle_kind(b);
 }
 
-char const* base_name(ChainSpec const& chain) { return chain.base == Base::free ? "free" : "fixed"; }
+char const* base_name(ChainSpec const& chain) {
+    return chain.base == Base::free ? "free" : "fixed";
+}
 
 }  // namespace
 
@@ -56,9 +59,10 @@ Table chain_table(Scene const& scene) {
             table.add({"others", std::to_string(scene.chains.size() - i), "", "", "", "", ""});
             break;
         }
-        std::string const name = end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
-        table.add({name, std::to_string(end - i), std::to_string(first.size()), contents_of(first), base_name(first), tip_name(first),
-                   kind_name(first)});
+        std::string const name =
+            end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
+        table.add({name, std::to_string(end - i), std::to_string(first.size()), contents_of(first),
+                   base_name(first), tip_name(first), kind_name(first)});
         i = end;
     }
     return table;
@@ -67,7 +71,10 @@ Table chain_table(Scene const& scene) {
 Json chains_json(Scene const& scene) {
     Json list = Json::array();
     for (ChainSpec const& chain : scene.chains) {
-        list.push_back({{"name", chain.name}, {"bodies", chain.size()}, {"kind", kind_name(chain)}, {"base", base_name(chain)}});
+        list.push_back({{"name", chain.name},
+                        {"bodies", chain.size()},
+                        {"kind", kind_name(chain)},
+                        {"base", base_name(chain)}});
         if (chain.tip != Tip::free) list.back()["tip"] = tip_name(chain);
     }
     return list;
@@ -84,7 +91,8 @@ ForcesOnJoints forces_on_joints(Scene const& scene) {
         for (Vec3 const& v : b.stiffness) found.springs += any(v.data, 3);
         for (Vec3 const& v : b.damping) found.dampers += any(v.data, 3);
         for (Vec3 const& v : b.torque) found.torques += any(v.data, 3);
-        for (auto const& [torque, force] : b.wrench) found.wrenches += any(torque.data, 3) || any(force.data, 3);
+        for (auto const& [torque, force] : b.wrench)
+            found.wrenches += any(torque.data, 3) || any(force.data, 3);
     }
     return found;
 }
@@ -92,7 +100,9 @@ ForcesOnJoints forces_on_joints(Scene const& scene) {
 std::string forces_text(ForcesOnJoints const& found) {
     std::string text;
     auto const add = [&](std::int64_t count, char const* what, char const* one, char const* many) {
-        if (count > 0) text += fmt::format("{}{} on {}", text.empty() ? "" : ", ", what, counted(count, one, many));
+        if (count > 0)
+            text += fmt::format("{}{} on {}", text.empty() ? "" : ", ", what,
+                                counted(count, one, many));
     };
     add(found.springs, "springs", "joint", "joints");
     add(found.dampers, "dampers", "joint", "joints");
@@ -111,10 +121,12 @@ char const* energy_unit(Scene const& scene) { return scene.si ? "J" : "kJ/mol"; 
 std::string dynamics_text(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     if (!d.given) return "none (solve and report need none)";
-    std::string text = fmt::format("{}, {} steps of {} {} ({:.6g} {})", name_of(d.integrator), d.steps, d.step, time_unit(scene),
-                                   static_cast<double>(d.steps) * d.step, time_unit(scene));
+    std::string text =
+        fmt::format("{}, {} steps of {} {} ({:.6g} {})", name_of(d.integrator), d.steps, d.step,
+                    time_unit(scene), static_cast<double>(d.steps) * d.step, time_unit(scene));
     if (is_langevin(d.integrator))
-        text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
+        text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction,
+                            time_unit(scene), d.seed);
     if (d.tolerance > 0) text += fmt::format(", inner steps to tolerance {:g}", d.tolerance);
     if (d.fixman) text += fmt::format(", Fixman potential at {} K", d.temperature);
     return text;
@@ -128,7 +140,8 @@ Directions directions_of(Scene const& scene) {
         if (kind == scene::HandleKind::link)
             d.beads = full ? 3 : 1;
         else
-            d.bodies = full || (scene.dynamics.given && is_implicit(scene.dynamics.integrator) && scene::resists(chain))
+            d.bodies = full || (scene.dynamics.given && is_implicit(scene.dynamics.integrator) &&
+                                scene::resists(chain))
                            ? 6
                            : std::max(d.bodies, scene::directions_of(kind));
     }
@@ -137,12 +150,16 @@ Directions directions_of(Scene const& scene) {
 
 std::string block_text(bool beads, int directions, Handles handles) {
     std::string const size = fmt::format("{0}x{0}", directions);
-    if (handles == Handles::articulated) return size + ", every direction, of runs held at their inboard side";
-    if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
+    if (handles == Handles::articulated)
+        return size + ", every direction, of runs held at their inboard side";
+    if (handles == Handles::full)
+        return size + (beads ? ", every direction of a point" : ", every direction");
     if (beads) return size + ", projected on the links";
-    if (directions == 6) return size + ", every direction: welds, driven or implicit joints restrict them all";
+    if (directions == 6)
+        return size + ", every direction: welds, driven or implicit joints restrict them all";
     auto const kind = static_cast<scene::HandleKind>(directions - 1);
-    return size + fmt::format(", projected on the restricted directions of {} joints", scene::name_of(kind));
+    return size + fmt::format(", projected on the restricted directions of {} joints",
+                              scene::name_of(kind));
 }
 
 std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> const& limit) {
@@ -150,7 +167,9 @@ std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> c
     std::int64_t const every = scene.output.every, steps = scene.dynamics.steps;
     if (scene.dynamics.given && steps > 0 && every > steps)
         notes.push_back(
-            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and the last state alone", every, steps));
+            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and "
+                        "the last state alone",
+                        every, steps));
     if (std::string const note = note_of_step(scene, limit); !note.empty()) notes.push_back(note);
     return notes;
 }

@@ -21,7 +21,8 @@ Json chains_json(Scene const&);
 
 /// What acts on the chains.
 struct ForcesOnJoints {
-    std::int64_t springs = 0, dampers = 0, torques = 0, motions = 0, wrenches = 0, drag = 0;  // joints (bodies) that have one
+    std::int64_t springs = 0, dampers = 0, torques = 0, motions = 0, wrenches = 0,
+                 drag = 0;  // joints (bodies) that have one
 };
 ForcesOnJoints forces_on_joints(Scene const&);
 /// "springs on 2 joints, ..."; "none"
@@ -33,7 +34,8 @@ std::string dynamics_text(Scene const&);
 char const* time_unit(Scene const&);
 char const* energy_unit(Scene const&);
 
-/// Directions that a handle carries: those of chains of links, and of the scene's body chains together (0 where there are none).
+/// Directions that a handle carries: those of chains of links, and of the scene's body chains
+/// together (0 where there are none).
 struct Directions {
     int beads = 0, bodies = 0;
 };
@@ -41,14 +43,15 @@ Directions directions_of(Scene const&);
 /// "5x5, projected on the restricted directions of revolute joints"
 std::string block_text(bool beads, int directions, Handles);
 
-/// What `check` and `plan` say of a scene beside its numbers: the reader's notes, what a run would write too seldom, and a step that is
-/// near its limit. InputError for a step beyond it.
+/// What `check` and `plan` say of a scene beside its numbers: the reader's notes, what a run would
+/// write too seldom, and a step that is near its limit. InputError for a step beyond it.
 std::vector<std::string> notes_on(Scene const&, std::optional<StepLimit> const&);
 
 /// solver.gpu_levels with cuda-levels ("all" for auto), else null.
 Json gpu_levels_json(Scene const&);
 
-/// Bytes a rank needs, by the sizes of the arrays. An estimate: the largest share, OpenMM not counted.
+/// Bytes a rank needs, by the sizes of the arrays. An estimate: the largest share, OpenMM not
+/// counted.
 struct Memory {
     double scene = 0, state = 0, solver = 0;
     double sum() const { return scene + state + solver; }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "scene/freedom.hpp"
 #include "generate/generators.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena::plan {
 namespace {
@@ -12,13 +12,16 @@ namespace {
 using scene::HandleKind;
 using scene::RandomJoint;
 
-constexpr std::pair<RandomJoint, char const*> joint_names[] = {{RandomJoint::link, "link"},           {RandomJoint::planar, "planar"},
-                                                               {RandomJoint::spherical, "spherical"}, {RandomJoint::universal, "universal"},
-                                                               {RandomJoint::revolute, "revolute"},   {RandomJoint::prismatic, "prismatic"},
-                                                               {RandomJoint::weld, "weld"},           {RandomJoint::mixed, "mixed"}};
+constexpr std::pair<RandomJoint, char const*> joint_names[] = {
+    {RandomJoint::link, "link"},           {RandomJoint::planar, "planar"},
+    {RandomJoint::spherical, "spherical"}, {RandomJoint::universal, "universal"},
+    {RandomJoint::revolute, "revolute"},   {RandomJoint::prismatic, "prismatic"},
+    {RandomJoint::weld, "weld"},           {RandomJoint::mixed, "mixed"}};
 
 bool any_joint(ChainSpec const& chain, std::initializer_list<JointType> types) {
-    auto const among = [&](JointType type) { return std::find(types.begin(), types.end(), type) != types.end(); };
+    auto const among = [&](JointType type) {
+        return std::find(types.begin(), types.end(), type) != types.end();
+    };
     return std::any_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among) ||
            (chain.tip == Tip::jointed && among(chain.tip_joint.type));
 }
@@ -36,7 +39,8 @@ RandomJoint joint_of(ChainSpec const& chain) {
         case HandleKind::revolute:
             return slides ? RandomJoint::prismatic : RandomJoint::revolute;
         default:
-            return slides || any_joint(chain, {JointType::universal}) ? RandomJoint::mixed : RandomJoint::weld;
+            return slides || any_joint(chain, {JointType::universal}) ? RandomJoint::mixed
+                                                                      : RandomJoint::weld;
     }
 }
 
@@ -60,7 +64,8 @@ std::vector<std::int64_t> merges_of(std::vector<std::int64_t> const& lengths) {
 }  // namespace
 
 std::string Family::name() const {
-    auto const found = std::find_if(std::begin(joint_names), std::end(joint_names), [&](auto const& each) { return each.first == joint; });
+    auto const found = std::find_if(std::begin(joint_names), std::end(joint_names),
+                                    [&](auto const& each) { return each.first == joint; });
     std::string text = found->second;
     if (linked) text += " with bodies";
     if (axes == Axes::world && joint != RandomJoint::link) text += ", ground axes";
@@ -91,7 +96,8 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
     for (ChainSpec const& chain : scene.chains) {
         Family const family = family_of(chain, axes, scene.solver.handles);
         // Full handles hold chains of every joint together: the most demanding one stands for them.
-        bool const together = carries_all(scene.solver.handles) && family.joint != RandomJoint::link;
+        bool const together =
+            carries_all(scene.solver.handles) && family.joint != RandomJoint::link;
         Members& members = groups[together ? "bodies" : family.name()];
         HandleKind const kind = scene::handle_kind(chain);
         if (members.lengths.empty() || kind > members.largest) members.family = family;
@@ -103,8 +109,10 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
         dca::Partition const partition(members.lengths, scene.solver.pairwise(), ranks);
         Share share{members.family, 0, merges_of(members.lengths)};
         for (std::size_t r = 0; r + 1 < partition.first_of_rank.size(); ++r)
-            share.bodies = std::max(share.bodies, partition.first_of_rank[r + 1] - partition.first_of_rank[r]);
-        for (std::int64_t& merges : share.merges) merges = (merges * share.bodies + partition.bodies() - 1) / partition.bodies();
+            share.bodies =
+                std::max(share.bodies, partition.first_of_rank[r + 1] - partition.first_of_rank[r]);
+        for (std::int64_t& merges : share.merges)
+            merges = (merges * share.bodies + partition.bodies() - 1) / partition.bodies();
         shares.push_back(share);
     }
     return shares;

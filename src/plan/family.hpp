@@ -1,4 +1,5 @@
-// Kinds of chains whose evaluations take alike: what a scene's times are looked up by, and the random chains that stand for it.
+// Kinds of chains whose evaluations take alike: what a scene's times are looked up by, and the
+// random chains that stand for it.
 #pragma once
 
 #include <string>
@@ -24,7 +25,8 @@ struct Family {
 /// Every one there is.
 std::vector<Family> all_families();
 
-/// A group of the scene's chains (make_groups): its family, and the bodies and merges of the rank that has the most.
+/// A group of the scene's chains (make_groups): its family, and the bodies and merges of the rank
+/// that has the most.
 struct Share {
     Family family;
     std::int64_t bodies = 0;
@@ -32,7 +34,8 @@ struct Share {
 };
 std::vector<Share> shares_of(Scene const&, Axes, int ranks);
 
-/// One random chain of the family, the same for the same arguments everywhere. Solver: the family's handles.
+/// One random chain of the family, the same for the same arguments everywhere. Solver: the family's
+/// handles.
 Scene sample(Family const&, std::int64_t bodies);
 
 }  // namespace catena::plan

@@ -14,11 +14,14 @@ namespace {
 using dca::LevelPart;
 using Items = LevelPart::Items;
 
-/// Takes the place of a solver: what dynamics would have solved is measured part by part, and not solved.
+/// Takes the place of a solver: what dynamics would have solved is measured part by part, and not
+/// solved.
 class Probe final : public ChainSolver {
   public:
     Probe(ChainGroup const& group, dca::LevelPartMaker const& maker, Effort const& effort)
-        : effort_(effort), bodies_(maker(group, {true, true, 0, 0, 0, 0, false})), level_(maker(group, {false, false, 0, 1, 0, 1, false})) {
+        : effort_(effort),
+          bodies_(maker(group, {true, true, 0, 0, 0, 0, false})),
+          level_(maker(group, {false, false, 0, 1, 0, 1, false})) {
         std::vector<std::int64_t> places(static_cast<std::size_t>(group.size));
         std::iota(places.begin(), places.end(), 0);
         segments_of_bodies_ = bodies_->choose(places);
@@ -26,12 +29,16 @@ class Probe final : public ChainSolver {
         segments_of_level_ = level_->choose(places);
     }
 
-    void assemble_matrices(ConfigurationView const& configuration) override { configuration_ = configuration; }
+    void assemble_matrices(ConfigurationView const& configuration) override {
+        configuration_ = configuration;
+    }
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         time_once(loads, out);
         least_.fill(std::numeric_limits<double>::infinity());
         double const start = seconds_now();
-        for (int i = 0; i < effort_.most && (i < effort_.least || seconds_now() - start < effort_.seconds); ++i) {
+        for (int i = 0;
+             i < effort_.most && (i < effort_.least || seconds_now() - start < effort_.seconds);
+             ++i) {
             LevelSeconds const once = time_once(loads, out);
             for (std::size_t c = 0; c < level_costs; ++c) least_[c] = std::min(least_[c], once[c]);
         }
@@ -87,7 +94,8 @@ class Probe final : public ChainSolver {
 
 }  // namespace
 
-LevelSeconds measure_level_costs(Family const& family, std::int64_t bodies, dca::LevelPartMaker const& maker, Effort const& effort) {
+LevelSeconds measure_level_costs(Family const& family, std::int64_t bodies,
+                                 dca::LevelPartMaker const& maker, Effort const& effort) {
     Scene const scene = sample(family, bodies);
     auto const communicator = serial_communicator();
     auto const executor = serial_executor();
@@ -96,14 +104,16 @@ LevelSeconds measure_level_costs(Family const& family, std::int64_t bodies, dca:
     auto owned = std::make_unique<Probe>(group, maker, effort);
     Probe const& probe = *owned;
     if (family.axes == Axes::joint) {
-        auto const dynamics = make_joint_dynamics(group, scene, *executor, *communicator, std::move(owned));
+        auto const dynamics =
+            make_joint_dynamics(group, scene, *executor, *communicator, std::move(owned));
         dynamics->update_configuration();
         dynamics->assemble_matrices();
         dynamics->solve();
         return probe.least();
     }
-    auto const dynamics = group.beads ? make_bead_dynamics(group, scene, *executor, *communicator, std::move(owned))
-                                      : make_rigid_dynamics(group, scene, *executor, *communicator, std::move(owned));
+    auto const dynamics =
+        group.beads ? make_bead_dynamics(group, scene, *executor, *communicator, std::move(owned))
+                    : make_rigid_dynamics(group, scene, *executor, *communicator, std::move(owned));
     dynamics->update_configuration();
     dynamics->set_simple_forces();
     dynamics->assemble_matrices();

@@ -41,10 +41,14 @@ double LevelPlan::seconds(GpuLevels cut) const {
     }
     if (up > 0) sum += rows_[static_cast<std::size_t>(up)].cut_up;
     if (down > 0) sum += rows_[static_cast<std::size_t>(down)].cut_down;
-    for (LevelledShare const& each : shares_) {  // joints eliminated in one place and needed in the other
+    for (LevelledShare const& each :
+         shares_) {  // joints eliminated in one place and needed in the other
         std::vector<std::int64_t> const& merges = each.share.merges;
-        auto const at = [&](int level) { return merges.begin() + std::min<std::ptrdiff_t>(level, std::ssize(merges)); };
-        std::int64_t const between = std::accumulate(at(std::min(up, down)), at(std::max(up, down)), std::int64_t{0});
+        auto const at = [&](int level) {
+            return merges.begin() + std::min<std::ptrdiff_t>(level, std::ssize(merges));
+        };
+        std::int64_t const between =
+            std::accumulate(at(std::min(up, down)), at(std::max(up, down)), std::int64_t{0});
         if (between > 0) sum += each.gpu.at(between)[joints_across];
     }
     return sum;

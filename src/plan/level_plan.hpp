@@ -1,4 +1,5 @@
-// How many of the pairwise tree's lowest levels a GPU should have (chapter, Fig. 2.3, extended to the way down).
+// How many of the pairwise tree's lowest levels a GPU should have (chapter, Fig. 2.3, extended to
+// the way down).
 #pragma once
 
 #include <vector>

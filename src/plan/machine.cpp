@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "cuda/space/memory.hpp"
 #include "cuda/device/gpu.hpp"
+#include "cuda/space/memory.hpp"
 #include "force/openmm_force.hpp"
 #include "measure/hardware.hpp"
 
@@ -16,7 +16,8 @@ namespace {
 std::string build() {
     struct stat file{};
     if (::stat("/proc/self/exe", &file) != 0) return "unknown";
-    return std::to_string(file.st_size) + " bytes of " + std::to_string(file.st_mtim.tv_sec) + "." + std::to_string(file.st_mtim.tv_nsec);
+    return std::to_string(file.st_size) + " bytes of " + std::to_string(file.st_mtim.tv_sec) + "." +
+           std::to_string(file.st_mtim.tv_nsec);
 }
 
 /// 2, 4, 8, ... and all; where so many are asked for, these alone.
@@ -34,12 +35,14 @@ double gpu_memory_of(Family const& family, std::int64_t bodies) {
     Scene const scene = sample(family, counted);
     auto const alone = serial_communicator();
     auto const groups = make_groups(scene, family.axes, family.handles, false, *alone);
-    double const bytes = static_cast<double>(cuda::memory_needed(*groups.front(), scene, Backend::cuda, *alone).sum());
+    double const bytes = static_cast<double>(
+        cuda::memory_needed(*groups.front(), scene, Backend::cuda, *alone).sum());
     return bytes * static_cast<double>(bodies) / static_cast<double>(counted);
 }
 
 template <class Use>
-auto with_sample(Family const& family, std::int64_t bodies, Arrangement const& arrangement, Use const& use) {
+auto with_sample(Family const& family, std::int64_t bodies, Arrangement const& arrangement,
+                 Use const& use) {
     Scene const scene = arranged(sample(family, bodies), arrangement);
     auto const alone = serial_communicator();
     ChainSystem system(scene, family.axes, *alone);
@@ -58,32 +61,42 @@ Machine this_machine(Communicator const& communicator, int threads) {
     int const cores = cores_of_rank(communicator);
     Machine m;
     m.threads = openmp_is_built() ? (threads > 0 ? threads : cores) : 1;
-    if (m.threads > 1 && threads == 0) m.spare = spare_cores(communicator);  // a number that was asked for is the user's word
+    if (m.threads > 1 && threads == 0)
+        m.spare = spare_cores(communicator);  // a number that was asked for is the user's word
     m.no_gpu = cuda::why_not();
     m.alike.push_back({Backend::segments, 1});
-    for (int const number : numbers_of_threads(m.threads, threads > 0)) m.alike.push_back({Backend::openmp, number});
+    for (int const number : numbers_of_threads(m.threads, threads > 0))
+        m.alike.push_back({Backend::openmp, number});
     if (m.no_gpu.empty()) m.alike.push_back({Backend::cuda, m.threads});
     m.others.push_back({Backend::serial, 1});
-    m.identity = processor_name() + ", " + std::to_string(cores) + " of " + std::to_string(processor_threads()) + " threads, " +
-                 std::to_string(communicator.ranks_on_host()) + " ranks; " + (m.no_gpu.empty() ? cuda::device_name() : "no GPU") +
-                 "; catena " + CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", simd " + name_of(best_simd_level()) +
-                 ", " + build();
+    m.identity = processor_name() + ", " + std::to_string(cores) + " of " +
+                 std::to_string(processor_threads()) + " threads, " +
+                 std::to_string(communicator.ranks_on_host()) + " ranks; " +
+                 (m.no_gpu.empty() ? cuda::device_name() : "no GPU") + "; catena " +
+                 CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", simd " +
+                 name_of(best_simd_level()) + ", " + build();
     m.measure = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
-        return with_sample(family, bodies, arrangement, [](ChainSystem& system) { return measure_phases(system); });
+        return with_sample(family, bodies, arrangement,
+                           [](ChainSystem& system) { return measure_phases(system); });
     };
-    m.measure_drifts = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
-        return with_sample(family, bodies, arrangement, [](ChainSystem& system) { return measure_drifts(system); });
+    m.measure_drifts = [](Family const& family, std::int64_t bodies,
+                          Arrangement const& arrangement) {
+        return with_sample(family, bodies, arrangement,
+                           [](ChainSystem& system) { return measure_drifts(system); });
     };
     m.measure_levels = [](Family const& family, std::int64_t bodies, Place place, int of_host) {
         auto const executor = openmp_is_built() ? openmp_executor(of_host) : serial_executor();
-        return measure_level_costs(family, bodies, place == Place::gpu ? cuda::make_levels : dca::host_levels(*executor));
+        return measure_level_costs(
+            family, bodies, place == Place::gpu ? cuda::make_levels : dca::host_levels(*executor));
     };
     m.gpu_memory = gpu_memory_of;
     m.openmm_on_gpu = [] {
         auto const platforms = openmm_platforms();
         return std::find(platforms.begin(), platforms.end(), "CUDA") != platforms.end();
     };
-    m.free_gpu_memory = [&communicator] { return static_cast<double>(cuda::free_memory(communicator)); };
+    m.free_gpu_memory = [&communicator] {
+        return static_cast<double>(cuda::free_memory(communicator));
+    };
     return m;
 }
 

@@ -41,8 +41,9 @@ PhaseSeconds time_once(ChainSystem& system) {
 
 std::string Arrangement::name() const {
     std::string const text = name_of(backend);
-    return threads == 1 && backend != Backend::openmp ? text
-                                                      : text + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    return threads == 1 && backend != Backend::openmp
+               ? text
+               : text + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
 }
 
 Scene arranged(Scene scene, Arrangement const& arrangement) {
@@ -63,7 +64,8 @@ PhaseSeconds measure_phases(ChainSystem& system, Effort const& effort) {
         if (communicator.max(enough ? 1 : 0) > 0) break;
         communicator.barrier();
         PhaseSeconds const once = time_once(system);
-        for (std::size_t p = 0; p < phases; ++p) least[p] = std::min(least[p], communicator.max(once[p]));
+        for (std::size_t p = 0; p < phases; ++p)
+            least[p] = std::min(least[p], communicator.max(once[p]));
         evaluations.push_back(communicator.max(once[evaluation]));
     }
     least[typical_evaluation] = spread_of(evaluations).median;

@@ -20,16 +20,25 @@ struct Arrangement {
     std::string name() const;
 };
 
-/// `evaluation` is the whole of it, which may be less than its phases: projected handles have matrices and biases in one sweep. What
-/// disturbs a machine makes it slower, never faster: these are the shortest of several; `typical_evaluation` is their median, which says
-/// what several threads really come to where others use the cores too.
-enum Phase : std::size_t { kinematics, matrix_sweep, bias_sweep, evaluation, typical_evaluation, phases };
-inline constexpr std::array<char const*, phases> phase_names{"kinematics and loads", "matrix sweep", "bias sweep", "evaluation",
-                                                             "evaluation, median"};
+/// `evaluation` is the whole of it, which may be less than its phases: projected handles have
+/// matrices and biases in one sweep. What disturbs a machine makes it slower, never faster: these
+/// are the shortest of several; `typical_evaluation` is their median, which says what several
+/// threads really come to where others use the cores too.
+enum Phase : std::size_t {
+    kinematics,
+    matrix_sweep,
+    bias_sweep,
+    evaluation,
+    typical_evaluation,
+    phases
+};
+inline constexpr std::array<char const*, phases> phase_names{
+    "kinematics and loads", "matrix sweep", "bias sweep", "evaluation", "evaluation, median"};
 using PhaseSeconds = std::array<double, phases>;
 using PhaseCurve = Curve<phases>;
 
-/// How much a measurement may cost: evaluations, and seconds after which no more are begun (`least` are made in any case).
+/// How much a measurement may cost: evaluations, and seconds after which no more are begun (`least`
+/// are made in any case).
 struct Effort {
     int least = 3, most = 200;
     double seconds = 0.02;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <concepts>
 
+#include "error.hpp"
 #include "plan/plan_network.hpp"
 #include "plan/plan_steps.hpp"
-#include "error.hpp"
 #include "run/step_messages.hpp"
 
 namespace catena::command {
@@ -21,9 +21,12 @@ Json json_of(Traffic const& t) {
     return json;
 }
 
-Json json_of(Link const& link) { return {{"latency", link.latency}, {"seconds_a_byte", link.seconds_a_byte}}; }
+Json json_of(Link const& link) {
+    return {{"latency", link.latency}, {"seconds_a_byte", link.seconds_a_byte}};
+}
 
-/// Sums over the groups: without sweeps of drifts (corrections of tips), and what each of these adds.
+/// Sums over the groups: without sweeps of drifts (corrections of tips), and what each of these
+/// adds.
 struct Messages {
     Traffic fixed, each;
     Traffic with(int sweeps) const {
@@ -41,7 +44,8 @@ Cut cut_on(ChainGroup const& group, bool pairwise, GatherWay const& way) {
     dca::Partition const there(lengths, pairwise, static_cast<int>(way.ranks), here.tip);
     Cut cut;
     for (int chain = 0; chain < there.chains(); ++chain)
-        if (there.is_split(chain)) cut.shared_units += there.trees[static_cast<std::size_t>(chain)].units;
+        if (there.is_split(chain))
+            cut.shared_units += there.trees[static_cast<std::size_t>(chain)].units;
     cut.inboard = cut.outboard = cut.shared_units > 0;
     cut.way = way;
     return cut;
@@ -71,7 +75,9 @@ class Groups {
         return messages([&](ChainGroup const& group) { return cut_on(group, pairwise, way); });
     }
     /// With the usual sweeps.
-    Traffic traffic(GatherWay const& way) const { return messages(way).with(usual_sweeps(system_.scene().dynamics)); }
+    Traffic traffic(GatherWay const& way) const {
+        return messages(way).with(usual_sweeps(system_.scene().dynamics));
+    }
 
   private:
     ChainSystem const& system_;
@@ -83,33 +89,45 @@ std::string network_text(PlanRequest const& request, Network const& network) {
     if (!request.latency) return text;
     Link const &near = *network.near, &far = *network.far;
     bool const same = near.latency == far.latency && near.seconds_a_byte == far.seconds_a_byte;
-    return text + fmt::format("{}{} and {:.3g} GB/s between hosts{}{}", text.empty() ? "" : ", with ", duration_text(far.latency),
-                              1e-9 / far.seconds_a_byte, same ? "; the same within a host" : "",
-                              text.empty() ? ", and gathers as the model says: nothing was measured" : "");
+    return text +
+           fmt::format("{}{} and {:.3g} GB/s between hosts{}{}", text.empty() ? "" : ", with ",
+                       duration_text(far.latency), 1e-9 / far.seconds_a_byte,
+                       same ? "; the same within a host" : "",
+                       text.empty() ? ", and gathers as the model says: nothing was measured" : "");
 }
 
-double seconds_of(Traffic const& t, Network const& network, GatherWay const& way, std::int64_t hosts) {
+double seconds_of(Traffic const& t, Network const& network, GatherWay const& way,
+                  std::int64_t hosts) {
     double seconds = 0;
-    if (t.gathers > 0) seconds += static_cast<double>(t.gathers) * network.gather_seconds(t.gathered_bytes / t.gathers, way);
-    if (t.exchanges > 0) seconds += static_cast<double>(t.exchanges) * network.exchange_seconds(t.sent_bytes / t.exchanges, hosts);
+    if (t.gathers > 0)
+        seconds += static_cast<double>(t.gathers) *
+                   network.gather_seconds(t.gathered_bytes / t.gathers, way);
+    if (t.exchanges > 0)
+        seconds += static_cast<double>(t.exchanges) *
+                   network.exchange_seconds(t.sent_bytes / t.exchanges, hosts);
     return seconds;
 }
 
-/// The model's word on the ranks at hand beside what they take: the same messages, nothing computed meanwhile.
-void add_measured(Text& text, Json& json, ChainSystem const& system, Groups const& groups, Network const& network) {
+/// The model's word on the ranks at hand beside what they take: the same messages, nothing computed
+/// meanwhile.
+void add_measured(Text& text, Json& json, ChainSystem const& system, Groups const& groups,
+                  Network const& network) {
     Communicator const& communicator = system.communicator();
     std::int64_t const ranks = communicator.size(), hosts = count_hosts(communicator);
     json["network"] = {{"measured", nullptr}};
     if (ranks == 1 || !network.near || (hosts > 1 && !network.far)) return;
     GatherWay const& way = communicator.gather_way();
     Traffic const t = groups.traffic(way);
-    double const measured = time_messages(communicator, t, measurements), predicted = seconds_of(t, network, way, hosts);
-    text.entry("measured", fmt::format("messages of a step {} on these {} ranks, predicted {}", duration_text(measured), ranks,
-                                       duration_text(predicted)));
-    json["network"]["measured"] = {{"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
+    double const measured = time_messages(communicator, t, measurements),
+                 predicted = seconds_of(t, network, way, hosts);
+    text.entry("measured", fmt::format("messages of a step {} on these {} ranks, predicted {}",
+                                       duration_text(measured), ranks, duration_text(predicted)));
+    json["network"]["measured"] = {
+        {"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
 }
 
-std::vector<MessagesOnRanks> messages_on(Groups const& groups, Network const& network, PlanRequest const& request) {
+std::vector<MessagesOnRanks> messages_on(Groups const& groups, Network const& network,
+                                         PlanRequest const& request) {
     std::vector<MessagesOnRanks> rows;
     for (std::int64_t const ranks : numbers_of_ranks(request.ranks)) {
         std::int64_t const hosts = std::max<std::int64_t>(1, request.hosts * ranks / request.ranks);
@@ -122,29 +140,36 @@ std::vector<MessagesOnRanks> messages_on(Groups const& groups, Network const& ne
 
 void add_counts(Text& text, Json& json, ChainSystem const& system, Groups const& groups) {
     GatherWay const& way = system.communicator().gather_way();
-    Messages const here = groups.messages([&](ChainGroup const& group) { return cut_of(group, way); });
+    Messages const here =
+        groups.messages([&](ChainGroup const& group) { return cut_of(group, way); });
     text.heading("messages");
-    text.entry(
-        "a step",
-        fmt::format("{} gathers of {} bytes in all, {} exchanges in which rank 0 sends {} bytes; each sweep of a drift or correction "
-                    "of tips adds {} gathers, {} bytes, {} exchanges, {} bytes",
-                    here.fixed.gathers, here.fixed.gathered_bytes, here.fixed.exchanges, here.fixed.sent_bytes, here.each.gathers,
-                    here.each.gathered_bytes, here.each.exchanges, here.each.sent_bytes));
+    text.entry("a step",
+               fmt::format("{} gathers of {} bytes in all, {} exchanges in which rank 0 sends {} "
+                           "bytes; each sweep of a drift or correction "
+                           "of tips adds {} gathers, {} bytes, {} exchanges, {} bytes",
+                           here.fixed.gathers, here.fixed.gathered_bytes, here.fixed.exchanges,
+                           here.fixed.sent_bytes, here.each.gathers, here.each.gathered_bytes,
+                           here.each.exchanges, here.each.sent_bytes));
     if (way.stages == 2)
-        text.entry("in two stages",
-                   fmt::format("{} waits within a host and {} gathers of {} bytes in all between hosts; each sweep adds {}, {}, {} bytes",
-                               here.fixed.host_waits, here.fixed.leader_gathers, here.fixed.leader_bytes, here.each.host_waits,
-                               here.each.leader_gathers, here.each.leader_bytes));
+        text.entry(
+            "in two stages",
+            fmt::format("{} waits within a host and {} gathers of {} bytes in all between hosts; "
+                        "each sweep adds {}, {}, {} bytes",
+                        here.fixed.host_waits, here.fixed.leader_gathers, here.fixed.leader_bytes,
+                        here.each.host_waits, here.each.leader_gathers, here.each.leader_bytes));
     json["messages"] = {{"fixed", json_of(here.fixed)}, {"each_sweep", json_of(here.each)}};
 }
 
 }  // namespace
 
-void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest const& request, Predictions const& predictions) {
+void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest const& request,
+                  Predictions const& predictions) {
     Scene const& scene = system.scene();
     json["messages"] = nullptr;
     if (!scene.dynamics.given) {
-        if (request.ranks > 0) throw InputError("the scene has no dynamics section", scene.file, "add one: --ranks predicts its steps");
+        if (request.ranks > 0)
+            throw InputError("the scene has no dynamics section", scene.file,
+                             "add one: --ranks predicts its steps");
         return;
     }
     Groups const groups(system);
@@ -152,10 +177,11 @@ void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest
     if (request.ranks == 0) return;
     Network const network = network_of(request);
     add_measured(text, json, system, groups, network);
-    json["network"].update(
-        {{"near", network.near ? json_of(*network.near) : Json(nullptr)}, {"far", network.far ? json_of(*network.far) : Json(nullptr)}});
+    json["network"].update({{"near", network.near ? json_of(*network.near) : Json(nullptr)},
+                            {"far", network.far ? json_of(*network.far) : Json(nullptr)}});
     text.entry("network", network_text(request, network));
-    if (system.communicator().rank() == 0) add_steps(text, json, scene, messages_on(groups, network, request), predictions);
+    if (system.communicator().rank() == 0)
+        add_steps(text, json, scene, messages_on(groups, network, request), predictions);
 }
 
 }  // namespace catena::command

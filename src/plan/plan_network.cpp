@@ -14,12 +14,15 @@ namespace {
 /// Seconds or bytes: finite, and at least zero.
 double quantity(Json const& json, char const* key) {
     double const value = json.at(key).get<double>();
-    if (!std::isfinite(value) || value < 0) throw InputError(fmt::format("{} is {}", key, value), "--network", "give a number from 0 on");
+    if (!std::isfinite(value) || value < 0)
+        throw InputError(fmt::format("{} is {}", key, value), "--network",
+                         "give a number from 0 on");
     return value;
 }
 
 Link link_of(Json const& json) {
-    if (!json.contains("bandwidth")) return {quantity(json, "latency"), quantity(json, "seconds_a_byte")};
+    if (!json.contains("bandwidth"))
+        return {quantity(json, "latency"), quantity(json, "seconds_a_byte")};
     double const bandwidth = quantity(json, "bandwidth");
     if (bandwidth == 0) throw InputError("bandwidth is 0", "--network", "give bytes per second");
     return {quantity(json, "latency"), 1 / bandwidth};
@@ -31,9 +34,11 @@ Network read_network(std::string const& file) {
         Json const json = Json::parse(read_text_file(file)).at("network");
         for (auto const& [key, link] : {std::pair{"near", &network.near}, {"far", &network.far}})
             if (json.contains(key) && !json.at(key).is_null()) *link = link_of(json.at(key));
-        if (json.contains("gather_overhead")) network.gather_overhead = quantity(json, "gather_overhead");
+        if (json.contains("gather_overhead"))
+            network.gather_overhead = quantity(json, "gather_overhead");
     } catch (Json::exception const&) {
-        throw InputError("not the JSON of a network", "--network " + file, "write it by mpirun -np 2 catena bench network --json " + file);
+        throw InputError("not the JSON of a network", "--network " + file,
+                         "write it by mpirun -np 2 catena bench network --json " + file);
     }
     if (!network.near) network.near = network.far;
     return network;
@@ -48,11 +53,14 @@ Network network_of(PlanRequest const& request) {
     if (!network.near) network.near = network.far;  // a file of one rank measured no link at all
     if (request.ranks > 1 && !network.near)
         throw InputError("measured on one rank", "--network " + request.network,
-                         "add --latency and --bandwidth (1.5us, 12.5GB/s), or measure on two ranks at least: mpirun -np 2 catena bench "
+                         "add --latency and --bandwidth (1.5us, 12.5GB/s), or measure on two ranks "
+                         "at least: mpirun -np 2 catena bench "
                          "network");
     if (request.hosts > 1 && !network.far)
-        throw InputError("the network was measured on one host, it knows no link between hosts", "--network " + request.network,
-                         "add --latency and --bandwidth of that link (1.5us, 12.5GB/s), measure over two hosts, or leave --hosts out");
+        throw InputError("the network was measured on one host, it knows no link between hosts",
+                         "--network " + request.network,
+                         "add --latency and --bandwidth of that link (1.5us, 12.5GB/s), measure "
+                         "over two hosts, or leave --hosts out");
     return network;
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tree/tree.hpp"
 #include "dynamics/joint/joint_dynamics.hpp"
 #include "integrate/joint_integrators.hpp"
+#include "tree/tree.hpp"
 
 namespace catena::command {
 namespace {
@@ -16,31 +16,46 @@ namespace {
 constexpr int usual_drift_sweeps = 4;
 
 /// What the numbers stand for, and what is not in them.
-std::vector<std::string> notes_on(Scene const& scene, std::vector<plan::StepPrediction> const& steps) {
+std::vector<std::string> notes_on(Scene const& scene,
+                                  std::vector<plan::StepPrediction> const& steps) {
     DynamicsSpec const& d = scene.dynamics;
-    auto const any = [&](auto const& condition) { return std::any_of(steps.begin(), steps.end(), condition); };
+    auto const any = [&](auto const& condition) {
+        return std::any_of(steps.begin(), steps.end(), condition);
+    };
     std::vector<std::string> notes{
-        "computing is the largest rank's, by what was measured on this machine (the shortest of several): every rank is taken to be like "
+        "computing is the largest rank's, by what was measured on this machine (the shortest of "
+        "several): every rank is taken to be like "
         "this one, with its memory to itself",
         "messages come after all computing",
-        fmt::format("left out: the tree above the units (at most {} a chain), which every rank computes{}", dca::max_units,
-                    uses_joint_coordinates(d.integrator) ? ", and loops that move the state" : "")};
+        fmt::format(
+            "left out: the tree above the units (at most {} a chain), which every rank computes{}",
+            dca::max_units,
+            uses_joint_coordinates(d.integrator) ? ", and loops that move the state" : "")};
     if (any([](plan::StepPrediction const& s) { return uses_gpu(s.arrangement.backend); }))
         notes[1] +=
-            ", from host to host, also where GPUs of one host can write into each other's memory; copies between GPU and host are "
+            ", from host to host, also where GPUs of one host can write into each other's memory; "
+            "copies between GPU and host are "
             "not among them";
-    if (scene.forces.openmm) notes.emplace_back("OpenMM's forces are not predicted: the chains' own work and messages alone");
+    if (scene.forces.openmm)
+        notes.emplace_back(
+            "OpenMM's forces are not predicted: the chains' own work and messages alone");
     if (d.fixman) notes.emplace_back("forces of the Fixman potential are not predicted");
-    if (scene.solver.refine > 0) notes.emplace_back("what refinements look for on the host is not predicted");
-    if (d.tolerance > 0) notes.emplace_back("of one inner step; a step has as many as dynamics.tolerance asks for");
-    if (d.integrator == Integrator::implicit_g_baoab) notes.emplace_back("of drifts in one part; a run may take them in more");
+    if (scene.solver.refine > 0)
+        notes.emplace_back("what refinements look for on the host is not predicted");
+    if (d.tolerance > 0)
+        notes.emplace_back("of one inner step; a step has as many as dynamics.tolerance asks for");
+    if (d.integrator == Integrator::implicit_g_baoab)
+        notes.emplace_back("of drifts in one part; a run may take them in more");
     for (plan::StepPrediction const& s : steps)
         if (!s.unusable.empty())
-            notes.push_back(
-                fmt::format("{} on {} cannot be used: {}", s.arrangement.name(), counted(s.ranks, "rank", "ranks"), s.unusable));
-    if (any([](plan::StepPrediction const& s) { return s.unusable.empty() && !std::isfinite(s.seconds); }))
-        notes.push_back(fmt::format("{} has its sweeps measured together: steps of more than evaluations are not predicted",
-                                    steps.front().arrangement.name()));
+            notes.push_back(fmt::format("{} on {} cannot be used: {}", s.arrangement.name(),
+                                        counted(s.ranks, "rank", "ranks"), s.unusable));
+    if (any([](plan::StepPrediction const& s) {
+            return s.unusable.empty() && !std::isfinite(s.seconds);
+        }))
+        notes.push_back(fmt::format(
+            "{} has its sweeps measured together: steps of more than evaluations are not predicted",
+            steps.front().arrangement.name()));
     return notes;
 }
 
@@ -54,12 +69,14 @@ std::string text_of(plan::StepWork const& work, Scene const& scene) {
     add(work.kinematics, "pass of the kinematics", "passes of the kinematics");
     add(work.matrix_sweeps, "matrix sweep", "matrix sweeps");
     add(work.bias_sweeps, "bias sweep", "bias sweeps");
-    add(work.drifts, "drift with its matrix sweep and kick", "drifts with a matrix sweep and a kick each");
+    add(work.drifts, "drift with its matrix sweep and kick",
+        "drifts with a matrix sweep and a kick each");
     add(work.closings, "bias sweep that closes joints", "bias sweeps that close joints");
     add(work.noises, "thermostat's noise", "thermostats' noises");
     std::string const text = fmt::format("{}", fmt::join(parts, ", "));
     return has_jointed_tips(scene) && !work.absolute()
-               ? text + fmt::format("; {} corrections of jointed tips", usual_sweeps(scene.dynamics))
+               ? text +
+                     fmt::format("; {} corrections of jointed tips", usual_sweeps(scene.dynamics))
                : text;
 }
 Json json_of(plan::StepWork const& work) {
@@ -74,7 +91,8 @@ Json json_of(plan::StepWork const& work) {
 
 std::string cell(double seconds) { return std::isfinite(seconds) ? duration_text(seconds) : "-"; }
 
-Json row_of(MessagesOnRanks const& messages, plan::StepPrediction const& computing, double one_rank) {
+Json row_of(MessagesOnRanks const& messages, plan::StepPrediction const& computing,
+            double one_rank) {
     double const step = computing.seconds + messages.seconds, speed_up = one_rank / step;
     Json row = {{"ranks", messages.ranks},
                 {"hosts", messages.hosts},
@@ -93,26 +111,33 @@ Json row_of(MessagesOnRanks const& messages, plan::StepPrediction const& computi
 }  // namespace
 
 int usual_sweeps(DynamicsSpec const& dynamics) {
-    return uses_joint_coordinates(dynamics.integrator) ? JointDynamics::usual_corrections : usual_drift_sweeps;
+    return uses_joint_coordinates(dynamics.integrator) ? JointDynamics::usual_corrections
+                                                       : usual_drift_sweeps;
 }
 
 std::vector<int> numbers_of_ranks(std::int64_t most) {
     std::vector<int> numbers;
-    for (std::int64_t ranks = 1; ranks < most; ranks *= 2) numbers.push_back(static_cast<int>(ranks));
+    for (std::int64_t ranks = 1; ranks < most; ranks *= 2)
+        numbers.push_back(static_cast<int>(ranks));
     numbers.push_back(static_cast<int>(most));
     return numbers;
 }
 
-void predict_steps(Predictions& predictions, plan::Planner& planner, Scene const& scene, Axes axes, std::int64_t most_ranks) {
+void predict_steps(Predictions& predictions, plan::Planner& planner, Scene const& scene, Axes axes,
+                   std::int64_t most_ranks) {
     predictions.work = plan::work_of_step(scene, usual_sweeps(scene.dynamics));
     for (int const ranks : numbers_of_ranks(most_ranks))
-        predictions.steps.push_back(plan::predict_step(planner, scene, axes, predictions.work, ranks));
+        predictions.steps.push_back(
+            plan::predict_step(planner, scene, axes, predictions.work, ranks));
 }
 
-void add_steps(Text& text, Json& json, Scene const& scene, std::vector<MessagesOnRanks> const& messages, Predictions const& predictions) {
-    Table times({"ranks", "hosts", "bodies a rank", "computed by", "computing", "messages", "a step", "times one rank", "efficiency"},
+void add_steps(Text& text, Json& json, Scene const& scene,
+               std::vector<MessagesOnRanks> const& messages, Predictions const& predictions) {
+    Table times({"ranks", "hosts", "bodies a rank", "computed by", "computing", "messages",
+                 "a step", "times one rank", "efficiency"},
                 {0, 3});
-    Table counts({"ranks", "hosts", "stages", "gathers", "bytes", "exchanges", "bytes sent", "messages"});
+    Table counts(
+        {"ranks", "hosts", "stages", "gathers", "bytes", "exchanges", "bytes sent", "messages"});
     Json rows = Json::array();
     double const one_rank = predictions.steps.front().seconds + messages.front().seconds;
     for (std::size_t i = 0; i < messages.size(); ++i) {
@@ -122,12 +147,15 @@ void add_steps(Text& text, Json& json, Scene const& scene, std::vector<MessagesO
         double const speed_up = row.at("speed_up").get<double>();
         bool const known = std::isfinite(speed_up);
         std::string const ranks = std::to_string(m.ranks), hosts = std::to_string(m.hosts);
-        times.add({ranks, hosts, std::to_string(computing.bodies), computing.arrangement.name(), cell(computing.seconds), cell(m.seconds),
-                   cell(row.at("step_seconds").get<double>()), known ? fmt::format("{:.4g}", speed_up) : "-",
-                   known ? fmt::format("{:.3g} %", 100 * row.at("efficiency").get<double>()) : "-"});
+        times.add(
+            {ranks, hosts, std::to_string(computing.bodies), computing.arrangement.name(),
+             cell(computing.seconds), cell(m.seconds), cell(row.at("step_seconds").get<double>()),
+             known ? fmt::format("{:.4g}", speed_up) : "-",
+             known ? fmt::format("{:.3g} %", 100 * row.at("efficiency").get<double>()) : "-"});
         Traffic const& t = m.traffic;
-        counts.add({ranks, hosts, std::to_string(m.stages), std::to_string(t.gathers), std::to_string(t.gathered_bytes),
-                    std::to_string(t.exchanges), std::to_string(t.sent_bytes), cell(m.seconds)});
+        counts.add({ranks, hosts, std::to_string(m.stages), std::to_string(t.gathers),
+                    std::to_string(t.gathered_bytes), std::to_string(t.exchanges),
+                    std::to_string(t.sent_bytes), cell(m.seconds)});
         rows.push_back(row);
     }
     std::vector<std::string> const notes = notes_on(scene, predictions.steps);

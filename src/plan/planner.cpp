@@ -37,26 +37,34 @@ Points const& measured_at(Points& curve, Numbers const& numbers, Measure const& 
 
 }  // namespace
 
-PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
-    return measured_at(calibration_.of(family, arrangement), of_evaluations.around(bodies, largest(family, arrangement)),
+PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& arrangement,
+                                     std::int64_t bodies) {
+    return measured_at(calibration_.of(family, arrangement),
+                       of_evaluations.around(bodies, largest(family, arrangement)),
                        [&](std::int64_t n) { return machine_.measure(family, n, arrangement); });
 }
 
-DriftCurve const& Planner::drifts_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
-    return measured_at(calibration_.of_drifts(family, arrangement), of_evaluations.around(bodies, largest(family, arrangement)),
-                       [&](std::int64_t n) { return machine_.measure_drifts(family, n, arrangement); });
+DriftCurve const& Planner::drifts_of(Family const& family, Arrangement const& arrangement,
+                                     std::int64_t bodies) {
+    return measured_at(
+        calibration_.of_drifts(family, arrangement),
+        of_evaluations.around(bodies, largest(family, arrangement)),
+        [&](std::int64_t n) { return machine_.measure_drifts(family, n, arrangement); });
 }
 
 LevelCurve const& Planner::levels_of(Family const& family, Place place, std::int64_t bodies) {
-    return measured_at(calibration_.of(family, place, machine_.threads), of_levels.up_to(bodies, largest_),
-                       [&](std::int64_t n) { return machine_.measure_levels(family, n, place, machine_.threads); });
+    return measured_at(calibration_.of(family, place, machine_.threads),
+                       of_levels.up_to(bodies, largest_), [&](std::int64_t n) {
+                           return machine_.measure_levels(family, n, place, machine_.threads);
+                       });
 }
 
 Prediction Planner::predict(std::vector<Share> const& shares, Arrangement const& arrangement) {
     Prediction found{arrangement, {}, true, {}};
     try {
         for (Share const& share : shares) {
-            PhaseSeconds const own = phases_of(share.family, arrangement, share.bodies).at(share.bodies);
+            PhaseSeconds const own =
+                phases_of(share.family, arrangement, share.bodies).at(share.bodies);
             for (std::size_t p = 0; p < phases; ++p) found.seconds[p] += own[p];
         }
     } catch (std::exception const& error) {
@@ -66,10 +74,12 @@ Prediction Planner::predict(std::vector<Share> const& shares, Arrangement const&
     return found;
 }
 
-DriftSeconds Planner::predict_drifts(std::vector<Share> const& shares, Arrangement const& arrangement) {
+DriftSeconds Planner::predict_drifts(std::vector<Share> const& shares,
+                                     Arrangement const& arrangement) {
     DriftSeconds sum{};
     for (Share const& share : shares) {
-        DriftSeconds const own = drifts_of(share.family, arrangement, share.bodies).at(share.bodies);
+        DriftSeconds const own =
+            drifts_of(share.family, arrangement, share.bodies).at(share.bodies);
         for (std::size_t c = 0; c < drift_costs; ++c) sum[c] += own[c];
     }
     return sum;
@@ -77,7 +87,8 @@ DriftSeconds Planner::predict_drifts(std::vector<Share> const& shares, Arrangeme
 
 std::vector<Prediction> Planner::predict(std::vector<Share> const& shares) {
     std::vector<Prediction> all;
-    for (Arrangement const& arrangement : machine_.alike) all.push_back(predict(shares, arrangement));
+    for (Arrangement const& arrangement : machine_.alike)
+        all.push_back(predict(shares, arrangement));
     for (Arrangement const& arrangement : machine_.others) {
         all.push_back(predict(shares, arrangement));
         all.back().alike = false;
@@ -88,18 +99,22 @@ std::vector<Prediction> Planner::predict(std::vector<Share> const& shares) {
 LevelPlan Planner::plan_levels(std::vector<Share> const& shares, Place gpu) {
     std::vector<LevelledShare> levelled;
     for (Share const& share : shares)
-        levelled.push_back({share, levels_of(share.family, Place::host, share.bodies), levels_of(share.family, gpu, share.bodies)});
+        levelled.push_back({share, levels_of(share.family, Place::host, share.bodies),
+                            levels_of(share.family, gpu, share.bodies)});
     return LevelPlan(levelled);
 }
 
-Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& levels, GpuLevels cut) {
+Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& levels,
+                            GpuLevels cut) {
     // What is not the tree's is the host's, with its threads.
-    Arrangement const host = machine_.threads > 1 ? Arrangement{Backend::openmp, machine_.threads} : Arrangement{};
+    Arrangement const host =
+        machine_.threads > 1 ? Arrangement{Backend::openmp, machine_.threads} : Arrangement{};
     Prediction found = predict(shares, host);
     found.arrangement = {Backend::cuda_levels, machine_.threads};
     found.alike = false;
     found.seconds[matrix_sweep] = found.seconds[bias_sweep] = std::nan("");
-    found.seconds[evaluation] = found.seconds[typical_evaluation] = found.seconds[kinematics] + levels.seconds(cut);
+    found.seconds[evaluation] = found.seconds[typical_evaluation] =
+        found.seconds[kinematics] + levels.seconds(cut);
     return found;
 }
 
@@ -107,7 +122,8 @@ void Planner::measure_everything() {
     for (Family const& family : all_families()) {
         for (auto const* list : {&machine_.alike, &machine_.others})
             for (Arrangement const& arrangement : *list)
-                for (std::int64_t const n : of_evaluations.up_to(largest(family, arrangement), largest(family, arrangement))) {
+                for (std::int64_t const n : of_evaluations.up_to(largest(family, arrangement),
+                                                                 largest(family, arrangement))) {
                     phases_of(family, arrangement, n);
                     if (family.axes == Axes::world) drifts_of(family, arrangement, n);
                 }
@@ -117,11 +133,14 @@ void Planner::measure_everything() {
 }
 
 Prediction const& quickest(std::vector<Prediction> const& predictions, double beside) {
-    double constexpr worth_it = 0.9;  // fewer threads wait for each other, and more are left to others
+    double constexpr worth_it =
+        0.9;  // fewer threads wait for each other, and more are left to others
     Prediction const* best = nullptr;
     for (Prediction const& p : predictions) {
         if (!p.alike || !p.unusable.empty()) continue;
-        if (!best || beside + p.seconds[typical_evaluation] < worth_it * (beside + best->seconds[typical_evaluation])) best = &p;
+        if (!best || beside + p.seconds[typical_evaluation] <
+                         worth_it * (beside + best->seconds[typical_evaluation]))
+            best = &p;
     }
     return *best;
 }

@@ -18,21 +18,27 @@ Json json_of(plan::PhaseSeconds const& seconds) {
 
 void add_levels(Text& text, Json& json, plan::LevelPlan const& levels) {
     GpuLevels const best = levels.best();
-    text.heading(fmt::format("level by level, of cuda-levels; quickest with {},{} on the GPU: {}, all: {}, none: {}", best.up, best.down,
-                             duration_text(levels.seconds(best)), duration_text(levels.seconds({})),
-                             duration_text(levels.seconds({0, 0}))));
-    Table table({"", "items", "up: host", "GPU", "transfer above", "down: host", "GPU", "transfer above"});
+    text.heading(fmt::format(
+        "level by level, of cuda-levels; quickest with {},{} on the GPU: {}, all: {}, none: {}",
+        best.up, best.down, duration_text(levels.seconds(best)), duration_text(levels.seconds({})),
+        duration_text(levels.seconds({0, 0}))));
+    Table table(
+        {"", "items", "up: host", "GPU", "transfer above", "down: host", "GPU", "transfer above"});
     Json& list = json["levels"] = Json::array();
     for (std::size_t l = 0; l < levels.rows().size(); ++l) {
         plan::LevelRow const& row = levels.rows()[l];
-        table.add({l == 0 ? "bodies" : "level " + std::to_string(l), std::to_string(row.items), cell(row.host_up), cell(row.gpu_up),
-                   l == 0 ? "-" : cell(row.cut_up), cell(row.host_down), cell(row.gpu_down), l == 0 ? "-" : cell(row.cut_down)});
-        list.push_back({{"items", row.items},
-                        {"up", {{"host", row.host_up}, {"gpu", row.gpu_up}, {"transfer_above", row.cut_up}}},
-                        {"down", {{"host", row.host_down}, {"gpu", row.gpu_down}, {"transfer_above", row.cut_down}}}});
+        table.add({l == 0 ? "bodies" : "level " + std::to_string(l), std::to_string(row.items),
+                   cell(row.host_up), cell(row.gpu_up), l == 0 ? "-" : cell(row.cut_up),
+                   cell(row.host_down), cell(row.gpu_down), l == 0 ? "-" : cell(row.cut_down)});
+        list.push_back(
+            {{"items", row.items},
+             {"up", {{"host", row.host_up}, {"gpu", row.gpu_up}, {"transfer_above", row.cut_up}}},
+             {"down",
+              {{"host", row.host_down}, {"gpu", row.gpu_down}, {"transfer_above", row.cut_down}}}});
     }
     text.add(table);
-    json["gpu_levels"] = {{"up", best.up}, {"down", best.down}, {"predicted", levels.seconds(best)}};
+    json["gpu_levels"] = {
+        {"up", best.up}, {"down", best.down}, {"predicted", levels.seconds(best)}};
 }
 
 }  // namespace
@@ -45,29 +51,38 @@ Predictions predict(plan::Planner& planner, Scene const& scene, Axes axes, int r
     found.machine = planner.machine().identity;
     if (found.no_gpu.empty()) {
         found.levels = planner.plan_levels(shares);
-        bool const given = scene.solver.backend == Backend::cuda_levels && !plan::leaves_open(scene);
-        found.all.push_back(planner.predict(shares, *found.levels, given ? scene.solver.levels_on_gpu() : found.levels->best()));
+        bool const given =
+            scene.solver.backend == Backend::cuda_levels && !plan::leaves_open(scene);
+        found.all.push_back(planner.predict(
+            shares, *found.levels, given ? scene.solver.levels_on_gpu() : found.levels->best()));
     }
-    for (plan::Share const& share : shares) found.gpu_memory += planner.machine().gpu_memory(share.family, share.bodies);
+    for (plan::Share const& share : shares)
+        found.gpu_memory += planner.machine().gpu_memory(share.family, share.bodies);
     found.choice = plan::choose(scene, axes, planner, ranks);
     return found;
 }
 
-plan::Prediction const* prediction_of(Predictions const& predictions, plan::Arrangement const& arrangement) {
-    auto const same = [&](plan::Prediction const& p) { return p.unusable.empty() && p.arrangement == arrangement; };
+plan::Prediction const* prediction_of(Predictions const& predictions,
+                                      plan::Arrangement const& arrangement) {
+    auto const same = [&](plan::Prediction const& p) {
+        return p.unusable.empty() && p.arrangement == arrangement;
+    };
     auto const found = std::find_if(predictions.all.begin(), predictions.all.end(), same);
     return found == predictions.all.end() ? nullptr : &*found;
 }
 
 void add_predictions(Text& text, Json& json, Predictions const& predictions) {
     text.heading(
-        "predicted times of one evaluation, the largest rank's (from what was measured on this machine; messages and OpenMM aside)");
+        "predicted times of one evaluation, the largest rank's (from what was measured on this "
+        "machine; messages and OpenMM aside)");
     std::vector<std::string> header{""};
-    for (plan::Prediction const& p : predictions.all) header.push_back(p.arrangement.name() + (p.alike ? "" : " *"));
+    for (plan::Prediction const& p : predictions.all)
+        header.push_back(p.arrangement.name() + (p.alike ? "" : " *"));
     Table table(header);
     for (std::size_t phase = 0; phase < plan::phases; ++phase) {
         std::vector<std::string> row{plan::phase_names[phase]};
-        for (plan::Prediction const& p : predictions.all) row.push_back(p.unusable.empty() ? cell(p.seconds[phase]) : "-");
+        for (plan::Prediction const& p : predictions.all)
+            row.push_back(p.unusable.empty() ? cell(p.seconds[phase]) : "-");
         table.add(row);
     }
     text.add(table);
@@ -82,9 +97,12 @@ void add_predictions(Text& text, Json& json, Predictions const& predictions) {
     if (predictions.levels) add_levels(text, json, *predictions.levels);
 }
 
-void add_measured(Text& text, Json& json, Predictions const& predictions, plan::PhaseSeconds const& measured) {
-    plan::Prediction const* const predicted = prediction_of(predictions, predictions.choice.arrangement);
-    text.heading("predicted and measured, " + predictions.choice.arrangement.name() + " (the shortest of several)");
+void add_measured(Text& text, Json& json, Predictions const& predictions,
+                  plan::PhaseSeconds const& measured) {
+    plan::Prediction const* const predicted =
+        prediction_of(predictions, predictions.choice.arrangement);
+    text.heading("predicted and measured, " + predictions.choice.arrangement.name() +
+                 " (the shortest of several)");
     Table table({"", "predicted", "measured", "ratio"});
     Json& phases = json["measured_seconds"] = json_of(measured);
     phases["ratio"] = nullptr;
@@ -92,7 +110,8 @@ void add_measured(Text& text, Json& json, Predictions const& predictions, plan::
         double const seconds = predicted ? predicted->seconds[p] : std::nan("");
         table.add({plan::phase_names[p], cell(seconds), cell(measured[p]),
                    std::isfinite(seconds) ? fmt::format("{:.2f}", seconds / measured[p]) : "-"});
-        if (p == plan::evaluation && std::isfinite(seconds)) phases["ratio"] = seconds / measured[p];
+        if (p == plan::evaluation && std::isfinite(seconds))
+            phases["ratio"] = seconds / measured[p];
     }
     text.add(table);
 }

@@ -7,7 +7,8 @@
 
 namespace catena::command {
 
-/// Chains of so many bodies (Planner) stand for all larger ones: caches are full by then, threads and GPUs busy.
+/// Chains of so many bodies (Planner) stand for all larger ones: caches are full by then, threads
+/// and GPUs busy.
 inline constexpr std::int64_t largest_sample = 262144;
 
 struct Predictions {

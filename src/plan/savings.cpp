@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/describe.hpp"
 #include "cuda/device/gpu.hpp"
 #include "mpi/first_rank.hpp"
+#include "plan/describe.hpp"
 #include "plan/phases.hpp"
 
 namespace catena::command {
@@ -19,8 +19,10 @@ using plan::Family;
 constexpr std::int64_t largest_measured = 4096;
 
 Axes axes_of(ChainSystem const& system) {
-    bool const joint = std::any_of(system.groups().begin(), system.groups().end(),
-                                   [](auto const& group) { return !group->beads && !group->linked && group->axes == Axes::joint; });
+    bool const joint =
+        std::any_of(system.groups().begin(), system.groups().end(), [](auto const& group) {
+            return !group->beads && !group->linked && group->axes == Axes::joint;
+        });
     return joint ? Axes::joint : Axes::world;
 }
 
@@ -31,7 +33,8 @@ Scene bare(Family const& family, std::int64_t bodies) {
     scene.chains[0].bodies.wrench.clear();
     return scene;
 }
-/// The least of several, on one core, of chains without and with something; they turn about, so that what disturbs one disturbs both.
+/// The least of several, on one core, of chains without and with something; they turn about, so
+/// that what disturbs one disturbs both.
 double seconds_more(Scene const& without, Axes axes_without, Scene const& with, Axes axes_with) {
     auto const alone = serial_communicator();
     Scene const scenes[] = {plan::arranged(without, {}), plan::arranged(with, {})};
@@ -44,7 +47,8 @@ double seconds_more(Scene const& without, Axes axes_without, Scene const& with, 
     return std::max(0.0, more - least);
 }
 
-/// To bring the inboard one of two segments into the other one's axes, with six directions a handle, at every merge.
+/// To bring the inboard one of two segments into the other one's axes, with six directions a
+/// handle, at every merge.
 double seconds_of_turning(std::int64_t merges) {
     Mat3 const turn = to_matrix(normalized(Quat{1, 2, 3, 4}));
     using Block = Matrix<double, 6, 6>;
@@ -60,7 +64,8 @@ double seconds_of_turning(std::int64_t merges) {
             z12 = z12 * both;
         }
         double const spent = seconds_now() - start;
-        if (z22(0, 0) == z22(0, 0) && z12(0, 0) == z12(0, 0)) least = std::min(least, spent);  // so that they are computed
+        if (z22(0, 0) == z22(0, 0) && z12(0, 0) == z12(0, 0))
+            least = std::min(least, spent);  // so that they are computed
     }
     return least;
 }
@@ -86,57 +91,73 @@ std::function<double(std::int64_t)> following(Family const& family) {
 class List {
   public:
     explicit List(ForcesOnJoints const& found) : found_(found) {}
-    void add(std::string const& text, std::size_t share = 0, std::function<double(std::int64_t)> const& takes = {}) {
+    void add(std::string const& text, std::size_t share = 0,
+             std::function<double(std::int64_t)> const& takes = {}) {
         lines_.push_back({text, share, takes});
     }
     void add_beads(Family const& family, std::size_t share) {
         add("kinematics of beads: their positions are the coordinates");
-        add("rotations and inertias of beads: a bead is a point, both its handles are the bead itself", share, following(family));
+        add("rotations and inertias of beads: a bead is a point, both its handles are the bead "
+            "itself",
+            share, following(family));
     }
     void add_bodies(ChainGroup const& group, Family const& family, std::size_t share) {
         if (group.axes == Axes::joint) {
             if (!group.has_tips() && !group.carried_in_scene && found_.drag == 0) {
-                add("positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone",
-                    share, change_of(family, [](Scene& scene, std::size_t) { scene.forces.linear_drag = 1e-6; }));
+                add("positions and linear velocities of bodies: nothing in the scene acts by them; "
+                    "computed for output and energies alone",
+                    share, change_of(family, [](Scene& scene, std::size_t) {
+                        scene.forces.linear_drag = 1e-6;
+                    }));
                 if (found_.wrenches == 0)
-                    add("orientations of bodies but chains' first ones: nothing in the scene acts along ground axes; for output alone");
+                    add("orientations of bodies but chains' first ones: nothing in the scene acts "
+                        "along ground axes; for output alone");
             }
-            if (group.hinged && group.partition.trees.front().run_length > 1)
-                add("velocity terms and bodies' accelerations of chains on revolute joints where a step solves once: the solver goes from "
+            if (group.revolute && group.partition.trees.front().run_length > 1)
+                add("velocity terms and bodies' accelerations of chains on revolute joints where a "
+                    "step solves once: the solver goes from "
                     "rates to "
                     "rates",
                     share);
-            add("rotations at merges: both sides of a joint share its axes", share, seconds_of_turning);
+            add("rotations at merges: both sides of a joint share its axes", share,
+                seconds_of_turning);
         } else {
             add("kinematics along the chain: orientations and positions are the coordinates", share,
                 family.linked ? nullptr : following(family));
             add("rotations at merges: all handles are in ground axes", share, seconds_of_turning);
         }
         if (family.handles == Handles::projected && group.directions < 6)
-            add(fmt::format("{} of 6 directions a handle: the joints' forces along them are known", 6 - group.directions), share,
-                change_of(family, [](Scene& scene, std::size_t) { scene.solver.handles = Handles::full; }));
+            add(fmt::format("{} of 6 directions a handle: the joints' forces along them are known",
+                            6 - group.directions),
+                share, change_of(family, [](Scene& scene, std::size_t) {
+                    scene.solver.handles = Handles::full;
+                }));
         add_loads(family, share);
     }
-    std::vector<LeftOut> const& lines() const { return lines_; }
+    std::vector<Savings> const& lines() const { return lines_; }
 
   private:
     void add_loads(Family const& family, std::size_t share) {
         auto const on_all = [&](auto const& change) {
-            return family.linked ? std::function<double(std::int64_t)>() : change_of(family, change);
+            return family.linked ? std::function<double(std::int64_t)>()
+                                 : change_of(family, change);
         };
         Vec3 const ones{{1, 1, 1}};
         if (found_.springs == 0)
-            add("joint springs: there are none", share,
-                on_all([ones](Scene& s, std::size_t n) { s.chains[0].bodies.stiffness.assign(n, ones); }));
+            add("joint springs: there are none", share, on_all([ones](Scene& s, std::size_t n) {
+                    s.chains[0].bodies.stiffness.assign(n, ones);
+                }));
         if (found_.dampers == 0)
-            add("joint dampers: there are none", share,
-                on_all([ones](Scene& s, std::size_t n) { s.chains[0].bodies.damping.assign(n, ones); }));
+            add("joint dampers: there are none", share, on_all([ones](Scene& s, std::size_t n) {
+                    s.chains[0].bodies.damping.assign(n, ones);
+                }));
         if (found_.wrenches == 0)
-            add("external wrenches: there are none", share,
-                on_all([ones](Scene& s, std::size_t n) { s.chains[0].bodies.wrench.assign(n, {ones, ones}); }));
+            add("external wrenches: there are none", share, on_all([ones](Scene& s, std::size_t n) {
+                    s.chains[0].bodies.wrench.assign(n, {ones, ones});
+                }));
     }
     ForcesOnJoints found_;
-    std::vector<LeftOut> lines_;
+    std::vector<Savings> lines_;
 };
 
 /// The share that a group is.
@@ -145,7 +166,8 @@ std::size_t share_of(std::vector<plan::Share> const& shares, ChainGroup const& g
         bool const links = share.family.joint == scene::RandomJoint::link;
         return links == (group.beads || group.linked) && share.family.linked == group.linked;
     };
-    return static_cast<std::size_t>(std::find_if(shares.begin(), shares.end(), same) - shares.begin());
+    return static_cast<std::size_t>(std::find_if(shares.begin(), shares.end(), same) -
+                                    shares.begin());
 }
 
 double seconds_without(Family const& family, std::int64_t bodies) {
@@ -157,10 +179,11 @@ double seconds_without(Family const& family, std::int64_t bodies) {
 
 }  // namespace
 
-std::vector<LeftOut> left_out(Scene const& scene, ChainSystem const& system) {
+std::vector<Savings> left_out(Scene const& scene, ChainSystem const& system) {
     List list(forces_on_joints(scene));
     bool const full_handles = carries_all(scene.solver.handles);
-    std::vector<plan::Share> const shares = plan::shares_of(scene, axes_of(system), system.communicator().size());
+    std::vector<plan::Share> const shares =
+        plan::shares_of(scene, axes_of(system), system.communicator().size());
     for (auto const& group : system.groups()) {
         std::size_t const share = share_of(shares, *group);
         if (group->beads)
@@ -168,40 +191,52 @@ std::vector<LeftOut> left_out(Scene const& scene, ChainSystem const& system) {
         else
             list.add_bodies(*group, shares[share].family, share);
     }
-    if (full_handles) list.add(fmt::format("projection on the restricted directions: handles are {}", name_of(scene.solver.handles)));
+    if (full_handles)
+        list.add(fmt::format("projection on the restricted directions: handles are {}",
+                             name_of(scene.solver.handles)));
     if (!scene.forces.openmm) list.add("OpenMM: forces.openmm is not in the scene");
     if (system.backend() != Backend::openmp && !(uses_gpu(system.backend()) && openmp_is_built()))
         list.add("threads: this backend has one a rank");
     if (system.communicator().size() == 1) list.add("messages: there is one rank");
     if (!uses_gpu(system.backend()))
-        list.add("GPU: " +
-                 (cuda::why_not().empty() ? "there is " + cuda::device_name() + ", which this backend does without" : cuda::why_not()));
+        list.add("GPU: " + (cuda::why_not().empty() ? "there is " + cuda::device_name() +
+                                                          ", which this backend does without"
+                                                    : cuda::why_not()));
     return list.lines();
 }
 
 void add_savings(Text& text, Json& json, Scene const& scene, ChainSystem const& system) {
-    std::vector<LeftOut> const lines = left_out(scene, system);
-    std::vector<plan::Share> const shares = plan::shares_of(scene, axes_of(system), system.communicator().size());
+    std::vector<Savings> const lines = left_out(scene, system);
+    std::vector<plan::Share> const shares =
+        plan::shares_of(scene, axes_of(system), system.communicator().size());
     on_first_rank(system.communicator(), [&] {
-        text.note("measured: one evaluation of chains like the scene's, with it and without, on one core, scaled to the scene's bodies");
+        text.note(
+            "measured: one evaluation of chains like the scene's, with it and without, on one "
+            "core, scaled to the scene's bodies");
         Table table({"", "saves", "of an evaluation"}, {0});
         json["savings"] = Json::array();
-        for (LeftOut const& each : lines) {
+        for (Savings const& each : lines) {
             if (!each.takes) {
                 table.add({each.text, "-", "-"});
                 continue;
             }
             plan::Share const& share = shares[each.share];
             std::int64_t const bodies = std::min(share.bodies, largest_measured);
-            double const saved = each.takes(bodies), of_evaluation = saved / seconds_without(share.family, bodies);
+            double const saved = each.takes(bodies),
+                         of_evaluation = saved / seconds_without(share.family, bodies);
             if (!(saved > 0)) {  // a time is never below zero
                 table.add({each.text, "not resolved", "-"});
-                json["savings"].push_back({{"left_out", each.text}, {"seconds", nullptr}, {"of_an_evaluation", nullptr}});
+                json["savings"].push_back(
+                    {{"left_out", each.text}, {"seconds", nullptr}, {"of_an_evaluation", nullptr}});
                 continue;
             }
-            double const of_scene = saved * static_cast<double>(share.bodies) / static_cast<double>(bodies);
-            table.add({each.text, duration_text(of_scene), fmt::format("{:.0f} %", 100 * of_evaluation)});
-            json["savings"].push_back({{"left_out", each.text}, {"seconds", of_scene}, {"of_an_evaluation", of_evaluation}});
+            double const of_scene =
+                saved * static_cast<double>(share.bodies) / static_cast<double>(bodies);
+            table.add(
+                {each.text, duration_text(of_scene), fmt::format("{:.0f} %", 100 * of_evaluation)});
+            json["savings"].push_back({{"left_out", each.text},
+                                       {"seconds", of_scene},
+                                       {"of_an_evaluation", of_evaluation}});
         }
         text.add(table);
     });

@@ -11,16 +11,22 @@ namespace {
 
 /// With as many threads as `solver.threads: 0` stands for.
 Arrangement with_threads(Arrangement arrangement, Machine const& machine) {
-    bool const alone = arrangement.backend == Backend::serial || arrangement.backend == Backend::segments;
+    bool const alone =
+        arrangement.backend == Backend::serial || arrangement.backend == Backend::segments;
     if (alone || arrangement.threads == 0) arrangement.threads = alone ? 1 : machine.threads;
     return arrangement;
 }
 
-double seconds_on(Planner& planner, std::vector<Share> const& shares, StepWork const& work, Choice const& choice) {
+double seconds_on(Planner& planner, std::vector<Share> const& shares, StepWork const& work,
+                  Choice const& choice) {
     Machine const& machine = planner.machine();
     if (choice.arrangement.backend == Backend::cuda_levels) {
         if (!machine.no_gpu.empty()) throw std::runtime_error(machine.no_gpu);
-        return work.absolute() ? std::nan("") : work.seconds(planner.predict(shares, planner.plan_levels(shares), choice.levels).seconds);
+        return work.absolute()
+                   ? std::nan("")
+                   : work.seconds(
+                         planner.predict(shares, planner.plan_levels(shares), choice.levels)
+                             .seconds);
     }
     if (work.absolute()) return work.seconds(planner.predict_drifts(shares, choice.arrangement));
     Prediction const found = planner.predict(shares, choice.arrangement);
@@ -42,7 +48,9 @@ double StepWork::seconds(PhaseSeconds const& of) const {
     return sum;
 }
 
-double StepWork::seconds(DriftSeconds const& of) const { return drifts * of[drift] + closings * of[closing] + noises * of[noise]; }
+double StepWork::seconds(DriftSeconds const& of) const {
+    return drifts * of[drift] + closings * of[closing] + noises * of[noise];
+}
 
 StepWork work_of_step(Scene const& scene, int sweeps) {
     DynamicsSpec const& d = scene.dynamics;
@@ -50,17 +58,21 @@ StepWork work_of_step(Scene const& scene, int sweeps) {
         ConstrainedStep step;
         step.langevin = is_langevin(d.integrator);
         step.sweeps = sweeps;
-        return {.drifts = step.drifts(), .closings = step.drifts() * sweeps, .noises = step.langevin ? 1 : 0};
+        return {.drifts = step.drifts(),
+                .closings = step.drifts() * sweeps,
+                .noises = step.langevin ? 1 : 0};
     }
     bool const tips = has_jointed_tips(scene);
     auto const [matrices, biases, closings] = sweeps_a_step(d, tips);
-    int const corrections = tips ? closings * (sweeps + 1) : 0, refinements = matrices * scene.solver.refine;
+    int const corrections = tips ? closings * (sweeps + 1) : 0,
+              refinements = matrices * scene.solver.refine;
     int const evaluations = keeps_matrices(scene) ? 0 : matrices;
     return {evaluations, biases - evaluations + corrections, matrices - evaluations + corrections,
             biases - evaluations + corrections + refinements};
 }
 
-StepPrediction predict_step(Planner& planner, Scene const& scene, Axes axes, StepWork const& work, int ranks) {
+StepPrediction predict_step(Planner& planner, Scene const& scene, Axes axes, StepWork const& work,
+                            int ranks) {
     std::vector<Share> const shares = shares_of(scene, axes, ranks);
     Choice choice = choose(scene, axes, planner, ranks);
     choice.arrangement = with_threads(choice.arrangement, planner.machine());

@@ -18,8 +18,9 @@ struct StepWork {
     double seconds(DriftSeconds const&) const;
     bool operator==(StepWork const&) const = default;
 };
-/// `sweeps`: of each drift, or corrections of jointed tips. Of an adaptive step: of one inner step. Drifts are taken in one part. OpenMM's
-/// forces, Fixman's and what refinements look for are not among it. Precondition: the scene has dynamics.
+/// `sweeps`: of each drift, or corrections of jointed tips. Of an adaptive step: of one inner step.
+/// Drifts are taken in one part. OpenMM's forces, Fixman's and what refinements look for are not
+/// among it. Precondition: the scene has dynamics.
 StepWork work_of_step(Scene const&, int sweeps);
 
 struct StepPrediction {

@@ -7,13 +7,13 @@
 #include <filesystem>
 
 #include "generate/conformation.hpp"
+#include "generate/random.hpp"
+#include "generate/start_fit.hpp"
+#include "reader/sections.hpp"
+#include "reader/system_links.hpp"
 #include "scene/files.hpp"
 #include "scene/pdb_sites.hpp"
-#include "generate/random.hpp"
 #include "scene/residue_names.hpp"
-#include "reader/sections.hpp"
-#include "generate/start_fit.hpp"
-#include "reader/system_links.hpp"
 
 namespace catena::scene {
 
@@ -22,11 +22,13 @@ namespace {
 /// PDB files, and those that its reader refuses by name.
 bool is_structure(std::string const& path) {
     std::string kind = std::filesystem::path(path).extension().string();
-    std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(kind.begin(), kind.end(), kind.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return kind == ".pdb" || kind == ".ent" || kind == ".cif" || kind == ".mmcif";
 }
 
-/// Amino acids of the file, by their parents, that are not those of the chain. 0 where the numbers differ, which is refused elsewhere.
+/// Amino acids of the file, by their parents, that are not those of the chain. 0 where the numbers
+/// differ, which is refused elsewhere.
 std::size_t other_residues(PdbSites const& from, std::vector<std::string> const& residues) {
     std::size_t others = 0;
     for (std::size_t k = 0; from.sites.size() == residues.size() && k < residues.size(); ++k) {
@@ -46,14 +48,17 @@ bool counts_from_one(PdbSites const& from) {
 }  // namespace
 
 void ChainRequest::allow(char const* kind, Names keys) const {
-    for (char const* const key : {"record", "model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"}) {
+    for (char const* const key : {"record", "model", "positions", "links", "anchor", "conformation",
+                                  "rigid", "charge_termini"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
     }
     links_as_given();  // checks the word even where no positions are given
     Node const* const ground = fields.find("anchor");
-    if (ground && base == Base::free) fail(*ground, "an anchor without a fixed base", "write `base: fixed` or leave `anchor` out");
+    if (ground && base == Base::free)
+        fail(*ground, "an anchor without a fixed base",
+             "write `base: fixed` or leave `anchor` out");
 }
 
 Vec3 ChainRequest::anchor() const {
@@ -69,7 +74,8 @@ bool ChainRequest::links_as_given() const {
 calvados2::ChargedTermini ChainRequest::termini() const {
     if (Node const* const here = fields.find("charge_termini")) return read_charged_termini(*here);
     // The entry of all chains comes first: those of chains before this one are not looked through.
-    bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() && scene.forces.openmm->map.front().first.empty();
+    bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() &&
+                      scene.forces.openmm->map.front().first.empty();
     if (!said) return {};
     auto const& ends = scene.forces.openmm->map.front().second;
     return {ends.first != 0, ends.second != 0};
@@ -79,7 +85,8 @@ void ChainRequest::set_lengths(BeadArrays& beads) const {
     if (system == nullptr || links_as_given()) return;
     Vec3 shift = Vec3::zero();
     for (std::size_t k = 1; k < beads.size(); ++k) {
-        double const length = system->length(particle + static_cast<std::int64_t>(k)), before = beads.length[k];
+        double const length = system->length(particle + static_cast<std::int64_t>(k)),
+                     before = beads.length[k];
         if (length > 0 && length != before) {
             Vec3 const inboard = beads.position[k - 1] - shift;  // where it was
             shift = plus_scaled(shift, length / before - 1, beads.position[k] - inboard);
@@ -90,16 +97,22 @@ void ChainRequest::set_lengths(BeadArrays& beads) const {
 }
 
 std::uint64_t ChainRequest::seed(std::int64_t copy) const {
-    return seed_of_stream(scene.dynamics.seed, (static_cast<std::uint64_t>(index) << 40) + static_cast<std::uint64_t>(copy));
+    return seed_of_stream(scene.dynamics.seed, (static_cast<std::uint64_t>(index) << 40) +
+                                                   static_cast<std::uint64_t>(copy));
 }
 
 std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t beads) const {
     std::string const path = resolved(text(file), scene.file);
     bool const pdb = is_structure(path) || file.key == "pdb";
-    if (pdb && scene.si) fail(file, "positions in a PDB file are in angstrom, the scene is in SI units", "give a table x,y,z in metres");
-    std::vector<Vec3> positions = pdb ? from_structure(path, file) : read_position_table(path, file);
+    if (pdb && scene.si)
+        fail(file, "positions in a PDB file are in angstrom, the scene is in SI units",
+             "give a table x,y,z in metres");
+    std::vector<Vec3> positions =
+        pdb ? from_structure(path, file) : read_position_table(path, file);
     if (positions.size() != beads)
-        fail(file, fmt::format("`{}` holds {} positions, the chain has {} beads", shown_path(file.text), positions.size(), beads),
+        fail(file,
+             fmt::format("`{}` holds {} positions, the chain has {} beads", shown_path(file.text),
+                         positions.size(), beads),
              "give one position a bead");
     return positions;
 }
@@ -108,11 +121,15 @@ std::vector<Vec3> ChainRequest::from_structure(std::string const& path, Node con
     PdbSites const sites = read_pdb(path, file, false);
     for (std::string const& note : sites.notes) scene.note(note);
     if (std::size_t const others = other_residues(sites, residues); others > 0)
-        scene.note(fmt::format("`{}` names other residues than the sequence in {} of {} places: its positions are taken all the same",
-                               sites.file, others, residues.size()));
+        scene.note(
+            fmt::format("`{}` names other residues than the sequence in {} of {} places: its "
+                        "positions are taken all the same",
+                        sites.file, others, residues.size()));
     if (!rigid.empty() && !counts_from_one(sites))
-        scene.note(fmt::format("`rigid` counts the residues of the sequence from 1, not by their numbers in `{}` ({} to {})", sites.file,
-                               sites.sites.front().label, sites.sites.back().label));
+        scene.note(
+            fmt::format("`rigid` counts the residues of the sequence from 1, not by their numbers "
+                        "in `{}` ({} to {})",
+                        sites.file, sites.sites.front().label, sites.sites.back().label));
     return sites.positions();
 }
 
@@ -121,11 +138,13 @@ std::string ChainRequest::name() const {
     return named ? text(*named) : fmt::format("chain-{}", index + 1);
 }
 
-void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const {
+void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
+                         Node const& from) const {
     beads.position = positions;
-    double const spread = system ? system->largest_spread(particle, static_cast<std::int64_t>(beads.size())) : 0;
-    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`", largest_change_of(spread),
-                 system ? largest_relaxed_change : 0);
+    double const spread =
+        system ? system->largest_spread(particle, static_cast<std::int64_t>(beads.size())) : 0;
+    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`",
+                 largest_change_of(spread), system ? largest_relaxed_change : 0);
     StartFit::Chain const chain{name(), beads, base, rigid};
     fit.make_whole(chain, links_as_given());
     refuse_coincident(beads, from);
@@ -133,7 +152,8 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, 
         take_lengths(beads, base);
     } else {
         for (Domain const& domain : rigid)
-            for (std::size_t k = domain.first + 1; k <= domain.last; ++k) beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
+            for (std::size_t k = domain.first + 1; k <= domain.last; ++k)
+                beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
         fit.fit(chain);
     }
     fit.note();
@@ -143,7 +163,9 @@ void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from) 
     std::int64_t const k = coincident_bead(beads, base);
     if (k < 0) return;
     std::string const other = k == 0 ? "the anchor" : fmt::format("bead {}", k);
-    fail_at(from, "bead", k + 1, fmt::format("bead {} stands on {}: their link has no direction", k + 1, other), "move one of them");
+    fail_at(from, "bead", k + 1,
+            fmt::format("bead {} stands on {}: their link has no direction", k + 1, other),
+            "move one of them");
 }
 
 }  // namespace catena::scene

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/calvados2.hpp"
 #include "bodies/domains.hpp"
+#include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
@@ -26,8 +26,8 @@ struct ChainRequest {
     WrittenSystem const* system = nullptr;   // that the scene names beside its chains
     std::int64_t particle = 0;               // of the first bead in it
 
-    /// Refuses those of `record, model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this
-    /// kind of chain.
+    /// Refuses those of `record, model, positions, links, anchor, conformation, rigid` that are not
+    /// in `keys`: they mean nothing for this kind of chain.
     void allow(char const* kind, Names keys) const;
     /// Origin where none is given.
     Vec3 anchor() const;
@@ -36,15 +36,17 @@ struct ChainRequest {
     bool links_as_given() const;
     /// The chain's `charge_termini`, else what the scene says of all.
     calvados2::ChargedTermini termini() const;
-    /// Gives links the lengths of the System that the scene names, where it joins the two beads, and moves the beads to these.
+    /// Gives links the lengths of the System that the scene names, where it joins the two beads,
+    /// and moves the beads to these.
     void set_lengths(BeadArrays& beads) const;
     /// The scene's seed, told apart by chain and copy.
     std::uint64_t seed(std::int64_t copy) const;
 
     /// Positions from the table or PDB file that `file` names: one a bead.
     std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
-    /// Puts the beads at `positions`, which `from` gave, whole across the periodic box, and fits positions to lengths or, with
-    /// `links: as_given`, lengths to positions (StartFit). Rigid domains keep their shape.
+    /// Puts the beads at `positions`, which `from` gave, whole across the periodic box, and fits
+    /// positions to lengths or, with `links: as_given`, lengths to positions (StartFit). Rigid
+    /// domains keep their shape.
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
     /// InputError when two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;

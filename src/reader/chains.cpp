@@ -6,30 +6,31 @@
 #include <cmath>
 #include <optional>
 
-#include "io/memory_limit.hpp"
 #include "bodies/bodies.hpp"
-#include "reader/chain_request.hpp"
+#include "bodies/hdf5_bodies.hpp"
 #include "generate/conformation.hpp"
+#include "generate/start_fit.hpp"
+#include "io/memory_limit.hpp"
+#include "io/printable.hpp"
+#include "reader/chain_request.hpp"
+#include "reader/generator_entry.hpp"
+#include "reader/linked.hpp"
+#include "reader/sections.hpp"
+#include "reader/sequences.hpp"
+#include "reader/system_links.hpp"
+#include "reader/tip.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/freedom.hpp"
-#include "reader/generator_entry.hpp"
-#include "bodies/hdf5_bodies.hpp"
-#include "reader/linked.hpp"
-#include "io/printable.hpp"
-#include "reader/sections.hpp"
-#include "reader/sequences.hpp"
-#include "generate/start_fit.hpp"
-#include "reader/system_links.hpp"
-#include "reader/tip.hpp"
 
 namespace catena::scene {
 
 namespace {
 
 Fields chain_fields(Node const& entry) {
-    return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies", "generator", "model", "positions", "links",
-                          "base", "tip", "anchor", "conformation", "rigid", "charge_termini", "velocities"});
+    return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies",
+                          "generator", "model", "positions", "links", "base", "tip", "anchor",
+                          "conformation", "rigid", "charge_termini", "velocities"});
 }
 
 /// The one key that says what the chain is made of.
@@ -37,16 +38,20 @@ Node const& source_of(Fields const& fields) {
     Node const* source = nullptr;
     for (char const* const key : {"sequence", "fasta", "pdb", "bodies", "generator"}) {
         Node const* const here = fields.find(key);
-        if (here && source) fail(*here, fmt::format("the chain has both `{}` and `{}`", source->key, key), "keep one of them");
+        if (here && source)
+            fail(*here, fmt::format("the chain has both `{}` and `{}`", source->key, key),
+                 "keep one of them");
         if (here) source = here;
     }
     if (!source)
-        fail(fields.node(), "the chain says nothing of its bodies", "add one of `sequence`, `fasta`, `pdb`, `bodies`, `generator`");
+        fail(fields.node(), "the chain says nothing of its bodies",
+             "add one of `sequence`, `fasta`, `pdb`, `bodies`, `generator`");
     return *source;
 }
 
 Base base_of(Fields const& fields, Node const& source) {
-    if (Node const* const base = fields.find("base")) return choice<Base>(*base, {{"free", Base::free}, {"fixed", Base::fixed}});
+    if (Node const* const base = fields.find("base"))
+        return choice<Base>(*base, {{"free", Base::free}, {"fixed", Base::fixed}});
     return stands_fixed(source) ? Base::fixed : Base::free;
 }
 
@@ -56,13 +61,15 @@ void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& p
     if (axes_are_parallel(chain, odd)) return;
     bool const body = odd < chain.bodies.size() && source.kind == Node::Kind::list;
     fail(body ? source.items[odd] : planar,
-         fmt::format("the chain has planar joints, but the {} joint {} is not parallel to those before",
-                     name_of(odd < chain.bodies.size() ? chain.bodies.joint[odd] : chain.tip_joint.type),
-                     odd < chain.bodies.size() ? std::to_string(odd + 1) : "of the tip"),
+         fmt::format(
+             "the chain has planar joints, but the {} joint {} is not parallel to those before",
+             name_of(odd < chain.bodies.size() ? chain.bodies.joint[odd] : chain.tip_joint.type),
+             odd < chain.bodies.size() ? std::to_string(odd + 1) : "of the tip"),
          "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
-/// Beads written one by one: lengths as written, else (and with `links: as_given`) as the positions say. Whether velocities are written.
+/// Beads written one by one: lengths as written, else (and with `links: as_given`) as the positions
+/// say. Whether velocities are written.
 bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays& beads) {
     request.allow("beads written one by one", {"links", "anchor"});
     ExplicitBeads made = read_beads(source, request.base);
@@ -71,7 +78,8 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     std::vector<double> const written = beads.length;
     std::ptrdiff_t const first = request.base == Base::fixed ? 0 : 1;
     auto const is_open = [](double length) { return std::isnan(length); };
-    bool const as_given = request.links_as_given() || std::any_of(written.begin() + first, written.end(), is_open);
+    bool const as_given =
+        request.links_as_given() || std::any_of(written.begin() + first, written.end(), is_open);
     StartFit fit(request.scene, source, "give positions that fit the links, or leave `length` out");
     StartFit::Chain const chain{request.name(), beads, request.base};
     fit.make_whole(chain, as_given);
@@ -89,20 +97,25 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
 void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
     if (made.doubtful > 0)
         request.scene.note(
-            fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of the periodic box, and is left as it "
+            fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of "
+                        "the periodic box, and is left as it "
                         "is: if a side of the box cuts it, give its `length`",
                         shown(request.name()), made.doubtful, made.doubtful_length));
     if (made.cut_links == 0) return;
     request.scene.note(
-        fmt::format("{} of chain `{}` {} cut by the sides of the periodic box, the first that of body {}: made whole by nearest images",
-                    made.cut_links == 1 ? "1 link" : fmt::format("{} links", made.cut_links), shown(request.name()),
-                    made.cut_links == 1 ? "is" : "are", made.first_cut));
+        fmt::format("{} of chain `{}` {} cut by the sides of the periodic box, the first that of "
+                    "body {}: made whole by nearest images",
+                    made.cut_links == 1 ? "1 link" : fmt::format("{} links", made.cut_links),
+                    shown(request.name()), made.cut_links == 1 ? "is" : "are", made.first_cut));
 }
 
 class ChainReader {
   public:
-    ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm, WrittenSystem const* system)
-        : request_{chain_fields(entry), entry, index, scene}, source_(source_of(request_.fields)), warm_(warm) {
+    ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm,
+                WrittenSystem const* system)
+        : request_{chain_fields(entry), entry, index, scene},
+          source_(source_of(request_.fields)),
+          warm_(warm) {
         request_.base = base_of(request_.fields, source_);
         request_.system = system;
         tip_ = read_tip(request_.fields);
@@ -113,17 +126,23 @@ class ChainReader {
     void append_to(std::vector<Draft>& drafts) {
         std::string const name = request_.name();
         if (printable(name) != name)
-            fail(*request_.fields.find("name"), "the name has control characters or bytes that are not UTF-8", "give printable UTF-8");
+            fail(*request_.fields.find("name"),
+                 "the name has control characters or bytes that are not UTF-8",
+                 "give printable UTF-8");
         double const before = drafts.empty() ? 0 : drafts.back().bytes;
         if (generator_) with_copies(before, generator_->size(), generator_->is_beads());
-        std::int64_t const next = drafts.empty() ? 0 : drafts.back().particle + static_cast<std::int64_t>(drafts.back().chain.bead_count());
+        std::int64_t const next =
+            drafts.empty() ? 0
+                           : drafts.back().particle +
+                                 static_cast<std::int64_t>(drafts.back().chain.bead_count());
         prepare(count_ == 1 ? name : name + "-1", next);
         std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
         auto const beads = static_cast<std::int64_t>(first.bead_count());
-        double const bytes = with_copies(before, static_cast<std::int64_t>(first.size()), first.is_beads());
+        double const bytes =
+            with_copies(before, static_cast<std::int64_t>(first.size()), first.is_beads());
         bool const free_to_move = movable(first);
-        Regrown const shape = regrown(first);
+        Regrowth const shape = regrown(first);
         std::size_t const wanted = drafts.size() + static_cast<std::size_t>(count_);
         if (wanted > drafts.capacity()) drafts.reserve(std::max(wanted, 2 * drafts.capacity()));
         std::size_t const at = drafts.size();
@@ -132,17 +151,22 @@ class ChainReader {
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
-            bool const differs = is_random() || (request_.system && !request_.system->alike(first_particle, request_.particle, beads));
-            drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move, shape, request_.particle});
+            bool const differs =
+                is_random() || (request_.system &&
+                                !request_.system->alike(first_particle, request_.particle, beads));
+            drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
+                              shape, request_.particle});
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
     }
 
   private:
-    /// Of the chain that is made next: its place in the System, and its charged ends where it says them.
+    /// Of the chain that is made next: its place in the System, and its charged ends where it says
+    /// them.
     void prepare(std::string const& name, std::int64_t next) {
-        OpenMmSpec* const openmm = request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
+        OpenMmSpec* const openmm =
+            request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
         request_.particle = request_.system ? request_.system->first_particle(name, next) : next;
         if (openmm && !openmm->builder.empty() && request_.fields.find("charge_termini"))
             openmm->map.push_back({name, as_numbers(request_.termini())});
@@ -160,25 +184,29 @@ class ChainReader {
             chain.beads = read_sequence(request_, copy);
             velocities = false;
             if (!request_.rigid.empty()) {
-                chain.linked = with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
+                chain.linked =
+                    with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
                 chain.beads = {};
             }
         } else if (source_.kind == Node::Kind::map) {
             request_.allow("rigid bodies", {});
             Node const& file = Fields(source_, {"hdf5"}).need("hdf5", "hdf5: chain.h5");
-            chain.bodies = read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
+            chain.bodies =
+                read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
         } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
             velocities = explicit_beads(request_, source_, chain.beads);
         } else if (kind == BodyList::linked) {
             request_.allow("bodies on links", {"anchor"});
-            ExplicitLinked made = read_linked(source_, request_.base, request_.anchor(), request_.scene.box);
+            ExplicitLinked made =
+                read_linked(source_, request_.base, request_.anchor(), request_.scene.box);
             note_cut_links(request_, made);
             chain.linked = std::move(made.linked);
             velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});
             ForceSpec const& forces = request_.scene.forces;
-            ExplicitBodies made = read_bodies(source_, request_.base, {forces.linear_drag, forces.angular_drag});
+            ExplicitBodies made =
+                read_bodies(source_, request_.base, {forces.linear_drag, forces.angular_drag});
             chain.bodies = std::move(made.bodies);
             if (made.planar) planar = made.planar;
         }
@@ -189,10 +217,13 @@ class ChainReader {
     }
 
     void set_velocities(ChainSpec& chain, bool given) const {
-        chain.velocities = given ? StartVelocities::given : warm_ ? StartVelocities::thermal : StartVelocities::zero;
+        chain.velocities = given   ? StartVelocities::given
+                           : warm_ ? StartVelocities::thermal
+                                   : StartVelocities::zero;
         if (Node const* const velocities = request_.fields.find("velocities"))
-            chain.velocities =
-                choice<StartVelocities>(*velocities, {{"thermal", StartVelocities::thermal}, {"zero", StartVelocities::zero}});
+            chain.velocities = choice<StartVelocities>(
+                *velocities,
+                {{"thermal", StartVelocities::thermal}, {"zero", StartVelocities::zero}});
         if (chain.velocities == StartVelocities::given) return;
         std::fill(chain.beads.velocity.begin(), chain.beads.velocity.end(), Vec3::zero());
         std::fill(chain.bodies.qd.begin(), chain.bodies.qd.end(), Vec3::zero());
@@ -204,32 +235,41 @@ class ChainReader {
     /// Whether copies differ from each other.
     bool is_random() const {
         Node const* const conformation = request_.fields.find("conformation");
-        return (generator_ && generator_->is_random()) || (conformation && conformation->text == "self_avoiding");
+        return (generator_ && generator_->is_random()) ||
+               (conformation && conformation->text == "self_avoiding");
     }
     bool movable(ChainSpec const& chain) const {
         if (count_ > 1) return true;
         return is_free(chain) && source_.key != "bodies" && !is_given();
     }
-    bool is_free(ChainSpec const& chain) const { return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free; }
+    bool is_free(ChainSpec const& chain) const {
+        return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free;
+    }
     /// Whether a file says where the beads are.
     bool is_given() const {
         Node const* const conformation = request_.fields.find("conformation");
-        return request_.fields.find("positions") || source_.key == "pdb" || (conformation && conformation->kind == Node::Kind::map);
+        return request_.fields.find("positions") || source_.key == "pdb" ||
+               (conformation && conformation->kind == Node::Kind::map);
     }
-    Regrown regrown(ChainSpec const& chain) const {
-        if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta")) return Regrown::no;
+    Regrowth regrown(ChainSpec const& chain) const {
+        if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta"))
+            return Regrowth::no;
         Node const* const conformation = request_.fields.find("conformation");
-        bool const any_shape = conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
-        return any_shape ? Regrown::yes : Regrown::if_asked;
+        bool const any_shape =
+            conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
+        return any_shape ? Regrowth::yes : Regrowth::if_asked;
     }
     /// Bytes that the chains take with this entry's. What cannot fit is refused before it is tried.
     double with_copies(double before, std::int64_t size, bool beads) const {
-        double const bytes = before + ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) * static_cast<double>(count_);
+        double const bytes =
+            before + ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) *
+                         static_cast<double>(count_);
         auto const present = static_cast<double>(memory_limit());
         if (bytes > present)
             fail(request_.node,
-                 fmt::format("the chain{} about {:.3g} GB of memory, and only {:.3g} GB are available",
-                             before > 0 ? "s up to this one need" : " needs", bytes * 1e-9, present * 1e-9),
+                 fmt::format(
+                     "the chain{} about {:.3g} GB of memory, and only {:.3g} GB are available",
+                     before > 0 ? "s up to this one need" : " needs", bytes * 1e-9, present * 1e-9),
                  "make fewer bodies or copies");
         return bytes;
     }
@@ -244,7 +284,8 @@ class ChainReader {
 
 }  // namespace
 
-void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, WrittenSystem const* system, std::vector<Draft>& drafts) {
+void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm,
+                WrittenSystem const* system, std::vector<Draft>& drafts) {
     ChainReader(entry, index, scene, warm, system).append_to(drafts);
 }
 

@@ -4,19 +4,21 @@
 
 #include <cmath>
 
-#include "scene/fields.hpp"
 #include "reader/placement.hpp"
+#include "scene/fields.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-/// By whole edges of the region, so that the chain's centre is in the middle of the box as far as they allow.
+/// By whole edges of the region, so that the chain's centre is in the middle of the box as far as
+/// they allow.
 void bring_in(std::vector<Vec3>& positions, Vec3 const& box, Vec3 const& fill) {
     Vec3 centre = Vec3::zero(), shift;
     for (Vec3 const& position : positions) centre = centre + position;
     centre = (1 / static_cast<double>(positions.size())) * centre;
-    for (int i = 0; i < 3; ++i) shift[i] = 0.5 * (box[i] - fill[i]) - fill[i] * std::floor(centre[i] / fill[i]);
+    for (int i = 0; i < 3; ++i)
+        shift[i] = 0.5 * (box[i] - fill[i]) - fill[i] * std::floor(centre[i] / fill[i]);
     for (Vec3& position : positions) position = position + shift;
 }
 
@@ -27,19 +29,27 @@ std::optional<Vec3> read_fill(Node const& box) {
     if (!fill) return std::nullopt;
     Vec3 const region = vector3(*fill), edges = vector3(*box.find("periodic"));
     for (int i = 0; i < 3; ++i) {
-        if (!(region[i] > 0)) fail(*fill, fmt::format("edge {} is not positive", region[i]), "give three edges above 0");
+        if (!(region[i] > 0))
+            fail(*fill, fmt::format("edge {} is not positive", region[i]),
+                 "give three edges above 0");
         if (region[i] > edges[i])
-            fail(*fill, fmt::format("edge {} is longer than the box's, {}", region[i], edges[i]), "give edges within the box");
+            fail(*fill, fmt::format("edge {} is longer than the box's, {}", region[i], edges[i]),
+                 "give edges within the box");
     }
     return region;
 }
 
-void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, Node const& node, std::uint64_t seed) {
+void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, Node const& node,
+                 std::uint64_t seed) {
     for (Draft const& draft : drafts)
-        if (!draft.movable || !draft.chain.is_beads() || draft.chain.base == Base::fixed || draft.chain.tip != Tip::free)
-            fail(node,
-                 fmt::format("`fill` is for free chains of beads without positions, which chain `{}` is not", shown(draft.chain.name)),
-                 "leave `fill` out, or let the scene place every chain");
+        if (!draft.movable || !draft.chain.is_beads() || draft.chain.base == Base::fixed ||
+            draft.chain.tip != Tip::free)
+            fail(
+                node,
+                fmt::format(
+                    "`fill` is for free chains of beads without positions, which chain `{}` is not",
+                    shown(draft.chain.name)),
+                "leave `fill` out, or let the scene place every chain");
     give_places(drafts, fill, seed, "the region to fill");
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);
 }

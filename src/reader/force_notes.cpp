@@ -18,34 +18,44 @@ double constexpr longest_usual_step = 0.2;  // ps, of residues with a friction o
 
 void note_box_that_no_force_knows(Scene& scene, bool system_is_periodic) {
     if (scene.box && !system_is_periodic)
-        scene.note("the scene has a periodic box, but no force of the System uses periodic boundaries: chains do not feel their images.");
+        scene.note(
+            "the scene has a periodic box, but no force of the System uses periodic boundaries: "
+            "chains do not feel their images.");
 }
 
 void note_forces(Scene& scene) {
     if (!scene.forces.openmm) return;
     OpenMmSpec const& openmm = *scene.forces.openmm;
     DynamicsSpec const& run = scene.dynamics;
-    bool const warm = run.given && run.temperature > 0 && (is_langevin(run.integrator) || run.temperature != DynamicsSpec{}.temperature);
+    bool const warm =
+        run.given && run.temperature > 0 &&
+        (is_langevin(run.integrator) || run.temperature != DynamicsSpec{}.temperature);
     if (warm && std::abs(openmm.temperature - run.temperature) > same_temperature * run.temperature)
         scene.note(fmt::format(
-            "forces.openmm.temperature is {:.6g} K and dynamics.temperature {:.6g} K: {} at {:.6g} K.", openmm.temperature, run.temperature,
-            openmm.builder.empty() ? "the System's bonds are judged" : "water's permittivity and the Debye length are those",
+            "forces.openmm.temperature is {:.6g} K and dynamics.temperature {:.6g} K: {} at {:.6g} "
+            "K.",
+            openmm.temperature, run.temperature,
+            openmm.builder.empty() ? "the System's bonds are judged"
+                                   : "water's permittivity and the Debye length are those",
             openmm.temperature));
     if (openmm.builder.empty()) return;
     if (openmm.ionic_strength > most_salt)
         scene.note(fmt::format(
-            "forces.openmm.ionic_strength is {:.6g} mol/l, more than the solubility of any salt: did you mean {:.6g} (for {:.6g} "
+            "forces.openmm.ionic_strength is {:.6g} mol/l, more than the solubility of any salt: "
+            "did you mean {:.6g} (for {:.6g} "
             "mmol/l)?",
             openmm.ionic_strength, openmm.ionic_strength / 1000, openmm.ionic_strength));
     if (openmm.ph && !(*openmm.ph >= 0 && *openmm.ph <= 14))
         scene.note(fmt::format("forces.openmm.ph is {:.6g}, outside 0 to 14.", *openmm.ph));
     if (run.given && !scene.si && run.step > longest_usual_step && !is_implicit(run.integrator))
         scene.note(
-            fmt::format("dynamics.step is {0:.6g} ps, that is {1:.6g} fs: steps of such chains are 0.01 to 0.06 ps. Did you mean {2:.6g}?",
+            fmt::format("dynamics.step is {0:.6g} ps, that is {1:.6g} fs: steps of such chains are "
+                        "0.01 to 0.06 ps. Did you mean {2:.6g}?",
                         run.step, 1000 * run.step, run.step / 1000));
     if (openmm.temperature < coldest_water)
-        scene.note(fmt::format("water is frozen at {:.6g} K: its permittivity is extrapolated below {:.6g} K.", openmm.temperature,
-                               coldest_water));
+        scene.note(fmt::format(
+            "water is frozen at {:.6g} K: its permittivity is extrapolated below {:.6g} K.",
+            openmm.temperature, coldest_water));
 }
 
 }  // namespace catena::scene

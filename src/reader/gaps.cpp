@@ -13,10 +13,12 @@ namespace catena::scene {
 
 namespace {
 
-/// Alpha carbons of neighbours are 0.38 nm apart, 0.29 nm across a cis peptide bond. Frames of models with springs in the links' place
-/// (CALVADOS: 8033 kJ/mol/nm2) spread by 0.018 nm. Across one missing residue it is 0.5 nm and more in proteins.
+/// Alpha carbons of neighbours are 0.38 nm apart, 0.29 nm across a cis peptide bond. Frames of
+/// models with springs in the links' place (CALVADOS: 8033 kJ/mol/nm2) spread by 0.018 nm. Across
+/// one missing residue it is 0.5 nm and more in proteins.
 constexpr double least_distance = 0.25;
-constexpr double largest_distance = 0.46;            // nm, of residues with consecutive numbers: 4.5 standard deviations
+constexpr double largest_distance =
+    0.46;  // nm, of residues with consecutive numbers: 4.5 standard deviations
 constexpr double largest_where_numbers_skip = 0.42;  // nm
 /// Carbonyl carbon to the next nitrogen: a peptide bond has 0.133 nm.
 constexpr double largest_peptide_bond = 0.2;
@@ -29,34 +31,45 @@ double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const&
 
 class Neighbours {
   public:
-    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at) : from_(from), request_(request), at_(at) {
-        if (request.system) most_ = largest_change_of(request.system->largest_spread(request.particle, std::ssize(from.sites)));
+    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at)
+        : from_(from), request_(request), at_(at) {
+        if (request.system)
+            most_ = largest_change_of(
+                request.system->largest_spread(request.particle, std::ssize(from.sites)));
     }
 
     /// Neighbours in the chain, `b` its bead k from 0.
     void check(PdbSite const& a, PdbSite const& b, std::size_t k) {
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
-        bool const wrapped = a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
-        bool const falls = step < 0 && !wrapped, skips = falls || (step > 1 && !follows_in_hex(a.label, b.label));
+        bool const wrapped =
+            a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
+        bool const falls = step < 0 && !wrapped,
+                   skips = falls || (step > 1 && !follows_in_hex(a.label, b.label));
         double const apart = distance(a.position, b.position);
         double const peptide = a.carbonyl && b.nitrogen ? distance(*a.carbonyl, *b.nitrogen) : 0;
-        bool const bonded = peptide <= largest_peptide_bond, seen = bonded && a.carbonyl && b.nitrogen;
+        bool const bonded = peptide <= largest_peptide_bond,
+                   seen = bonded && a.carbonyl && b.nitrogen;
         bool const near = apart <= (skips && !seen ? largest_where_numbers_skip : largest_distance);
-        // Fusions bear the numbers of their parts: there the peptide bond says that they are neighbours.
+        // Fusions bear the numbers of their parts: there the peptide bond says that they are
+        // neighbours.
         if (falls && !(seen && near)) refuse_order(a, b);
-        if ((near && bonded && apart >= least_distance) || fits_system(k, apart)) return count(a, b, skips);
+        if ((near && bonded && apart >= least_distance) || fits_system(k, apart))
+            return count(a, b, skips);
         if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
     }
     void note() const {
         if (skips_ > 0)
             request_.scene.note(
-                fmt::format("`{}`: residue numbers skip {} between neighbours at a link's distance (first: {}): no residue "
+                fmt::format("`{}`: residue numbers skip {} between neighbours at a link's distance "
+                            "(first: {}): no residue "
                             "is missing there",
                             from_.file, times(skips_), first_skip_));
         if (gaps_ > 0)
-            request_.scene.note(fmt::format("`{}`: `links: as_given` keeps {} that neighbours cannot have (first: {})", from_.file,
-                                            gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_), first_gap_));
+            request_.scene.note(fmt::format(
+                "`{}`: `links: as_given` keeps {} that neighbours cannot have (first: {})",
+                from_.file, gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_),
+                first_gap_));
     }
 
   private:
@@ -65,16 +78,22 @@ class Neighbours {
         unsigned from = 0, to = 0;
         auto const read = [](std::string const& text, unsigned& value) {
             return std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
-                   std::from_chars(text.data(), text.data() + text.size(), value, 16).ptr == text.data() + text.size();
+                   std::from_chars(text.data(), text.data() + text.size(), value, 16).ptr ==
+                       text.data() + text.size();
         };
         return !a.empty() && !b.empty() && read(a, from) && read(b, to) && to == from + 1;
     }
     /// Where a System is at hand, its bond between the two knows more than residues do.
     bool fits_system(std::size_t k, double apart) const {
         if (!request_.system) return false;
-        double const length = request_.system->length(request_.particle + static_cast<std::int64_t>(k));
-        if (apart > length) return apart - length <= (request_.scene.relax ? largest_relaxed_change : most_) * length;
-        return apart <= length && (request_.scene.relax || length - apart <= most_ * length);  // false where nothing joins them: NaN
+        double const length =
+            request_.system->length(request_.particle + static_cast<std::int64_t>(k));
+        if (apart > length)
+            return apart - length <=
+                   (request_.scene.relax ? largest_relaxed_change : most_) * length;
+        return apart <= length &&
+               (request_.scene.relax ||
+                length - apart <= most_ * length);  // false where nothing joins them: NaN
     }
     static std::string times(int n) { return n == 1 ? "once" : fmt::format("{} times", n); }
 
@@ -82,27 +101,43 @@ class Neighbours {
         if (skips && skips_++ == 0) first_skip_ = fmt::format("{} to {}", a.label, b.label);
     }
     /// By the nearest image where the scene has a box.
-    double distance(Vec3 const& a, Vec3 const& b) const { return nearest_distance(a, b, request_.scene.box); }
+    double distance(Vec3 const& a, Vec3 const& b) const {
+        return nearest_distance(a, b, request_.scene.box);
+    }
     /// Whether the chain has no gap in the cell that the file names and the scene does not.
     bool is_wrapped(PdbSite const& a, PdbSite const& b) const {
-        return from_.cell && !request_.scene.box && nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
+        return from_.cell && !request_.scene.box &&
+               nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
     }
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
-        fail(at_, fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue, a.label, from_.file),
-             "sort the residues by their numbers, number them along the chain, or keep one chain per file");
+        fail(at_,
+             fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue,
+                         a.label, from_.file),
+             "sort the residues by their numbers, number them along the chain, or keep one chain "
+             "per file");
     }
-    [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart, double peptide) const {
-        std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label, b.residue, b.label, from_.file);
+    [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart,
+                             double peptide) const {
+        std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label,
+                                             b.residue, b.label, from_.file);
         if (apart < least_distance)
-            fail(at_, fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
+            fail(at_,
+                 fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
                  "correct the file (its unit is angstrom), or write `links: as_given`");
-        std::string const broken = peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide) : "";
+        std::string const broken =
+            peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide)
+                        : "";
         if (is_wrapped(a, b))
-            fail(at_, fmt::format("{} stand {:.3f} nm apart: the file is wrapped into its cell (CRYST1)", pair, apart),
-                 fmt::format("write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`, or make the chain whole", (*from_.cell)[0],
-                             (*from_.cell)[1], (*from_.cell)[2]));
-        fail(at_, fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
-             "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
+            fail(at_,
+                 fmt::format("{} stand {:.3f} nm apart: the file is wrapped into its cell (CRYST1)",
+                             pair, apart),
+                 fmt::format(
+                     "write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`, or make the chain whole",
+                     (*from_.cell)[0], (*from_.cell)[1], (*from_.cell)[2]));
+        fail(
+            at_,
+            fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
+            "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
     }
 
     PdbSites const& from_;
@@ -117,7 +152,8 @@ class Neighbours {
 
 void refuse_gaps(PdbSites const& from, ChainRequest const& request, Node const& at) {
     Neighbours neighbours(from, request, at);
-    for (std::size_t k = 1; k < from.sites.size(); ++k) neighbours.check(from.sites[k - 1], from.sites[k], k);
+    for (std::size_t k = 1; k < from.sites.size(); ++k)
+        neighbours.check(from.sites[k - 1], from.sites[k], k);
     neighbours.note();
 }
 

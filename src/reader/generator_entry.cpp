@@ -9,10 +9,12 @@ namespace catena::scene {
 namespace {
 
 Node const& single_entry(Node const& node) {
-    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "elastic_rod", "polygon", "freely_jointed", "worm_like"});
+    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "elastic_rod", "polygon",
+                              "freely_jointed", "worm_like"});
     if (node.items.size() != 1)
         fail(node, fmt::format("the chain has {} generators", node.items.size()),
-             "give one of `random`, `pendulum`, `coil`, `dill`, `elastic_rod`, `polygon`, `freely_jointed`, `worm_like`");
+             "give one of `random`, `pendulum`, `coil`, `dill`, `elastic_rod`, `polygon`, "
+             "`freely_jointed`, `worm_like`");
     return *kinds.find(node.items[0].key);
 }
 
@@ -38,9 +40,12 @@ RandomJoint random_joint(Node const& node) {
 
 }  // namespace
 
-bool stands_fixed(Node const& generator) { return generator.find("pendulum") || generator.find("coil") || generator.find("dill"); }
+bool stands_fixed(Node const& generator) {
+    return generator.find("pendulum") || generator.find("coil") || generator.find("dill");
+}
 
-GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node) : request_(request), entry_(single_entry(node)) {
+GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
+    : request_(request), entry_(single_entry(node)) {
     if (entry_.key == "random")
         read_random();
     else if (entry_.key == "freely_jointed" || entry_.key == "worm_like")
@@ -54,7 +59,8 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node) : 
 }
 
 void GeneratorEntry::read_random() {
-    Fields const fields(entry_, {"bodies", "joint", "rigid", "mass", "length", "inertia", "seed", "loads"});
+    Fields const fields(entry_,
+                        {"bodies", "joint", "rigid", "mass", "length", "inertia", "seed", "loads"});
     RandomChain& chain = random_.emplace();
     size_ = chain.bodies = whole(fields.need("bodies", "bodies: 100"), 1);
     chain.joint = random_joint(fields.need("joint", "joint: revolute"));
@@ -62,9 +68,12 @@ void GeneratorEntry::read_random() {
     bool const links = chain.joint == RandomJoint::link;
     request_.allow("generator `random`", links ? Names{"anchor"} : Names{});
     if (links) chain.anchor = request_.anchor();
-    take(fields, "mass", chain.mass), take(fields, "length", chain.length), take(fields, "inertia", chain.inertia);
+    take(fields, "mass", chain.mass), take(fields, "length", chain.length),
+        take(fields, "inertia", chain.inertia);
     if (Node const* const rigid = fields.find("rigid")) {
-        if (!links) fail(*rigid, "a fraction of rigid bodies in a chain that has no beads", "leave it out or write `joint: link`");
+        if (!links)
+            fail(*rigid, "a fraction of rigid bodies in a chain that has no beads",
+                 "leave it out or write `joint: link`");
         chain.rigid = number(*rigid);
         if (!(chain.rigid >= 0 && chain.rigid <= 1))
             fail(*rigid, fmt::format("the fraction {} is no fraction", chain.rigid), "give 0 to 1");
@@ -78,33 +87,40 @@ void GeneratorEntry::read_random() {
 void GeneratorEntry::read_rods() {
     bool const swinging = entry_.key == "pendulum", dill = entry_.key == "dill";
     char const* const count = swinging ? "links" : "bodies";
-    Fields const fields = swinging ? Fields(entry_, {"links", "mass", "length", "radius", "seed"})
-                          : dill   ? Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "ratio"})
-                                   : Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "twist"});
+    Fields const fields =
+        swinging ? Fields(entry_, {"links", "mass", "length", "radius", "seed"})
+        : dill   ? Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "ratio"})
+                 : Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "twist"});
     Rods& rods = rods_.emplace();
     size_ = rods.bodies = whole(fields.need(count, std::string(count) + ": 8"), 1);
     take(fields, "mass", rods.mass), take(fields, "length", rods.length);
     if (Node const* const radius = fields.find("radius")) rods.radius = read_distribution(*radius);
     velocities_ = true;
-    request_.allow(swinging ? "generator `pendulum`" : dill ? "generator `dill`" : "generator `coil`", {});
+    request_.allow(swinging ? "generator `pendulum`"
+                   : dill   ? "generator `dill`"
+                            : "generator `coil`",
+                   {});
     winding_.base = request_.base;
     if (swinging) {
         if (request_.base == Base::free)
-            fail(request_.fields.need("base", "base: fixed"), "a pendulum on a free base", "write `base: fixed`");
+            fail(request_.fields.need("base", "base: fixed"), "a pendulum on a free base",
+                 "write `base: fixed`");
         return;
     }
     take(fields, "turn", winding_.turn);
     if (!dill) return take(fields, "twist", winding_.twist);
     Node const* const ratio = fields.find("ratio");
     if (ratio) winding_.ratio = positive(*ratio);
-    if (winding_.ratio > 1) fail(*ratio, fmt::format("ratio {} is above 1", winding_.ratio), "give a number above 0, at most 1");
+    if (winding_.ratio > 1)
+        fail(*ratio, fmt::format("ratio {} is above 1", winding_.ratio),
+             "give a number above 0, at most 1");
 }
 
 void GeneratorEntry::read_walk() {
     bool const worm = entry_.key == "worm_like";
     char const* const count = worm ? "bodies" : "beads";
-    Fields const fields =
-        worm ? Fields(entry_, {"bodies", "persistence", "length", "mass", "seed"}) : Fields(entry_, {"beads", "length", "mass", "seed"});
+    Fields const fields = worm ? Fields(entry_, {"bodies", "persistence", "length", "mass", "seed"})
+                               : Fields(entry_, {"beads", "length", "mass", "seed"});
     Walk& walk = walk_.emplace();
     size_ = walk.beads = whole(fields.need(count, std::string(count) + ": 100"), 1);
     take(fields, "mass", walk.mass);
@@ -112,7 +128,8 @@ void GeneratorEntry::read_walk() {
     if (worm) persistence_ = positive(fields.need("persistence", "persistence: 50"));
     walk.base = request_.base;
     beads_ = true;
-    request_.allow(worm ? "generator `worm_like`" : "generator `freely_jointed`", {"positions", "links", "anchor"});
+    request_.allow(worm ? "generator `worm_like`" : "generator `freely_jointed`",
+                   {"positions", "links", "anchor"});
     walk.anchor = request_.anchor();
 }
 
@@ -121,7 +138,9 @@ void GeneratorEntry::read_polygon() {
     Polygon& shape = polygon_.emplace();
     size_ = shape.sides = whole(fields.need("bodies", "bodies: 12"), 3);
     shape.joint = choice<JointType>(fields.need("joint", "joint: spherical"),
-                                    {{"spherical", JointType::spherical}, {"revolute", JointType::revolute}, {"link", JointType::link}});
+                                    {{"spherical", JointType::spherical},
+                                     {"revolute", JointType::revolute},
+                                     {"link", JointType::link}});
     shape.base = request_.base;
     if (Node const* const mass = fields.find("mass")) shape.mass = positive(*mass);
     if (Node const* const length = fields.find("length")) shape.length = positive(*length);
@@ -131,8 +150,11 @@ void GeneratorEntry::read_polygon() {
     beads_ = shape.joint == JointType::link;
     velocities_ = !beads_;
     for (Node const* const given : {radius, spin})
-        if (given && beads_) fail(*given, fmt::format("key `{}` means nothing for a polygon of beads", given->key), "leave it out");
-    if (beads_ && shape.base == Base::fixed) fail(entry_, "a polygon of beads on a fixed base", "write `base: free`");
+        if (given && beads_)
+            fail(*given, fmt::format("key `{}` means nothing for a polygon of beads", given->key),
+                 "leave it out");
+    if (beads_ && shape.base == Base::fixed)
+        fail(entry_, "a polygon of beads on a fixed base", "write `base: free`");
     request_.allow("generator `polygon`", {});
 }
 
@@ -146,12 +168,17 @@ void GeneratorEntry::read_elastic_rod() {
     rod.bend = positive(fields.need("bend", "bend: 50, the persistence length"));
     rod.twist = positive(fields.need("twist", "twist: 100, the persistence length"));
     for (char const* const key : {"bend", "twist"})
-        if (double const persistence = key == std::string("bend") ? rod.bend : rod.twist; persistence < 0.1 * rod.length)
-            fail(*fields.find(key), fmt::format("a persistence length of {:g} for rods of {:g}", persistence, rod.length),
+        if (double const persistence = key == std::string("bend") ? rod.bend : rod.twist;
+            persistence < 0.1 * rod.length)
+            fail(*fields.find(key),
+                 fmt::format("a persistence length of {:g} for rods of {:g}", persistence,
+                             rod.length),
                  "take rods of at most ten times that, or a freely jointed chain");
     rod.base = request_.base;
     rod.kt = request_.scene.boltzmann() * request_.scene.dynamics.temperature;
-    if (!(rod.kt > 0)) fail(entry_, "an elastic rod without a temperature above 0", "add `dynamics: {temperature: 300}`");
+    if (!(rod.kt > 0))
+        fail(entry_, "an elastic rod without a temperature above 0",
+             "add `dynamics: {temperature: 300}`");
     request_.allow("generator `elastic_rod`", {});
     velocities_ = true;
 }
@@ -159,14 +186,17 @@ void GeneratorEntry::read_elastic_rod() {
 std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
     // A seed of its own makes the same chain wherever the entry stands in the scene.
     Node const* const own = entry_.find("seed");
-    return own ? seed_of_stream(seed64(*own), static_cast<std::uint64_t>(copy)) : request_.seed(copy);
+    return own ? seed_of_stream(seed64(*own), static_cast<std::uint64_t>(copy))
+               : request_.seed(copy);
 }
 
 void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
     if (rods_) {
         Rods rods = *rods_;
         rods.seed = seed(copy);
-        chain.bodies = entry_.key == "pendulum" ? pendulum(rods) : entry_.key == "coil" ? coil(rods, winding_) : dill(rods, winding_);
+        chain.bodies = entry_.key == "pendulum" ? pendulum(rods)
+                       : entry_.key == "coil"   ? coil(rods, winding_)
+                                                : dill(rods, winding_);
     } else if (elastic_) {
         ElasticRod rod = *elastic_;
         rod.seed = seed(copy);
@@ -181,7 +211,9 @@ void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
         walk.seed = seed(copy);
         chain.beads = persistence_ > 0 ? worm_like(walk, persistence_) : freely_jointed(walk);
         Node const* const positions = request_.fields.find("positions");
-        if (positions) request_.place(chain.beads, request_.positions_from(*positions, chain.size()), *positions);
+        if (positions)
+            request_.place(chain.beads, request_.positions_from(*positions, chain.size()),
+                           *positions);
     } else {
         RandomChain random = *random_;
         random.seed = seed(copy);

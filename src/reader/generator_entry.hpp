@@ -1,8 +1,8 @@
 // `generator: {random: ...}` and its like: which one, its numbers, and the chain made from them.
 #pragma once
 
-#include "reader/chain_request.hpp"
 #include "generate/generators.hpp"
+#include "reader/chain_request.hpp"
 
 namespace catena::scene {
 

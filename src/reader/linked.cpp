@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "bodies/carried_beads.hpp"
-#include "generate/cells.hpp"
 #include "bodies/physics.hpp"
+#include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
 
 namespace catena::scene {
@@ -30,11 +30,15 @@ class LinkedReader {
         if (bead)
             for (char const* const key : {"com", "quaternion", "omega", "beads"})
                 if (Node const* const extra = item.find(key))
-                    fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key), "leave it out or give `inertia`");
+                    fail(*extra,
+                         fmt::format("key `{}` means nothing for a point bead on a link", key),
+                         "leave it out or give `inertia`");
         for (char const* const key : {"wrench", "drag"})
             if (Node const* const extra = item.find(key))
-                fail(*extra, fmt::format("key `{}` means nothing in a chain of links", key), "leave it out");
-        Fields const body(item, {"mass", "inertia", "com", "position", "quaternion", "velocity", "omega", "residue", "beads", "joint"});
+                fail(*extra, fmt::format("key `{}` means nothing in a chain of links", key),
+                     "leave it out");
+        Fields const body(item, {"mass", "inertia", "com", "position", "quaternion", "velocity",
+                                 "omega", "residue", "beads", "joint"});
         linked_.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         bead ? add_bead(body) : add_rigid(body);
         Node const* const velocity = body.find("velocity");
@@ -62,12 +66,14 @@ class LinkedReader {
 
     void add_rigid(Fields const& body) {
         if (Node const* const residue = body.find("residue"))
-            fail(*residue, "key `residue` means nothing for a rigid body", "give it `beads: [{residue: ALA, position: [0, 0, 0]}]`");
+            fail(*residue, "key `residue` means nothing for a rigid body",
+                 "give it `beads: [{residue: ALA, position: [0, 0, 0]}]`");
         linked_.inertia.push_back(inertia(*body.find("inertia")));
         Node const* const com_node = body.find("com");
         Vec3 const com = com_node ? vector3(*com_node) : Vec3::zero();
         Node const* const quaternion = body.find("quaternion");
-        std::array<double, 4> const q = quaternion ? unit_quaternion(*quaternion) : std::array<double, 4>{1, 0, 0, 0};
+        std::array<double, 4> const q =
+            quaternion ? unit_quaternion(*quaternion) : std::array<double, 4>{1, 0, 0, 0};
         Vec3 const origin = vector3(body.need("position", "position: [0, 0, 0]"));
         linked_.position.push_back(origin + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * com);
         linked_.orientation.push_back(q);
@@ -87,33 +93,48 @@ class LinkedReader {
         std::size_t const k = linked_.mass.size() - 1;
         linked_.outboard.push_back(linked_.inboard[k]);
         bool const none = k == 0 && base_ == Base::free;
-        Node const* const node = k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
+        Node const* const node =
+            k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
         Node const* length = nullptr;
         if (node) {
             Fields const joint(*node, {"type", "length", "translation"});
             length = joint.find("length");
             if (length && none)
-                fail(*length, "a link length for body 1 of a free base, which has no link", "leave it out or write `base: fixed`");
-            if (Node const* const translation = joint.find("translation")) start_link(*translation, k);
+                fail(*length, "a link length for body 1 of a free base, which has no link",
+                     "leave it out or write `base: fixed`");
+            if (Node const* const translation = joint.find("translation"))
+                start_link(*translation, k);
         }
         linked_.position[k] = linked_.position[k] + shift_;
         if (!none) make_whole(length, k);
         linked_.length.push_back(none ? 0 : measured(body.node(), length, k));
     }
 
-    Vec3 start_of_link(std::size_t k) const { return k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]); }
+    Vec3 start_of_link(std::size_t k) const {
+        return k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]);
+    }
 
-    double longest_so_far() const { return linked_.length.empty() ? 0 : *std::max_element(linked_.length.begin(), linked_.length.end()); }
+    double longest_so_far() const {
+        return linked_.length.empty()
+                   ? 0
+                   : *std::max_element(linked_.length.begin(), linked_.length.end());
+    }
 
-    /// Moves the body by whole edges of the box where the link's nearest image fits its length better; without one, where it is half as
-    /// long, or shorter and not much longer than the links before.
+    /// Moves the body by whole edges of the box where the link's nearest image fits its length
+    /// better; without one, where it is half as long, or shorter and not much longer than the links
+    /// before.
     void make_whole(Node const* given, std::size_t k) {
         if (!images_) return;
-        Vec3 const link = at(k, linked_.inboard[k]) - start_of_link(k), image = images_->shortest(link);
+        Vec3 const link = at(k, linked_.inboard[k]) - start_of_link(k),
+                   image = images_->shortest(link);
         double const length = given ? positive(*given) : 0;
-        if (!(std::abs(norm(image) - length) < (1 - length_tolerance) * std::abs(norm(link) - length))) return;
+        if (!(std::abs(norm(image) - length) <
+              (1 - length_tolerance) * std::abs(norm(link) - length)))
+            return;
         if (!given && norm(image) > std::max(most_usual * longest_so_far(), 0.5 * norm(link))) {
-            if (made_.doubtful == 0) made_.doubtful = static_cast<std::int64_t>(k) + 1, made_.doubtful_length = norm(link);
+            if (made_.doubtful == 0)
+                made_.doubtful = static_cast<std::int64_t>(k) + 1,
+                made_.doubtful_length = norm(link);
             return;
         }
         Vec3 const by = images_->whole_edges(link);
@@ -123,22 +144,29 @@ class LinkedReader {
 
     void start_link(Node const& translation, std::size_t k) {
         if (k == 0)
-            fail(translation, "a translation for link 1, which starts at the ground", "leave it out; `anchor` of the chain says where");
+            fail(translation, "a translation for link 1, which starts at the ground",
+                 "leave it out; `anchor` of the chain says where");
         if (linked_.is_bead(k - 1))
-            fail(translation, fmt::format("a translation for a link that starts at bead {}, a point", k), "leave it out");
+            fail(translation,
+                 fmt::format("a translation for a link that starts at bead {}, a point", k),
+                 "leave it out");
         linked_.outboard[k - 1] = vector3(translation) + linked_.inboard[k - 1];
     }
 
     double measured(Node const& body, Node const* given, std::size_t k) const {
         Vec3 const from = start_of_link(k), to = at(k, linked_.inboard[k]);
         double const distance = norm(to - from);
-        // Positions carry half a unit in their last place: a link shorter than some of these has no direction.
+        // Positions carry half a unit in their last place: a link shorter than some of these has no
+        // direction.
         if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(to))))
-            fail(body, fmt::format("the ends of link {} coincide: it has no direction", k + 1), "move one of its bodies");
+            fail(body, fmt::format("the ends of link {} coincide: it has no direction", k + 1),
+                 "move one of its bodies");
         if (!given) return distance;
         double const length = positive(*given);
         if (std::abs(length - distance) > length_tolerance * length)
-            fail(*given, fmt::format("the link's length is {:.12g}, its ends are {:.12g} apart", length, distance),
+            fail(*given,
+                 fmt::format("the link's length is {:.12g}, its ends are {:.12g} apart", length,
+                             distance),
                  "correct the positions, or leave `length` out");
         return length;
     }
@@ -153,7 +181,8 @@ class LinkedReader {
 
 }  // namespace
 
-ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor, std::optional<Vec3> const& box) {
+ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor,
+                           std::optional<Vec3> const& box) {
     LinkedReader reader(base, anchor, box);
     for (Node const& item : bodies.items) reader.add(item);
     return reader.take();

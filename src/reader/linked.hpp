@@ -18,10 +18,12 @@ struct ExplicitLinked {
     std::int64_t doubtful = 0;   // the first body, from 1, whose link may be cut or not; 0: none
     double doubtful_length = 0;  // of that link as it stands
 };
-/// Bodies {mass, inertia, com, position, quaternion, velocity, omega, beads, joint: {type: link, length, translation}} and, where there is
-/// no `inertia`, beads. Every length is given or the distance at the start. In a periodic box bodies are moved by whole edges to where
-/// their link's nearest image is, which fits a given length better, else is half as long, or shorter and not much longer than the links
-/// before. Throws InputError.
-ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor, std::optional<Vec3> const& box);
+/// Bodies {mass, inertia, com, position, quaternion, velocity, omega, beads, joint: {type: link,
+/// length, translation}} and, where there is no `inertia`, beads. Every length is given or the
+/// distance at the start. In a periodic box bodies are moved by whole edges to where their link's
+/// nearest image is, which fits a given length better, else is half as long, or shorter and not
+/// much longer than the links before. Throws InputError.
+ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor,
+                           std::optional<Vec3> const& box);
 
 }  // namespace catena::scene

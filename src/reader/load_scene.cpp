@@ -38,14 +38,18 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     made.title = title ? scene::text(*title) : std::filesystem::path(name).stem().string();
     if (std::string const safe = printable(made.title); safe != made.title) {
         made.title = safe;
-        made.note("title: bytes that are not UTF-8 stand as U+FFFD, control characters as `?`: save the scene as UTF-8");
+        made.note(
+            "title: bytes that are not UTF-8 stand as U+FFFD, control characters as `?`: save the "
+            "scene as UTF-8");
     }
-    if (Node const* const units = fields.find("units")) made.si = scene::choice<bool>(*units, {{"md", false}, {"si", true}});
+    if (Node const* const units = fields.find("units"))
+        made.si = scene::choice<bool>(*units, {{"md", false}, {"si", true}});
     Node const* const dynamics = fields.find("dynamics");
     if (dynamics) made.dynamics = scene::read_dynamics(*dynamics, made.si);
     if (Node const* const box = fields.find("box")) made.box = scene::read_box(*box);
     if (Node const* const relax = fields.find("relax")) made.relax = scene::truth(*relax);
-    if (Node const* const forces = fields.find("forces")) made.forces = scene::read_forces(*forces, dynamics, made.si, name);
+    if (Node const* const forces = fields.find("forces"))
+        made.forces = scene::read_forces(*forces, dynamics, made.si, name);
     if (Node const* const solver = fields.find("solver")) made.solver = scene::read_solver(*solver);
     if (Node const* const output = fields.find("output")) made.output = scene::read_output(*output);
     scene::note_forces(made);
@@ -56,13 +60,16 @@ Scene read_frame(Fields const& fields, std::string const& name) {
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     Node const* const dynamics = fields.find("dynamics");
     bool const warm =
-        dynamics && frame.dynamics.temperature > 0 && (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
+        dynamics && frame.dynamics.temperature > 0 &&
+        (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
     if (!fields.find("chains") && frame.forces.openmm && !frame.forces.openmm->system.empty())
         return scene::import_chains(*fields.find("forces")->find("openmm"), frame, warm);
-    Node const& chains = fields.need("chains", "chains: [{name: a, sequence: GGG, model: calvados2}]");
+    Node const& chains =
+        fields.need("chains", "chains: [{name: a, sequence: GGG, model: calvados2}]");
     std::optional<scene::WrittenSystem> system;
     if (frame.forces.openmm && !frame.forces.openmm->system.empty()) system.emplace(frame);
-    if (scene::list(chains).items.empty()) scene::fail(chains, "the list of chains is empty", "describe at least one chain");
+    if (scene::list(chains).items.empty())
+        scene::fail(chains, "the list of chains is empty", "describe at least one chain");
     std::vector<scene::Draft> drafts;
     for (std::size_t i = 0; i < chains.items.size(); ++i)
         scene::read_chain(chains.items[i], i, frame, warm, system ? &*system : nullptr, drafts);
@@ -86,10 +93,12 @@ Scene load_scene(std::string const& file, std::vector<std::string> const& overri
     return parse_scene(scene::read_text_file(file, at), file, overrides);
 }
 
-Scene parse_scene(std::string const& text, std::string const& name, std::vector<std::string> const& overrides) try {
+Scene parse_scene(std::string const& text, std::string const& name,
+                  std::vector<std::string> const& overrides) try {
     std::unique_ptr<Node> const root = scene::parse_document(text, name);
     for (std::string const& change : overrides) scene::apply_override(*root, change);
-    Fields const fields(*root, {"title", "units", "chains", "box", "forces", "dynamics", "solver", "output", "relax"});
+    Fields const fields(*root, {"title", "units", "chains", "box", "forces", "dynamics", "solver",
+                                "output", "relax"});
     Scene made = read_frame(fields, name);
     std::vector<scene::Draft> drafts = read_chains(fields, made);
     scene::check_together(*root, made, drafts);

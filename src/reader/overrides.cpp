@@ -20,9 +20,11 @@ class Override {
   public:
     explicit Override(std::string const& text) : origin_("--set " + shown(text)) {
         std::size_t const equals = text.find('=');
-        if (equals == std::string::npos || equals == 0) refuse("no `key.path=value`", "write, e.g., --set dynamics.steps=1000");
+        if (equals == std::string::npos || equals == 0)
+            refuse("no `key.path=value`", "write, e.g., --set dynamics.steps=1000");
         value_ = text.substr(equals + 1);
-        if (value_.find_first_not_of(" \t") == std::string::npos) refuse("the value is empty", "give one, or `null` to remove the key");
+        if (value_.find_first_not_of(" \t") == std::string::npos)
+            refuse("the value is empty", "give one, or `null` to remove the key");
         read_path(text.substr(0, equals));
     }
 
@@ -31,7 +33,8 @@ class Override {
         Node* at = &root;
         for (std::size_t i = 0; i < steps_.size(); ++i) {
             bool const last = i + 1 == steps_.size();
-            if (last && value.kind == Node::Kind::null && !steps_[i].key.empty()) return remove(*at, steps_[i].key);
+            if (last && value.kind == Node::Kind::null && !steps_[i].key.empty())
+                return remove(*at, steps_[i].key);
             at = steps_[i].key.empty() ? &entry(*at, steps_[i].index) : &member(*at, steps_[i].key);
         }
         value.key = at->key;
@@ -39,7 +42,9 @@ class Override {
     }
 
   private:
-    [[noreturn]] void refuse(std::string const& what, std::string const& remedy) const { throw InputError(what, origin_, remedy); }
+    [[noreturn]] void refuse(std::string const& what, std::string const& remedy) const {
+        throw InputError(what, origin_, remedy);
+    }
 
     void read_path(std::string const& path) {
         for (std::size_t begin = 0; begin <= path.size();) {
@@ -58,7 +63,8 @@ class Override {
             std::size_t index = 0;
             bool good = word[at] == '[' && close != std::string::npos;
             if (good) {
-                auto const result = std::from_chars(word.data() + at + 1, word.data() + close, index);
+                auto const result =
+                    std::from_chars(word.data() + at + 1, word.data() + close, index);
                 good = result.ec == std::errc() && result.ptr == word.data() + close;
             }
             if (!good)
@@ -71,22 +77,30 @@ class Override {
     Node& member(Node& map, std::string const& key) const {
         if (map.kind == Node::Kind::null) map.kind = Node::Kind::map;
         if (map.kind != Node::Kind::map)
-            refuse(fmt::format("`{}` is {}, it has no key `{}`", shown(map.key), describe(map), key), "correct the path");
-        auto const found = std::find_if(map.items.begin(), map.items.end(), [&](Node const& item) { return item.key == key; });
+            refuse(
+                fmt::format("`{}` is {}, it has no key `{}`", shown(map.key), describe(map), key),
+                "correct the path");
+        auto const found = std::find_if(map.items.begin(), map.items.end(),
+                                        [&](Node const& item) { return item.key == key; });
         if (found != map.items.end()) return *found;
         map.items.emplace_back().key = key;
         return map.items.back();
     }
     Node& entry(Node& list, std::size_t index) const {
-        if (list.kind == Node::Kind::null) refuse(fmt::format("there is no list `{}`", shown(list.key)), "correct the path");
-        if (list.kind != Node::Kind::list) refuse(fmt::format("`{}` is not a list", shown(list.key)), "leave the index out");
+        if (list.kind == Node::Kind::null)
+            refuse(fmt::format("there is no list `{}`", shown(list.key)), "correct the path");
+        if (list.kind != Node::Kind::list)
+            refuse(fmt::format("`{}` is not a list", shown(list.key)), "leave the index out");
         if (index >= list.items.size())
-            refuse(fmt::format("index {} is beyond the list `{}` of {}", index, shown(list.key), list.items.size()),
+            refuse(fmt::format("index {} is beyond the list `{}` of {}", index, shown(list.key),
+                               list.items.size()),
                    "indices are counted from 0");
         return list.items[index];
     }
     static void remove(Node& map, std::string const& key) {
-        std::erase_if(map.items, [&](Node const& item) { return map.kind == Node::Kind::map && item.key == key; });
+        std::erase_if(map.items, [&](Node const& item) {
+            return map.kind == Node::Kind::map && item.key == key;
+        });
     }
 
     std::string origin_, value_;

@@ -13,20 +13,26 @@ namespace catena::scene {
 
 namespace {
 
-double constexpr densest = 0.64;   // random close packing of spheres
-double constexpr narrowest = 2.5;  // excluded distances: a narrower box shows a bead two images of another
+double constexpr densest = 0.64;  // random close packing of spheres
+double constexpr narrowest =
+    2.5;  // excluded distances: a narrower box shows a bead two images of another
 std::int64_t constexpr most_steps = 2000;
-std::size_t constexpr most_points = std::size_t{1} << 28;  // numbers of points and cells are of 32 bits
+std::size_t constexpr most_points = std::size_t{1}
+                                    << 28;  // numbers of points and cells are of 32 bits
 
-std::string text_of(Vec3 const& box) { return fmt::format("{:.6g} x {:.6g} x {:.6g}", box[0], box[1], box[2]); }
+std::string text_of(Vec3 const& box) {
+    return fmt::format("{:.6g} x {:.6g} x {:.6g}", box[0], box[1], box[2]);
+}
 
-/// Volume of spheres as wide as the excluded distance, less half of the lens that link neighbours share for each of the two.
+/// Volume of spheres as wide as the excluded distance, less half of the lens that link neighbours
+/// share for each of the two.
 double volume_of(Crowd const& crowd) {
     double const d = crowd.excluded;
     double volume = 0;
     for (std::size_t i = 0; i < crowd.movable(); ++i) {
         volume += Draws::pi / 6 * d * d * d;
-        if (double const l = crowd.length[i]; l > 0) volume -= Draws::pi / 12 * (2 * d + l) * (d - l) * (d - l);
+        if (double const l = crowd.length[i]; l > 0)
+            volume -= Draws::pi / 12 * (2 * d + l) * (d - l) * (d - l);
     }
     return volume;
 }
@@ -34,17 +40,22 @@ double volume_of(Crowd const& crowd) {
 void refuse_impossible(Crowd const& crowd, Node const& node, char const* name) {
     Vec3 const& box = crowd.box;
     if (crowd.at.size() > most_points)
-        fail(node, fmt::format("{} beads to pack", crowd.at.size()), fmt::format("pack {} or fewer", most_points));
+        fail(node, fmt::format("{} beads to pack", crowd.at.size()),
+             fmt::format("pack {} or fewer", most_points));
     double const edge = std::min({box[0], box[1], box[2]});
     if (edge < narrowest * crowd.excluded * (1 - 1e-9))
-        fail(node, fmt::format("{} {} is too narrow to pack chains whose beads keep {:.4g} nm apart", name, text_of(box), crowd.excluded),
+        fail(node,
+             fmt::format("{} {} is too narrow to pack chains whose beads keep {:.4g} nm apart",
+                         name, text_of(box), crowd.excluded),
              fmt::format("give edges of {:.4g} nm or more", narrowest * crowd.excluded));
     double const filled = volume_of(crowd) / (box[0] * box[1] * box[2]);
     if (filled > densest)
         fail(node,
-             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of {} {}, random packings of spheres fill {:.2g}",
+             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of {} {}, random "
+                         "packings of spheres fill {:.2g}",
                          crowd.movable(), crowd.excluded, filled, name, text_of(box), densest),
-             fmt::format("make each edge {:.3g} times as long or longer, or lower `count`", std::cbrt(filled / densest) + 5e-4));
+             fmt::format("make each edge {:.3g} times as long or longer, or lower `count`",
+                         std::cbrt(filled / densest) + 5e-4));
 }
 
 Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
@@ -53,7 +64,7 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
     crowd.excluded = excluded_distance;
     crowd.first.push_back(0);
     for (Draft const& draft : drafts) {
-        if (draft.regrown != Regrown::yes) continue;
+        if (draft.regrown != Regrowth::yes) continue;
         BeadArrays const& beads = draft.chain.beads;
         crowd.at.insert(crowd.at.end(), beads.position.begin(), beads.position.end());
         crowd.length.insert(crowd.length.end(), beads.length.begin(), beads.length.end());
@@ -61,7 +72,7 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
         crowd.first.push_back(crowd.at.size());
     }
     for (Draft const& draft : drafts) {
-        if (draft.regrown == Regrown::yes) continue;
+        if (draft.regrown == Regrowth::yes) continue;
         std::vector<Vec3> const points = outline_of(draft.chain).points;
         crowd.at.insert(crowd.at.end(), points.begin(), points.end());
     }
@@ -73,20 +84,24 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
 
 void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char const* name) {
     Crowd crowd = crowd_of(drafts, box);
-    auto const first = std::find_if(drafts.begin(), drafts.end(), [](Draft const& d) { return d.regrown == Regrown::yes; });
+    auto const first = std::find_if(drafts.begin(), drafts.end(),
+                                    [](Draft const& d) { return d.regrown == Regrowth::yes; });
     refuse_impossible(crowd, *first->node, name);
-    std::uint64_t constexpr packing = std::uint64_t{1} << 63;  // apart from the streams of single chains
+    std::uint64_t constexpr packing = std::uint64_t{1}
+                                      << 63;  // apart from the streams of single chains
     grow(crowd, seed_of_stream(seed, packing));
     Relaxed const relaxed = relax(crowd, most_steps);
     if (relaxed.overlaps > 0)
         fail(*first->node,
-             fmt::format("packing {} chains into {} {} left {} pairs of beads nearer than {:.4g} nm, the nearest at {:.3g} nm, after "
+             fmt::format("packing {} chains into {} {} left {} pairs of beads nearer than {:.4g} "
+                         "nm, the nearest at {:.3g} nm, after "
                          "{} steps",
-                         crowd.chains(), name, text_of(box), relaxed.overlaps, crowd.excluded, relaxed.nearest, relaxed.steps),
+                         crowd.chains(), name, text_of(box), relaxed.overlaps, crowd.excluded,
+                         relaxed.nearest, relaxed.steps),
              fmt::format("enlarge {} or lower `count`", name));
     std::size_t next = 0;
     for (Draft& draft : drafts)
-        if (draft.regrown == Regrown::yes)
+        if (draft.regrown == Regrowth::yes)
             for (Vec3& position : draft.chain.beads.position) position = crowd.at[next++];
 }
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "generate/outline.hpp"
-#include "reader/packing.hpp"
 #include "generate/place_grid.hpp"
+#include "reader/packing.hpp"
 
 namespace catena::scene {
 
@@ -21,9 +21,11 @@ Sphere sphere_around(ChainSpec const& chain) {
     Outline const outline = outline_of(chain);
     Vec3 low = outline.points[0], high = low;
     for (Vec3 const& p : outline.points)
-        for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+        for (int i = 0; i < 3; ++i)
+            low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
     Sphere sphere{0.5 * (low + high), 0, 2 * outline.link};
-    for (Vec3 const& p : outline.points) sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));
+    for (Vec3 const& p : outline.points)
+        sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));
     return sphere;
 }
 
@@ -42,13 +44,15 @@ void move(ChainSpec& chain, Vec3 const& by) {
     }
 }
 
-bool is_regrown(Draft const* draft) { return draft->regrown == Regrown::yes; }
+bool is_regrown(Draft const* draft) { return draft->regrown == Regrowth::yes; }
 
 void refuse_far(Draft const& draft, Sphere const& sphere) {
     double reach = 0;
     for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius);
     if (reach <= farthest && sphere.gap <= 4 * farthest) return;
-    fail(*draft.node, fmt::format("chain `{}` reaches {:.3g} from the origin, beyond what positions hold", shown(draft.chain.name), reach),
+    fail(*draft.node,
+         fmt::format("chain `{}` reaches {:.3g} from the origin, beyond what positions hold",
+                     shown(draft.chain.name), reach),
          fmt::format("correct its coordinates: {:g} is the most", farthest));
 }
 
@@ -64,20 +68,25 @@ struct Room {
     char const* name;
 };
 
-[[noreturn]] void refuse(Draft const& draft, Room const& in, std::size_t room, double width, std::size_t wanted) {
+[[noreturn]] void refuse(Draft const& draft, Room const& in, std::size_t room, double width,
+                         std::size_t wanted) {
     Vec3 const& edges = *in.edges;
-    bool const residues = draft.regrown == Regrown::if_asked;
+    bool const residues = draft.regrown == Regrowth::if_asked;
     fail(*draft.node,
-         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within a sphere {:.4g} wide, not for {}",
+         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within "
+                     "a sphere {:.4g} wide, not for {}",
                      in.name, edges[0], edges[1], edges[2], room, width, wanted),
          std::string("enlarge ") + in.name +
-             (residues ? ", lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"
-                       : " or lower `count`; only free chains of residues without `positions` are packed more densely"));
+             (residues ? ", lower `count` or write `conformation: self_avoiding` (without "
+                         "`positions`), which is packed more densely"
+                       : " or lower `count`; only free chains of residues without `positions` are "
+                         "packed more densely"));
 }
 
-/// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box has no room for chains that can be grown
-/// into it instead.
-bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed, Room const& box) {
+/// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box
+/// has no room for chains that can be grown into it instead.
+bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed,
+                        Room const& box) {
     std::vector<Sphere> spheres;
     double width = 0;
     for (Draft const* const draft : moving) {
@@ -99,7 +108,8 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
 
 }  // namespace
 
-void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed, char const* name) {
+void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed,
+                 char const* name) {
     Room const room{box, name};
     std::vector<Draft*> moving;
     std::vector<Sphere> placed;

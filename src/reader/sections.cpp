@@ -22,18 +22,23 @@ void take(Fields const& fields, char const* key, Value& value, Read read) {
 std::string existing_file(Node const& node, std::string const& scene_file) {
     std::string const path = resolved(text(node), scene_file);
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) fail(node, "no such file: `" + shown_path(path) + "`", "check the path");
+    if (!std::filesystem::is_regular_file(path, ignored))
+        fail(node, "no such file: `" + shown_path(path) + "`", "check the path");
     return path;
 }
 
 void read_map(Node const& node, OpenMmSpec& spec) {
     if (node.kind != Node::Kind::map)
-        fail(node, describe(node) + " is not a map", "give chain: [first, last] with particles counted from 0");
+        fail(node, describe(node) + " is not a map",
+             "give chain: [first, last] with particles counted from 0");
     for (Node const& item : node.items) {
         std::string const remedy = "give [first, last] with particles counted from 0";
-        if (item.kind != Node::Kind::list || item.items.size() != 2) fail(item, describe(item) + " is not a pair of particles", remedy);
+        if (item.kind != Node::Kind::list || item.items.size() != 2)
+            fail(item, describe(item) + " is not a pair of particles", remedy);
         std::int64_t const first = whole(item.items[0], 0), last = whole(item.items[1], 0);
-        if (last < first) fail(item, fmt::format("the last particle {} comes before the first {}", last, first), remedy);
+        if (last < first)
+            fail(item, fmt::format("the last particle {} comes before the first {}", last, first),
+                 remedy);
         spec.map.push_back({item.key, {first, last}});
     }
 }
@@ -44,17 +49,22 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
     Node const* const topology = fields.find("topology");
     Node const* const map = fields.find("map");
     if (builder && system) fail(*builder, "both `builder` and `system`", "keep one of them");
-    if (!builder && !system) fail(fields.node(), "neither `builder` nor `system`", "add `builder: calvados2`, or `system: system.xml`");
+    if (!builder && !system)
+        fail(fields.node(), "neither `builder` nor `system`",
+             "add `builder: calvados2`, or `system: system.xml`");
     if (builder) {
         choice<int>(*builder, {{"calvados2", 0}});
         spec.builder = builder->text;
         for (Node const* const extra : {topology, map, fields.find("force_groups")})
-            if (extra) fail(*extra, fmt::format("key `{}` means nothing for a builder", extra->key), "leave it out or give `system`");
+            if (extra)
+                fail(*extra, fmt::format("key `{}` means nothing for a builder", extra->key),
+                     "leave it out or give `system`");
         return;
     }
     for (char const* const key : {"ionic_strength", "ph", "switch_width", "charge_termini"})
         if (Node const* const extra = fields.find(key))
-            fail(*extra, fmt::format("key `{}` means nothing for a finished system", key), "leave it out: the system says it");
+            fail(*extra, fmt::format("key `{}` means nothing for a finished system", key),
+                 "leave it out: the system says it");
     spec.system = existing_file(*system, file);
     if (topology) spec.topology = existing_file(*topology, file);
     if (map) read_map(*map, spec);
@@ -64,36 +74,50 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 }
 
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
-    Fields const fields(node, {"builder",      "system",   "topology",  "map",     "temperature",  "ionic_strength", "ph",
-                               "switch_width", "platform", "precision", "threads", "device",       "path",           "overlap",
-                               "layers",       "split",    "replicate", "audit",   "force_groups", "charge_termini"});
-    if (si) fail(node, "OpenMM's forces in SI units", "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
+    Fields const fields(
+        node, {"builder",        "system",    "topology",     "map",          "temperature",
+               "ionic_strength", "ph",        "switch_width", "platform",     "precision",
+               "threads",        "device",    "path",         "overlap",      "layers",
+               "split",          "replicate", "audit",        "force_groups", "charge_termini"});
+    if (si)
+        fail(node, "OpenMM's forces in SI units",
+             "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);
-    if (Node const* const run = dynamics ? dynamics->find("temperature") : nullptr) spec.temperature = number(*run);
+    if (Node const* const run = dynamics ? dynamics->find("temperature") : nullptr)
+        spec.temperature = number(*run);
     take(fields, "temperature", spec.temperature, positive);
-    if (!(spec.temperature > 0)) fail(node, "the force field's temperature is that of the run, 0", "add `temperature: 300` here");
+    if (!(spec.temperature > 0))
+        fail(node, "the force field's temperature is that of the run, 0",
+             "add `temperature: 300` here");
     take(fields, "ionic_strength", spec.ionic_strength, non_negative);
     if (Node const* const ph = fields.find("ph")) spec.ph = number(*ph);
     take(fields, "switch_width", spec.switch_width, non_negative);
-    if (Node const* const termini = fields.find("charge_termini")) spec.map.push_back({"", as_numbers(read_charged_termini(*termini))});
+    if (Node const* const termini = fields.find("charge_termini"))
+        spec.map.push_back({"", as_numbers(read_charged_termini(*termini))});
     take(fields, "platform", spec.platform, text);
-    take(fields, "precision", spec.precision,
-         [](Node const& n) { return choice<std::string>(n, {{"single", "single"}, {"mixed", "mixed"}, {"double", "double"}}); });
+    take(fields, "precision", spec.precision, [](Node const& n) {
+        return choice<std::string>(
+            n, {{"single", "single"}, {"mixed", "mixed"}, {"double", "double"}});
+    });
     take(fields, "threads", spec.threads, [](Node const& n) { return whole(n, 0, 4096); });
     take(fields, "device", spec.device, [](Node const& n) { return whole(n, 0, 4096); });
     take(fields, "path", spec.path, [](Node const& n) {
-        return choice<std::string>(n, {{"auto", "auto"}, {"device", "device"}, {"host", "host"}, {"inline", "inline"}});
+        return choice<std::string>(
+            n, {{"auto", "auto"}, {"device", "device"}, {"host", "host"}, {"inline", "inline"}});
     });
     take(fields, "overlap", spec.overlap, truth);
-    take(fields, "layers", spec.layers,
-         [](Node const& n) { return choice<std::string>(n, {{"auto", "auto"}, {"all", "all"}, {"none", "none"}}); });
-    take(fields, "split", spec.split,
-         [](Node const& n) { return choice<std::string>(n, {{"auto", "auto"}, {"ghosts", "ghosts"}, {"pairs", "pairs"}}); });
+    take(fields, "layers", spec.layers, [](Node const& n) {
+        return choice<std::string>(n, {{"auto", "auto"}, {"all", "all"}, {"none", "none"}});
+    });
+    take(fields, "split", spec.split, [](Node const& n) {
+        return choice<std::string>(n, {{"auto", "auto"}, {"ghosts", "ghosts"}, {"pairs", "pairs"}});
+    });
     take(fields, "replicate", spec.replicate, truth);
     take(fields, "audit", spec.audit, truth);
     if (Node const* const groups = fields.find("force_groups"))
-        for (Node const& group : list(*groups).items) spec.force_groups.push_back(static_cast<int>(whole(group, 0, 31)));
+        for (Node const& group : list(*groups).items)
+            spec.force_groups.push_back(static_cast<int>(whole(group, 0, 31)));
     return spec;
 }
 
@@ -103,9 +127,11 @@ bool is_level_count(std::string const& text) {
     std::size_t const comma = text.find(',');
     auto const one = [](std::string const& part) {
         return part == "all" || (!part.empty() && part.size() < 4 &&
-                                 std::all_of(part.begin(), part.end(), [](unsigned char c) { return c >= '0' && c <= '9'; }));
+                                 std::all_of(part.begin(), part.end(),
+                                             [](unsigned char c) { return c >= '0' && c <= '9'; }));
     };
-    return one(text.substr(0, comma)) && (comma == std::string::npos || one(text.substr(comma + 1)));
+    return one(text.substr(0, comma)) &&
+           (comma == std::string::npos || one(text.substr(comma + 1)));
 }
 
 /// Beyond them a double no longer tells places in the box apart.
@@ -115,11 +141,15 @@ double constexpr shortest_edge = 1e-30, longest_edge = 1e9;
 
 std::optional<Vec3> read_box(Node const& box) {
     if (box.kind == Node::Kind::scalar && box.text == "none") return std::nullopt;
-    if (box.kind != Node::Kind::map) fail(box, describe(box) + " is no box", "give `{periodic: [60, 60, 60]}` or `none`");
-    Node const& edges = Fields(box, {"periodic", "fill"}).need("periodic", "periodic: [60, 60, 60]");
+    if (box.kind != Node::Kind::map)
+        fail(box, describe(box) + " is no box", "give `{periodic: [60, 60, 60]}` or `none`");
+    Node const& edges =
+        Fields(box, {"periodic", "fill"}).need("periodic", "periodic: [60, 60, 60]");
     Vec3 const lengths = vector3(edges);
     for (double const length : lengths.data) {
-        if (!(length > 0)) fail(edges, fmt::format("box edge {} is not positive", length), "give three edges above 0");
+        if (!(length > 0))
+            fail(edges, fmt::format("box edge {} is not positive", length),
+                 "give three edges above 0");
         if (length < shortest_edge || length > longest_edge)
             fail(edges, fmt::format("box edge {} is beyond what positions hold", length),
                  fmt::format("give edges from {:g} to {:g}", shortest_edge, longest_edge));
@@ -129,29 +159,38 @@ std::optional<Vec3> read_box(Node const& box) {
 
 namespace {
 
-/// A solution rounds at 16 eps times the depth of its tree (ChainSystem::residual_bound): of the order of 1e-13, which no shorter step
-/// makes smaller.
+/// A solution rounds at 16 eps times the depth of its tree (ChainSystem::residual_bound): of the
+/// order of 1e-13, which no shorter step makes smaller.
 double read_tolerance(Node const& node, Integrator integrator) {
     double constexpr least = 1e-13, most = 0.1;
     double const tolerance = positive(node);
     if (integrator != Integrator::dormand_prince)
-        fail(node, fmt::format("integrator {} has no error estimate: its steps are as long as `step` says", name_of(integrator)),
-             "leave it out, or use `integrator: dormand-prince` (joint coordinates)");
-    if (tolerance < least) fail(node, fmt::format("tolerance {} is below what doubles resolve", tolerance), "give 1e-13 or more");
-    if (tolerance > most) fail(node, fmt::format("tolerance {} bounds nothing", tolerance), "give 0.1 or less, such as 1e-8");
+        fail(
+            node,
+            fmt::format("integrator {} has no error estimate: its steps are as long as `step` says",
+                        name_of(integrator)),
+            "leave it out, or use `integrator: dormand-prince` (joint coordinates)");
+    if (tolerance < least)
+        fail(node, fmt::format("tolerance {} is below what doubles resolve", tolerance),
+             "give 1e-13 or more");
+    if (tolerance > most)
+        fail(node, fmt::format("tolerance {} bounds nothing", tolerance),
+             "give 0.1 or less, such as 1e-8");
     return tolerance;
 }
 
 }  // namespace
 
 calvados2::ChargedTermini read_charged_termini(Node const& node) {
-    return choice<calvados2::ChargedTermini>(
-        node, {{"both", {true, true}}, {"N", {true, false}}, {"C", {false, true}}, {"none", {false, false}}});
+    return choice<calvados2::ChargedTermini>(node, {{"both", {true, true}},
+                                                    {"N", {true, false}},
+                                                    {"C", {false, true}},
+                                                    {"none", {false, false}}});
 }
 
 DynamicsSpec read_dynamics(Node const& node, bool si) {
-    Fields const fields(node,
-                        {"integrator", "step", "steps", "temperature", "friction", "seed", "constraint_tolerance", "tolerance", "fixman"});
+    Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed",
+                               "constraint_tolerance", "tolerance", "fixman"});
     DynamicsSpec dynamics;
     dynamics.given = true;
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
@@ -172,7 +211,8 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     take(fields, "friction", dynamics.friction, non_negative);
     take(fields, "seed", dynamics.seed, seed64);
     take(fields, "constraint_tolerance", dynamics.constraint_tolerance, positive);
-    if (Node const* const tolerance = fields.find("tolerance")) dynamics.tolerance = read_tolerance(*tolerance, dynamics.integrator);
+    if (Node const* const tolerance = fields.find("tolerance"))
+        dynamics.tolerance = read_tolerance(*tolerance, dynamics.integrator);
     take(fields, "fixman", dynamics.fixman, truth);
     if (si && is_langevin(dynamics.integrator)) fields.need("friction", "friction: 1e10");
     return dynamics;
@@ -186,12 +226,15 @@ ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::stri
         auto const [linear, angular] = read_drag(*drag);
         forces.linear_drag = linear, forces.angular_drag = angular;
     }
-    if (Node const* const openmm = fields.find("openmm")) forces.openmm = read_openmm(*openmm, dynamics, si, file);
+    if (Node const* const openmm = fields.find("openmm"))
+        forces.openmm = read_openmm(*openmm, dynamics, si, file);
     return forces;
 }
 
 SolverSpec read_solver(Node const& node) {
-    Fields const fields(node, {"backend", "handles", "threads", "gpu_levels", "simd", "refine", "balance"}, {"precision"});
+    Fields const fields(
+        node, {"backend", "handles", "threads", "gpu_levels", "simd", "refine", "balance"},
+        {"precision"});
     SolverSpec solver;
     take(fields, "backend", solver.backend, [](Node const& n) {
         return choice<Backend>(n, {{"auto", Backend::automatic},
@@ -202,41 +245,54 @@ SolverSpec read_solver(Node const& node) {
                                    {"cuda-levels", Backend::cuda_levels}});
     });
     take(fields, "handles", solver.handles, [](Node const& n) {
-        return choice<Handles>(n, {{"projected", Handles::projected}, {"full", Handles::full}, {"articulated", Handles::articulated}});
+        return choice<Handles>(n, {{"projected", Handles::projected},
+                                   {"full", Handles::full},
+                                   {"articulated", Handles::articulated}});
     });
     take(fields, "threads", solver.threads, [](Node const& n) { return whole(n, 0, 4096); });
-    take(fields, "refine", solver.refine, [](Node const& n) { return static_cast<int>(whole(n, 0, 10)); });
+    take(fields, "refine", solver.refine,
+         [](Node const& n) { return static_cast<int>(whole(n, 0, 10)); });
     take(fields, "simd", solver.simd, [](Node const& n) {
-        return choice<std::optional<SimdLevel>>(
-            n, {{"auto", std::nullopt}, {"off", SimdLevel::off}, {"avx2", SimdLevel::avx2}, {"avx512", SimdLevel::avx512}});
+        return choice<std::optional<SimdLevel>>(n, {{"auto", std::nullopt},
+                                                    {"off", SimdLevel::off},
+                                                    {"avx2", SimdLevel::avx2},
+                                                    {"avx512", SimdLevel::avx512}});
     });
     take(fields, "balance", solver.balance, truth);
     take(fields, "gpu_levels", solver.gpu_levels, [](Node const& n) {
-        if (!is_level_count(text(n))) fail(n, describe(n) + " is no number of levels", "give `auto`, `all`, a number, or two as `UP,DOWN`");
+        if (!is_level_count(text(n)))
+            fail(n, describe(n) + " is no number of levels",
+                 "give `auto`, `all`, a number, or two as `UP,DOWN`");
         return n.text;
     });
     return solver;
 }
 
 OutputSpec read_output(Node const& node) {
-    Fields const fields(node,
-                        {"every", "checkpoint_every", "checkpoint_minutes", "observables", "joint_forces", "velocities", "coordinates"});
+    Fields const fields(node, {"every", "checkpoint_every", "checkpoint_minutes", "observables",
+                               "joint_forces", "velocities", "coordinates"});
     OutputSpec output;
     take(fields, "every", output.every, [](Node const& n) { return whole(n, 1); });
-    take(fields, "checkpoint_every", output.checkpoint_every, [](Node const& n) { return whole(n, 0); });
+    take(fields, "checkpoint_every", output.checkpoint_every,
+         [](Node const& n) { return whole(n, 0); });
     take(fields, "checkpoint_minutes", output.checkpoint_minutes, non_negative);
     take(fields, "joint_forces", output.joint_forces, truth);
     take(fields, "velocities", output.velocities, truth);
     take(fields, "coordinates", output.coordinates, truth);
     Node const* const observables = fields.find("observables");
     if (!observables) return output;
-    static constexpr std::string_view known[] = {
-        "energy", "temperature", "constraint_error", "radius_of_gyration", "unweighted_radius_of_gyration", "end_to_end_distance"};
+    static constexpr std::string_view known[] = {"energy",
+                                                 "temperature",
+                                                 "constraint_error",
+                                                 "radius_of_gyration",
+                                                 "unweighted_radius_of_gyration",
+                                                 "end_to_end_distance"};
     for (Node const& item : list(*observables).items) {
         std::string const name = text(item);
         if (std::find(std::begin(known), std::end(known), name) == std::end(known)) {
             auto const near = nearest(name, known);
-            fail(item, describe(item) + " is no observable", near ? "did you mean `" + *near + "`?" : "use one of " + joined(known));
+            fail(item, describe(item) + " is no observable",
+                 near ? "did you mean `" + *near + "`?" : "use one of " + joined(known));
         }
         if (std::count(output.observables.begin(), output.observables.end(), name))
             fail(item, describe(item) + " is listed twice", "list it once");

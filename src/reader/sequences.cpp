@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <map>
 
-#include "scene/calvados2.hpp"
 #include "generate/conformation.hpp"
+#include "generate/generators.hpp"
+#include "reader/gaps.hpp"
+#include "scene/calvados2.hpp"
 #include "scene/fasta.hpp"
 #include "scene/files.hpp"
-#include "reader/gaps.hpp"
-#include "generate/generators.hpp"
 #include "scene/pdb_sites.hpp"
 #include "scene/residue_names.hpp"
 
@@ -26,7 +26,8 @@ Residues residues_of(std::string const& letters) {
     return residues;
 }
 
-/// The model's residues for a file's names. Other names and modifications are their parents, with a note; InputError for the others.
+/// The model's residues for a file's names. Other names and modifications are their parents, with a
+/// note; InputError for the others.
 Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) {
     Residues residues;
     std::map<std::pair<std::string, std::string>, int> renamed;
@@ -36,17 +37,27 @@ Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) 
         auto const bead = static_cast<std::int64_t>(residues.size()) + 1;
         if (meaning.kind == ResidueKind::charged)
             fail_at(source, "bead", bead,
-                    fmt::format("`{}` has another charge than {}, and calvados2 has no parameters for it", residue, meaning.parent),
-                    fmt::format("write {} in the file if that charge may be lost, or give the forces as a System", meaning.parent));
-        residues.push_back(meaning.kind == ResidueKind::amino_acid ? find_calvados2(meaning.parent) : nullptr);
+                    fmt::format(
+                        "`{}` has another charge than {}, and calvados2 has no parameters for it",
+                        residue, meaning.parent),
+                    fmt::format("write {} in the file if that charge may be lost, or give the "
+                                "forces as a System",
+                                meaning.parent));
+        residues.push_back(meaning.kind == ResidueKind::amino_acid ? find_calvados2(meaning.parent)
+                                                                   : nullptr);
         if (!residues.back())
-            fail_at(source, "bead", bead, fmt::format("`{}` is no residue of calvados2", residue), "rename or remove it in the file");
+            fail_at(source, "bead", bead, fmt::format("`{}` is no residue of calvados2", residue),
+                    "rename or remove it in the file");
         if (meaning.parent != site.residue) ++renamed[{site.residue, meaning.parent}];
     }
     std::string list;
     for (auto const& [names, count] : renamed)
-        list += fmt::format("{}{} {} as {}", list.empty() ? "" : ", ", count, names.first, names.second);
-    if (!list.empty()) scene.note(fmt::format("`{}`: residues take the parameters and charge of their parents ({})", from.file, list));
+        list += fmt::format("{}{} {} as {}", list.empty() ? "" : ", ", count, names.first,
+                            names.second);
+    if (!list.empty())
+        scene.note(
+            fmt::format("`{}`: residues take the parameters and charge of their parents ({})",
+                        from.file, list));
     return residues;
 }
 
@@ -61,25 +72,32 @@ std::vector<std::string> labels_of(PdbSites const& from) {
 }
 
 /// Says which beads are meant where the file's numbers are not those of the beads.
-void note_numbering(ChainRequest const& request, std::vector<std::string> const& labels, std::string const& file) {
+void note_numbering(ChainRequest const& request, std::vector<std::string> const& labels,
+                    std::string const& file) {
     bool from_one = true;
-    for (std::size_t k = 0; k < labels.size(); ++k) from_one = from_one && labels[k] == std::to_string(k + 1);
+    for (std::size_t k = 0; k < labels.size(); ++k)
+        from_one = from_one && labels[k] == std::to_string(k + 1);
     if (from_one) return;
     std::string list;
     for (Domain const& domain : request.rigid)
-        list += fmt::format("{}{} are beads {} to {}", list.empty() ? "" : ", ", domain.name, domain.first + 1, domain.last + 1);
+        list += fmt::format("{}{} are beads {} to {}", list.empty() ? "" : ", ", domain.name,
+                            domain.first + 1, domain.last + 1);
     request.scene.note(fmt::format("`rigid` means the residue numbers of `{}`: {}", file, list));
 }
 
-void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues, PdbSites const& from) {
+void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues,
+               PdbSites const& from) {
     std::vector<std::string> const labels = labels_of(from);
     request.rigid = read_domains(rigid, residues, labels);
     if (!labels.empty()) return note_numbering(request, labels, from.file);
-    auto const bare = std::find_if(from.sites.begin(), from.sites.end(), [](PdbSite const& site) { return !site.number; });
+    auto const bare = std::find_if(from.sites.begin(), from.sites.end(),
+                                   [](PdbSite const& site) { return !site.number; });
     if (bare == from.sites.end()) return;
-    request.scene.note(fmt::format("`rigid` means beads, numbered from 1: `{}` has no residue number that can be read for bead {}, {}{}",
-                                   from.file, bare - from.sites.begin() + 1, shown(bare->residue),
-                                   bare->label.empty() ? "" : " `" + bare->label + "`"));
+    request.scene.note(
+        fmt::format("`rigid` means beads, numbered from 1: `{}` has no residue number that can be "
+                    "read for bead {}, {}{}",
+                    from.file, bare - from.sites.begin() + 1, shown(bare->residue),
+                    bare->label.empty() ? "" : " `" + bare->label + "`"));
 }
 
 void set_residues(BeadArrays& beads, Residues const& residues, calvados2::ChargedTermini termini) {
@@ -95,16 +113,23 @@ void set_residues(BeadArrays& beads, Residues const& residues, calvados2::Charge
 BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_t copy) {
     Node const* const positions = request.fields.find("positions");
     Node const* const conformation = request.fields.find("conformation");
-    if (positions && conformation) fail(*conformation, "the chain has both `positions` and `conformation`", "keep one of them");
+    if (positions && conformation)
+        fail(*conformation, "the chain has both `positions` and `conformation`",
+             "keep one of them");
     bool const file = conformation && conformation->kind == Node::Kind::map;
-    bool const self_avoiding = conformation && !file && choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}});
+    bool const self_avoiding =
+        conformation && !file &&
+        choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}});
     double const length = calvados2::bond_length;
     std::int64_t const points = beads + (request.base == Base::fixed ? 1 : 0);
-    std::vector<Vec3> const start = self_avoiding ? self_avoiding_conformation(points, length, excluded_distance, request.seed(copy))
-                                                  : extended_conformation(points, length);
+    std::vector<Vec3> const start =
+        self_avoiding
+            ? self_avoiding_conformation(points, length, excluded_distance, request.seed(copy))
+            : extended_conformation(points, length);
     BeadArrays made = beads_at(start, length, 1, request.base, request.anchor());
     request.set_lengths(made);
-    Node const* const from = file ? &Fields(*conformation, {"pdb"}).need("pdb", "pdb: start.pdb") : positions;
+    Node const* const from =
+        file ? &Fields(*conformation, {"pdb"}).need("pdb", "pdb: start.pdb") : positions;
     if (from) request.place(made, request.positions_from(*from, made.size()), *from);
     return made;
 }
@@ -122,11 +147,13 @@ Residues read_residues(ChainRequest& request, PdbSites& from) {
     Fields const& fields = request.fields;
     Node const* const fasta = fields.find("fasta");
     Node const* const record = fields.find("record");
-    if (record && !fasta) fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
+    if (record && !fasta)
+        fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
     if (Node const* const file = fields.find("pdb")) return residues_of_pdb(request, *file, from);
     if (fasta) {
         std::string const path = resolved(text(*fasta), request.scene.file);
-        return residues_of(one_letter_codes(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta, request.scene));
+        return residues_of(one_letter_codes(read_fasta(path, *fasta, {record, fields.find("name")}),
+                                            *fasta, request.scene));
     }
     Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
     return residues_of(one_letter_codes(text(sequence), sequence, request.scene));
@@ -137,8 +164,10 @@ void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& fro
     Node const* const rigid = fields.find("rigid");
     if (!rigid) return;
     Node const* const conformation = fields.find("conformation");
-    if (!fields.find("pdb") && !fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
-        fail(*rigid, "rigid domains in a chain without positions", "give `pdb` or `positions`: they say what shape the domains have");
+    if (!fields.find("pdb") && !fields.find("positions") &&
+        !(conformation && conformation->kind == Node::Kind::map))
+        fail(*rigid, "rigid domains in a chain without positions",
+             "give `pdb` or `positions`: they say what shape the domains have");
     set_rigid(request, *rigid, residues, from);
 }
 
@@ -149,14 +178,18 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     bool const pdb = fields.find("pdb");
     request.allow(pdb ? "a chain from a PDB file" : "a sequence",
                   pdb ? Names{"record", "model", "links", "anchor", "rigid", "charge_termini"}
-                      : Names{"record", "model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"});
-    if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
+                      : Names{"record", "model", "positions", "links", "anchor", "conformation",
+                              "rigid", "charge_termini"});
+    if (request.scene.si)
+        fail(request.node, "model calvados2 in SI units",
+             "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
     PdbSites from;
     Residues const residues = read_residues(request, from);
     read_rigid(request, residues.size(), from);
     request.residues.clear();
-    for (Calvados2Residue const* const residue : residues) request.residues.push_back(residue->name);
+    for (Calvados2Residue const* const residue : residues)
+        request.residues.push_back(residue->name);
     BeadArrays beads = at_start(request, static_cast<std::int64_t>(residues.size()), copy);
     set_residues(beads, residues, request.termini());
     if (pdb) request.place(beads, from.positions(), *fields.find("pdb"));

@@ -13,10 +13,12 @@ namespace {
 std::vector<std::int64_t> linked_beads(ChainSpec const& chain) {
     std::vector<std::int64_t> beads;
     if (chain.is_beads())
-        for (std::size_t k = 1; k < chain.size(); ++k) beads.push_back(static_cast<std::int64_t>(k));
+        for (std::size_t k = 1; k < chain.size(); ++k)
+            beads.push_back(static_cast<std::int64_t>(k));
     if (chain.is_linked() && chain.linked.carried.offset.size() == chain.size() + 1)
         for (std::size_t k = 1; k < chain.size(); ++k)
-            if (std::int64_t const first = chain.linked.carried.offset[k]; first > chain.linked.carried.offset[k - 1])
+            if (std::int64_t const first = chain.linked.carried.offset[k];
+                first > chain.linked.carried.offset[k - 1])
                 beads.push_back(first);
     return beads;
 }
@@ -24,9 +26,11 @@ std::vector<std::int64_t> linked_beads(ChainSpec const& chain) {
 }  // namespace
 
 WrittenSystem::WrittenSystem(Scene& scene)
-    : links_(read_system_links(*scene.forces.openmm, scene.file)), temperature_(scene.forces.openmm->temperature) {
+    : links_(read_system_links(*scene.forces.openmm, scene.file)),
+      temperature_(scene.forces.openmm->temperature) {
     for (std::string const& note : links_.notes) scene.note(note);
-    for (auto const& [chain, particles] : scene.forces.openmm->map) first_.emplace(chain, particles.first);
+    for (auto const& [chain, particles] : scene.forces.openmm->map)
+        first_.emplace(chain, particles.first);
 }
 
 std::int64_t WrittenSystem::first_particle(std::string const& chain, std::int64_t next) const {
@@ -41,8 +45,10 @@ double WrittenSystem::length(std::int64_t particle) const {
 
 double WrittenSystem::largest_spread(std::int64_t first, std::int64_t beads) const {
     double largest = 0;
-    for (std::int64_t p = first + 1; p < std::min(first + beads, std::ssize(links_.to_previous)); ++p)
-        if (Joining const& joining = links_.to_previous[static_cast<std::size_t>(p)]; joining.holds())
+    for (std::int64_t p = first + 1; p < std::min(first + beads, std::ssize(links_.to_previous));
+         ++p)
+        if (Joining const& joining = links_.to_previous[static_cast<std::size_t>(p)];
+            joining.holds())
             largest = std::max(largest, joining.spread(temperature_));
     return largest;
 }
@@ -60,7 +66,8 @@ void WrittenSystem::judge(std::vector<Draft> const& drafts, Scene& scene) const 
     for (Draft const& draft : drafts)
         for (std::int64_t const k : linked_beads(draft.chain)) {
             std::int64_t const p = draft.particle + k;
-            if (p < std::ssize(links_.to_previous) && links_.to_previous[static_cast<std::size_t>(p)].holds())
+            if (p < std::ssize(links_.to_previous) &&
+                links_.to_previous[static_cast<std::size_t>(p)].holds())
                 links.add(p - 1, p, links_.to_previous[static_cast<std::size_t>(p)]);
         }
     for (std::string const& note : links.notes()) scene.note(note);

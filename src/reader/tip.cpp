@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include "generate/cells.hpp"
-#include "scene/freedom.hpp"
 #include "bodies/joint_entry.hpp"
-#include "scene/pose.hpp"
 #include "bodies/ring.hpp"
+#include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
+#include "scene/freedom.hpp"
+#include "scene/pose.hpp"
 
 namespace catena::scene {
 
@@ -24,16 +24,22 @@ void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
     if (!tip.anchor) return;
     Reach const reach = reach_of(chain.bodies);
     Pose const frame{to_quaternion(tip.rotation), tip.translation};
-    Pose const end = reach.end * frame * joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
-    double const error = norm(end.origin - *tip.anchor), along = reach.length + norm(end.origin - reach.end.origin);
+    Pose const end =
+        reach.end * frame * joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
+    double const error = norm(end.origin - *tip.anchor),
+                 along = reach.length + norm(end.origin - reach.end.origin);
     double const length = along > 0 ? along : 1;
     if (error <= closure_tolerance * length) return;
     std::string const what = fmt::format(
-        "the tip's joint is open at the start: its origin is at [{:.9g}, {:.9g}, {:.9g}], {:.3g} from the "
+        "the tip's joint is open at the start: its origin is at [{:.9g}, {:.9g}, {:.9g}], {:.3g} "
+        "from the "
         "anchor",
         end.origin[0], end.origin[1], end.origin[2], error);
-    if (error <= closable * length) return scene.note(what + ", which is closed by the least change of the joints");
-    fail(node, what, fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out", closable * length));
+    if (error <= closable * length)
+        return scene.note(what + ", which is closed by the least change of the joints");
+    fail(node, what,
+         fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out",
+                     closable * length));
 }
 
 /// Of point `r` from the centre of body k; W.
@@ -52,40 +58,49 @@ Vec3 start_of_link(ChainSpec& chain, bool given) {
 }
 Vec3 end_of_link(ChainSpec const& chain) {
     if (!chain.tip_joint.ring) return *chain.tip_joint.anchor;
-    return chain.is_beads() ? chain.beads.position.front() : point_of(chain.linked, 0, chain.linked.inboard.front());
+    return chain.is_beads() ? chain.beads.position.front()
+                            : point_of(chain.linked, 0, chain.linked.inboard.front());
 }
 
 /// Links between ends, the longest.
 double longest_link(ChainSpec const& chain) {
-    std::vector<double> const& lengths = chain.is_beads() ? chain.beads.length : chain.linked.length;
+    std::vector<double> const& lengths =
+        chain.is_beads() ? chain.beads.length : chain.linked.length;
     return lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
 }
 
-/// The whole edges of the periodic box by which `link` is cut: to its nearest image, which fits `length` better; without a length (0) it is
-/// shorter, and not longer than 1.5 of the chain's longest link.
+/// The whole edges of the periodic box by which `link` is cut: to its nearest image, which fits
+/// `length` better; without a length (0) it is shorter, and not longer than 1.5 of the chain's
+/// longest link.
 Vec3 cut_by(Vec3 const& link, double length, double longest, std::optional<Vec3> const& box) {
     if (!box) return Vec3::zero();
     Images const images(*box);
     Vec3 const image = images.shortest(link);
-    bool const nearer = std::abs(norm(image) - length) < (1 - closure_tolerance) * std::abs(norm(link) - length);
+    bool const nearer =
+        std::abs(norm(image) - length) < (1 - closure_tolerance) * std::abs(norm(link) - length);
     if (!nearer || (length == 0 && norm(image) > most_usual * longest)) return Vec3::zero();
     return images.whole_edges(link);
 }
 
-/// The tip's anchor stands where its link is not cut. A ring that ends at an image of its first body has no first body there.
-void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node, ChainRequest const& request) {
+/// The tip's anchor stands where its link is not cut. A ring that ends at an image of its first
+/// body has no first body there.
+void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node,
+                    ChainRequest const& request) {
     TipJoint& tip = chain.tip_joint;
     Vec3 const link = end_of_link(chain) - start;
     Vec3 const by = cut_by(link, tip.length, longest_link(chain), request.scene.box);
     if (dot(by, by) == 0) return;
     if (tip.ring)
         fail(node,
-             fmt::format("the ring winds through the periodic box: its last body is {:.4g} from the first and {:.4g} from an image of it",
+             fmt::format("the ring winds through the periodic box: its last body is {:.4g} from "
+                         "the first and {:.4g} from an image of it",
                          norm(link), norm(link - by)),
-             "give positions of a ring that closes on itself, or the closing link's `length`, or leave `ring` out");
+             "give positions of a ring that closes on itself, or the closing link's `length`, or "
+             "leave `ring` out");
     *tip.anchor = *tip.anchor - by;
     request.scene.note(
-        fmt::format("the link to the anchor at the tip of chain `{}` is cut by the sides of the periodic box: the anchor is "
+        fmt::format("the link to the anchor at the tip of chain `{}` is cut by the sides of the "
+                    "periodic box: the anchor is "
                     "taken at its nearest image, [{:.6g}, {:.6g}, {:.6g}]",
                     shown(request.name()), (*tip.anchor)[0], (*tip.anchor)[1], (*tip.anchor)[2]));
 }
@@ -99,7 +114,10 @@ void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request)
     char const* const target = tip.ring ? "first body" : "anchor";
     // Positions carry half a unit in their last place.
     if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(start) + norm(end))))
-        fail(node, fmt::format("the tip's {} stands on the last body: their link has no direction", target), "move one of them");
+        fail(node,
+             fmt::format("the tip's {} stands on the last body: their link has no direction",
+                         target),
+             "move one of them");
     if (tip.length == 0) tip.length = distance;
     if (std::abs(tip.length - distance) <= closure_tolerance * tip.length) return;
     if (chain.is_beads() && std::abs(tip.length - distance) <= largest_link_change * tip.length) {
@@ -109,8 +127,10 @@ void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request)
     }
     bool const far = distance > tip.length;
     fail(node,
-         fmt::format("the tip's link of length {:.12g} {} its {}: they are {:.12g} apart at the start", tip.length,
-                     far ? "cannot reach" : "is longer than from the last body to", target, distance),
+         fmt::format(
+             "the tip's link of length {:.12g} {} its {}: they are {:.12g} apart at the start",
+             tip.length, far ? "cannot reach" : "is longer than from the last body to", target,
+             distance),
          fmt::format("leave `length` out, or move {}the chain", tip.ring ? "" : "the anchor or "));
 }
 
@@ -132,11 +152,13 @@ std::vector<Vec3> points_of_bridge(ChainSpec const& chain) {
     return points;
 }
 
-/// A bridge of links or spherical joints whose handle vectors are all parallel has a singular matrix.
+/// A bridge of links or spherical joints whose handle vectors are all parallel has a singular
+/// matrix.
 void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
     auto const& joints = chain.bodies.joint;
     bool const spherical = chain.tip_joint.type == JointType::spherical && !joints.empty() &&
-                           std::all_of(joints.begin(), joints.end(), [](JointType t) { return t == JointType::spherical; });
+                           std::all_of(joints.begin(), joints.end(),
+                                       [](JointType t) { return t == JointType::spherical; });
     if (chain.base != Base::fixed || !(chain.is_beads() || spherical)) return;
     std::vector<Vec3> const points = points_of_bridge(chain);
     if (points.size() < 3) return;  // one rod between two balls still turns
@@ -145,19 +167,27 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
         Vec3 const next = points[k + 1] - points[k];
         if (norm(cross(first, next)) > 1e-7 * norm(first) * norm(next)) return;
     }
-    fail(node, "the bridge from ground to ground is straight: nothing tells the forces in its joints apart", "start from a bent chain");
+    fail(node,
+         "the bridge from ground to ground is straight: nothing tells the forces in its joints "
+         "apart",
+         "start from a bent chain");
 }
 
-char const* kind_of(ChainSpec const& chain) { return chain.is_beads() ? "a chain of beads" : "a chain of links"; }
+char const* kind_of(ChainSpec const& chain) {
+    return chain.is_beads() ? "a chain of beads" : "a chain of links";
+}
 
 /// A tip that restricts more than the chain has leaves its forces undetermined.
 void refuse_too_many(ChainSpec const& chain, Node const& node) {
     std::int64_t const with = degrees_of_freedom(chain);
     if (with >= 0) return;
     ChainSpec open;
-    open.base = chain.base, open.bodies.joint = chain.bodies.joint, open.bodies.driven = chain.bodies.driven;
+    open.base = chain.base, open.bodies.joint = chain.bodies.joint,
+    open.bodies.driven = chain.bodies.driven;
     std::int64_t const free = degrees_of_freedom(open), restricted = free - with;
-    fail(node, fmt::format("the tip's joint restricts {} directions, the chain has {} degrees of freedom", restricted, free),
+    fail(node,
+         fmt::format("the tip's joint restricts {} directions, the chain has {} degrees of freedom",
+                     restricted, free),
          "give the tip a joint that restricts less, or the chain more joints");
 }
 
@@ -170,7 +200,8 @@ ReadTip read_tip(Fields const& chain) {
     if (tip->kind == Node::Kind::map) {
         Fields const fields(*tip, {"joint", "ring"});
         Node const* const ring = fields.find("ring");
-        if (ring && fields.find("joint")) fail(*ring, "key `ring` beside `joint`", "keep one of them");
+        if (ring && fields.find("joint"))
+            fail(*ring, "key `ring` beside `joint`", "keep one of them");
         Node const& joint = ring ? *ring : fields.need("joint", "joint: {type: spherical}");
         TipEntry const entry = read_tip_joint(joint, ring);
         read.kind = Tip::jointed;
@@ -179,7 +210,8 @@ ReadTip read_tip(Fields const& chain) {
         return read;
     }
     enum class Word { free, fixed, ring };
-    auto const word = choice<Word>(*tip, {{"free", Word::free}, {"fixed", Word::fixed}, {"ring", Word::ring}});
+    auto const word =
+        choice<Word>(*tip, {{"free", Word::free}, {"fixed", Word::fixed}, {"ring", Word::ring}});
     if (word == Word::free) return read;
     read.kind = Tip::jointed;
     read.bare = true;
@@ -195,16 +227,21 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, ChainRequest const& request)
     Node const& written = *request.node.find("tip");
     bool const ring = tip.joint.ring;
     Node const& node = tip.bare ? written : *written.find(ring ? "ring" : "joint");
-    bool const links = chain.is_beads() || chain.is_linked(), link = tip.joint.type == JointType::link;
+    bool const links = chain.is_beads() || chain.is_linked(),
+               link = tip.joint.type == JointType::link;
     if (links && tip.bare && !ring)
-        fail(node, fmt::format("a fixed tip of {}", kind_of(chain)), "write `tip: {joint: {type: link, anchor: [x, y, z]}}`");
+        fail(node, fmt::format("a fixed tip of {}", kind_of(chain)),
+             "write `tip: {joint: {type: link, anchor: [x, y, z]}}`");
     if (links && !link)
-        fail(node, fmt::format("a {} joint at the tip of {}", name_of(tip.joint.type), kind_of(chain)),
+        fail(node,
+             fmt::format("a {} joint at the tip of {}", name_of(tip.joint.type), kind_of(chain)),
              ring ? "write `tip: ring`" : "write `joint: {type: link, anchor: [x, y, z]}`");
     if (!links && link && ring && tip.bare)
         fail(node, "`tip: ring` says nothing of the joint between the last body and the first",
              "write `tip: {ring: {type: spherical, translation: [x, y, z]}}`");
-    if (!links && link) fail(node, "a link at the tip of a chain of other joints", "use another type, such as spherical");
+    if (!links && link)
+        fail(node, "a link at the tip of a chain of other joints",
+             "use another type, such as spherical");
     if (chain.is_beads())
         if (Node const* const translation = node.find("translation"))
             fail(*translation, "key `translation` means nothing for a point bead", "leave it out");

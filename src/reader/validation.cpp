@@ -20,32 +20,40 @@ void check_names(std::vector<Draft> const& drafts) {
     std::set<std::string> names;
     for (Draft const& draft : drafts)
         if (!names.insert(draft.chain.name).second)
-            fail(*draft.node, fmt::format("two chains are named `{}`", shown(draft.chain.name)), "give each its own `name`");
+            fail(*draft.node, fmt::format("two chains are named `{}`", shown(draft.chain.name)),
+                 "give each its own `name`");
 }
 
-std::string const joint_integrators = "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`";
+std::string const joint_integrators =
+    "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`";
 
 template <class Value>
-void refuse_at_body(Draft const& draft, std::vector<Value> const& values, bool (*acts)(Value const&), std::string const& what,
+void refuse_at_body(Draft const& draft, std::vector<Value> const& values,
+                    bool (*acts)(Value const&), std::string const& what,
                     std::string const& remedy) {
     auto const found = std::find_if(values.begin(), values.end(), acts);
-    if (found != values.end()) fail_at(*draft.node, "body", found - values.begin() + 1, what, remedy);
+    if (found != values.end())
+        fail_at(*draft.node, "body", found - values.begin() + 1, what, remedy);
 }
 
-/// What takes energy away, which absolute coordinates do not carry and a thermostat does not give back.
+/// What takes energy away, which absolute coordinates do not carry and a thermostat does not give
+/// back.
 void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft) {
     Integrator const integrator = scene.dynamics.integrator;
     std::string const under = fmt::format(" under integrator {}", name_of(integrator));
-    std::string const thermostat = name_of(is_langevin(integrator) ? integrator : Integrator::g_baoab);
+    std::string const thermostat =
+        name_of(is_langevin(integrator) ? integrator : Integrator::g_baoab);
     BodyArrays const& bodies = draft.chain.bodies;
     refuse_at_body<Vec3>(
-        draft, bodies.damping, [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; }, "joint damping" + under,
+        draft, bodies.damping, [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; },
+        "joint damping" + under,
         joint_integrators + ", or set `damping: 0` (" + thermostat + " has `friction`)");
     if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
         fail(*root.find("forces")->find("drag"), "drag" + under,
              joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
     refuse_at_body<std::array<double, 2>>(
-        draft, bodies.drag, [](std::array<double, 2> const& d) { return d[0] != 0 || d[1] != 0; }, "drag" + under,
+        draft, bodies.drag, [](std::array<double, 2> const& d) { return d[0] != 0 || d[1] != 0; },
+        "drag" + under,
         joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
 }
 
@@ -57,12 +65,14 @@ void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
         auto const body = static_cast<std::int64_t>(k) + 1;
         std::string const under = fmt::format(" under integrator {}", name_of(dynamics.integrator));
         if (!inertias.are_definite())
-            fail_at(*draft.node, "body", body, "a joint with springs or dampers along some of its coordinates alone" + under,
+            fail_at(*draft.node, "body", body,
+                    "a joint with springs or dampers along some of its coordinates alone" + under,
                     "give it some stiffness or damping along each, or none");
         if (!inertias.are_alike())
             fail_at(
                 *draft.node, "body", body,
-                fmt::format("a joint {:.3g} times as stiff along one coordinate as along another{}", inertias.most / inertias.least, under),
+                fmt::format("a joint {:.3g} times as stiff along one coordinate as along another{}",
+                            inertias.most / inertias.least, under),
                 fmt::format("stay within {:g}", ImplicitInertias::widest));
     }
 }
@@ -73,34 +83,45 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     Node const& at = *root.find("dynamics")->find("integrator");
     if (is_implicit(integrator) && scene.output.joint_forces)
         fail(*root.find("output")->find("joint_forces"),
-             fmt::format("not in this version: joint forces under integrator {}", name_of(integrator)), "leave it out");
+             fmt::format("not in this version: joint forces under integrator {}",
+                         name_of(integrator)),
+             "leave it out");
     if (uses_joint_coordinates(integrator)) {
         if (chain.is_beads() || chain.is_linked())
-            fail(at, fmt::format("integrator {} works in joint coordinates, chain `{}` has links", name_of(integrator), shown(chain.name)),
+            fail(at,
+                 fmt::format("integrator {} works in joint coordinates, chain `{}` has links",
+                             name_of(integrator), shown(chain.name)),
                  "use `integrator: rattle` or `g-baoab`");
         if (is_implicit(integrator)) check_implicit(scene.dynamics, draft);
         if (is_langevin(integrator)) refuse_resistance(root, scene, draft);
         return;
     }
     if (auto const odd = joint_without_absolute_coordinates(chain)) {
-        std::string const place = odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
+        std::string const place =
+            odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
         fail(at,
-             fmt::format("integrator {} moves chains of links or spherical joints, chain `{}` has a {} joint ({})", name_of(integrator),
-                         shown(chain.name), name_of(odd->second), place),
+             fmt::format("integrator {} moves chains of links or spherical joints, chain `{}` has "
+                         "a {} joint ({})",
+                         name_of(integrator), shown(chain.name), name_of(odd->second), place),
              joint_integrators);
     }
     refuse_resistance(root, scene, draft);
     if (is_implicit(integrator)) check_implicit(scene.dynamics, draft);
     if (!chain.bodies.driven.empty())
         fail_at(*draft.node, "body", chain.bodies.driven[0].body + 1,
-                fmt::format("a prescribed motion under integrator {}", name_of(integrator)), joint_integrators + ", or leave it out");
+                fmt::format("a prescribed motion under integrator {}", name_of(integrator)),
+                joint_integrators + ", or leave it out");
 }
 
 void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
-    if (scene.solver.handles != Handles::articulated || takes_articulated_handles(draft.chain)) return;
+    if (scene.solver.handles != Handles::articulated || takes_articulated_handles(draft.chain))
+        return;
     ChainSpec const& chain = draft.chain;
-    char const* const why = chain.bodies.size() == 0 ? "has links" : chain.is_ring() ? "is a ring" : "has a jointed tip";
-    fail(*root.find("solver")->find("handles"), fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
+    char const* const why = chain.bodies.size() == 0 ? "has links"
+                            : chain.is_ring()        ? "is a ring"
+                                                     : "has a jointed tip";
+    fail(*root.find("solver")->find("handles"),
+         fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
          "use `projected` or `full`: articulated ones are for open chains of rigid bodies");
 }
 
@@ -108,18 +129,25 @@ void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& d
     if (!dynamics.fixman) return;
     Node const& at = *root.find("dynamics")->find("fixman");
     if (!draft.chain.is_beads())
-        fail(at, fmt::format("the Fixman correction of chain `{}`, which is not of point beads alone", shown(draft.chain.name)),
+        fail(at,
+             fmt::format("the Fixman correction of chain `{}`, which is not of point beads alone",
+                         shown(draft.chain.name)),
              "leave it out: links between point beads alone have it");
     if (draft.chain.is_ring())
-        fail(at, fmt::format("not in this version: the Fixman correction of the ring `{}`", shown(draft.chain.name)), "leave it out");
-    if (!(dynamics.temperature > 0)) fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
+        fail(at,
+             fmt::format("not in this version: the Fixman correction of the ring `{}`",
+                         shown(draft.chain.name)),
+             "leave it out");
+    if (!(dynamics.temperature > 0))
+        fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
 }
 
 /// Drag acts on rigid bodies; left out silently on others it would mislead.
 void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
     if (scene.forces.linear_drag == 0 && scene.forces.angular_drag == 0) return;
     if (!draft.chain.is_beads() && !draft.chain.is_linked()) return;
-    fail(*root.find("forces")->find("drag"), fmt::format("drag on chain `{}`, which has links", shown(draft.chain.name)),
+    fail(*root.find("forces")->find("drag"),
+         fmt::format("drag on chain `{}`, which has links", shown(draft.chain.name)),
          "leave it out: g-baoab has `friction`");
 }
 
@@ -128,24 +156,35 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     Node const* const asked = draft.node->find("velocities");
     Node const& at = asked ? *asked : *draft.node;
     Node const* const section = root.find("dynamics");
-    if (dynamics.given && is_implicit(dynamics.integrator) && uses_joint_coordinates(dynamics.integrator))
-        fail(at, fmt::format("thermal velocities under integrator {}, whose stiff joints turn more slowly", name_of(dynamics.integrator)),
-             is_langevin(dynamics.integrator) ? "write `velocities: zero`: its thermostat warms the chain"
-                                              : "write `velocities: zero`, or give each joint its `qd`");
-    bool const named = section && (section->find("temperature") || is_langevin(dynamics.integrator));
+    if (dynamics.given && is_implicit(dynamics.integrator) &&
+        uses_joint_coordinates(dynamics.integrator))
+        fail(at,
+             fmt::format(
+                 "thermal velocities under integrator {}, whose stiff joints turn more slowly",
+                 name_of(dynamics.integrator)),
+             is_langevin(dynamics.integrator)
+                 ? "write `velocities: zero`: its thermostat warms the chain"
+                 : "write `velocities: zero`, or give each joint its `qd`");
+    bool const named =
+        section && (section->find("temperature") || is_langevin(dynamics.integrator));
     if (!named || !(dynamics.temperature > 0))
         fail(at, "thermal velocities without a temperature above 0",
-             std::string(section ? "give `temperature: 300` in `dynamics`" : "add `dynamics: {temperature: 300}`") +
+             std::string(section ? "give `temperature: 300` in `dynamics`"
+                                 : "add `dynamics: {temperature: 300}`") +
                  ", or write `velocities: zero`");
     if (auto const odd = joint_without_absolute_coordinates(draft.chain))
         fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
              "write `velocities: zero`, or give each joint its `qd`");
 }
 
-bool has_beads(ChainSpec const& chain) { return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0; }
+bool has_beads(ChainSpec const& chain) {
+    return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0;
+}
 
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
-    return chain.is_beads() ? chain.beads.residue : chain.is_linked() ? chain.linked.carried.residue : chain.bodies.carried.residue;
+    return chain.is_beads()    ? chain.beads.residue
+           : chain.is_linked() ? chain.linked.carried.residue
+                               : chain.bodies.carried.residue;
 }
 
 void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
@@ -155,18 +194,25 @@ void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> cons
         auto const& [name, range] = openmm.map[i];
         auto const found = of_name.find(name);
         Node const& entry = at.find("map")->items[i];  // in the order of the file
-        if (found == of_name.end()) fail(entry, fmt::format("no chain is named `{}`", shown(name)), "use the chains' names");
-        auto const size = static_cast<std::int64_t>(residues_of(found->second->chain).size()), given = range.second - range.first + 1;
+        if (found == of_name.end())
+            fail(entry, fmt::format("no chain is named `{}`", shown(name)),
+                 "use the chains' names");
+        auto const size = static_cast<std::int64_t>(residues_of(found->second->chain).size()),
+                   given = range.second - range.first + 1;
         if (given != size)
-            fail(entry, fmt::format("{} particles for the {} beads of chain `{}`", given, size, shown(name)),
+            fail(entry,
+                 fmt::format("{} particles for the {} beads of chain `{}`", given, size,
+                             shown(name)),
                  "give [first, last], both included");
     }
 }
 
 void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
     Node const& at = *root.find("forces")->find("openmm");
-    if (std::none_of(drafts.begin(), drafts.end(), [](Draft const& d) { return has_beads(d.chain); }))
-        fail(at, "OpenMM's forces act on beads, no chain of the scene has any", "add a chain of beads or leave `openmm` out");
+    if (std::none_of(drafts.begin(), drafts.end(),
+                     [](Draft const& d) { return has_beads(d.chain); }))
+        fail(at, "OpenMM's forces act on beads, no chain of the scene has any",
+             "add a chain of beads or leave `openmm` out");
     if (openmm.builder.empty()) check_map(at, openmm, drafts);
     if (openmm.builder != "calvados2") return;
     for (Draft const& draft : drafts)
@@ -174,21 +220,33 @@ void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft>
             if (std::string const& residue = residues_of(draft.chain)[k]; !find_calvados2(residue))
                 fail_at(*draft.node, "bead", static_cast<std::int64_t>(k) + 1,
                         fmt::format("residue `{}` has no parameters in calvados2", shown(residue)),
-                        "give the chain as `sequence`, or its beads a `residue` among the twenty amino acids");
+                        "give the chain as `sequence`, or its beads a `residue` among the twenty "
+                        "amino acids");
 }
 
 /// Left out of the default columns; asked for by name it would be missed.
-void check_temperature(Node const& root, OutputSpec const& output, DynamicsSpec const& dynamics, std::vector<Draft> const& drafts) {
-    auto const asked = std::find(output.observables.begin(), output.observables.end(), "temperature");
+void check_temperature(Node const& root, OutputSpec const& output, DynamicsSpec const& dynamics,
+                       std::vector<Draft> const& drafts) {
+    auto const asked =
+        std::find(output.observables.begin(), output.observables.end(), "temperature");
     if (asked == output.observables.end()) return;
-    Node const& at = root.find("output")->find("observables")->items[static_cast<std::size_t>(asked - output.observables.begin())];
-    auto const driven = std::find_if(drafts.begin(), drafts.end(), [](Draft const& d) { return !d.chain.bodies.driven.empty(); });
+    Node const& at = root.find("output")
+                         ->find("observables")
+                         ->items[static_cast<std::size_t>(asked - output.observables.begin())];
+    auto const driven = std::find_if(drafts.begin(), drafts.end(),
+                                     [](Draft const& d) { return !d.chain.bodies.driven.empty(); });
     if (driven != drafts.end())
-        fail(at, fmt::format("no temperature while a joint of chain `{}` is driven", shown(driven->chain.name)), "leave it out");
-    if (std::all_of(drafts.begin(), drafts.end(), [](Draft const& d) { return degrees_of_freedom(d.chain) <= 0; }))
+        fail(at,
+             fmt::format("no temperature while a joint of chain `{}` is driven",
+                         shown(driven->chain.name)),
+             "leave it out");
+    if (std::all_of(drafts.begin(), drafts.end(),
+                    [](Draft const& d) { return degrees_of_freedom(d.chain) <= 0; }))
         fail(at, "no temperature where nothing is free to move", "leave it out");
     if (dynamics.given && is_implicit(dynamics.integrator))
-        fail(at, fmt::format("no temperature under integrator {}, where stiff joints turn more slowly", name_of(dynamics.integrator)),
+        fail(at,
+             fmt::format("no temperature under integrator {}, where stiff joints turn more slowly",
+                         name_of(dynamics.integrator)),
              "leave it out");
 }
 

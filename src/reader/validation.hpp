@@ -9,7 +9,8 @@
 
 namespace catena::scene {
 
-/// Throws InputError for combinations that cannot be computed. `scene` has everything but the chains, which are in `drafts`.
+/// Throws InputError for combinations that cannot be computed. `scene` has everything but the
+/// chains, which are in `drafts`.
 void check_together(Node const& root, Scene const& scene, std::vector<Draft> const& drafts);
 
 }  // namespace catena::scene

@@ -1,4 +1,5 @@
-// What the founding chapter measured and counted (tests/data/reference/chapter-figures.csv; Table 2.1).
+// What the founding chapter measured and counted (tests/data/reference/chapter-figures.csv;
+// Table 2.1).
 #pragma once
 
 #include <array>
@@ -9,9 +10,11 @@
 
 namespace catena {
 
-inline constexpr char const* chapter_hardware = "Xeon W3565 (4 cores), Quadro 600, double precision";
+inline constexpr char const* chapter_hardware =
+    "Xeon W3565 (4 cores), Quadro 600, double precision";
 /// In the order of its columns; gpu1: the lowest level on the GPU.
-inline std::vector<std::string> const chapter_columns{"serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"};
+inline std::vector<std::string> const chapter_columns{"serial", "openmp", "gpu1",
+                                                      "gpu3",   "gpu6",   "gpu_all"};
 
 /// Milliseconds, in the order of the columns.
 using ChapterRow = std::array<double, 6>;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "report/figures.hpp"
 #include "page/curve_family.hpp"
 #include "report/chapter_figures.hpp"
+#include "report/figures.hpp"
 
 namespace catena::command {
 namespace {
@@ -13,7 +13,8 @@ constexpr double microseconds = 1e6, milliseconds = 1e3;
 
 std::string levels_picture(LevelStudy const& study) {
     CurveFamily family{
-        fmt::format("Figure 2.3: where a level belongs; assembly of {} bodies, {} handles", study.bodies, name_of(study.handles)),
+        fmt::format("Figure 2.3: where a level belongs; assembly of {} bodies, {} handles",
+                    study.bodies, name_of(study.handles)),
         "merges of the level (crosses: not resolved)",
         "microseconds",
         {}};
@@ -35,17 +36,20 @@ std::string levels_picture(LevelStudy const& study) {
     return curve_family(family);
 }
 
-std::string steps_picture(std::vector<FigurePoint> const& points, FigureQuantity const& quantity, Handles handles) {
-    CurveFamily family{fmt::format("Figure {}: {}, {} handles (dashed: the chapter's)", quantity.figure, quantity.title, name_of(handles)),
+std::string steps_picture(std::vector<FigurePoint> const& points, FigureQuantity const& quantity,
+                          Handles handles) {
+    CurveFamily family{fmt::format("Figure {}: {}, {} handles (dashed: the chapter's)",
+                                   quantity.figure, quantity.title, name_of(handles)),
                        "bodies",
                        "milliseconds",
                        {}};
     for (FigurePoint const& point : points) {
         std::optional<Spread> const seconds = quantity_of(point, quantity.figure);
         if (point.handles != handles || !seconds) continue;
-        auto curve =
-            std::find_if(family.curves.begin(), family.curves.end(), [&](NamedCurve const& c) { return c.name == point.what.name; });
-        if (curve == family.curves.end()) curve = family.curves.insert(curve, {point.what.name, {}, {}, false, true});
+        auto curve = std::find_if(family.curves.begin(), family.curves.end(),
+                                  [&](NamedCurve const& c) { return c.name == point.what.name; });
+        if (curve == family.curves.end())
+            curve = family.curves.insert(curve, {point.what.name, {}, {}, false, true});
         curve->x.push_back(static_cast<double>(point.bodies));
         curve->y.push_back(milliseconds * seconds->median);
     }
@@ -55,7 +59,8 @@ std::string steps_picture(std::vector<FigurePoint> const& points, FigureQuantity
             curve.x.push_back(static_cast<double>(bodies));
             curve.y.push_back(row[i]);
         }
-        if (*std::max_element(curve.y.begin(), curve.y.end()) > 0) family.curves.push_back(std::move(curve));
+        if (*std::max_element(curve.y.begin(), curve.y.end()) > 0)
+            family.curves.push_back(std::move(curve));
     }
     return curve_family(family);
 }
@@ -66,22 +71,30 @@ std::optional<Spread> quantity_of(FigurePoint const& point, std::string const& f
     if (figure == "2.5") return point.step;
     if (figure == "2.6") return point.solve;
     if (!point.upload) return std::nullopt;
-    return Spread{point.upload->median + point.download->median, point.upload->min + point.download->min,
-                  point.upload->max + point.download->max, point.upload->count};
+    return Spread{point.upload->median + point.download->median,
+                  point.upload->min + point.download->min, point.upload->max + point.download->max,
+                  point.upload->count};
 }
 
-std::vector<std::pair<std::string, std::string>> draw_figures(Figures const& figures, std::vector<std::string> const& asked) {
-    auto const wanted = [&](char const* figure) { return std::find(asked.begin(), asked.end(), figure) != asked.end(); };
+std::vector<std::pair<std::string, std::string>> draw_figures(
+    Figures const& figures, std::vector<std::string> const& asked) {
+    auto const wanted = [&](char const* figure) {
+        return std::find(asked.begin(), asked.end(), figure) != asked.end();
+    };
     std::vector<std::pair<std::string, std::string>> files;
     for (LevelStudy const& study : figures.levels)
-        files.emplace_back(fmt::format("figure-2.3-{}.svg", name_of(study.handles)), levels_picture(study));
+        files.emplace_back(fmt::format("figure-2.3-{}.svg", name_of(study.handles)),
+                           levels_picture(study));
     for (FigureQuantity const& quantity : figure_quantities) {
         if (!wanted(quantity.figure)) continue;
         for (Handles const handles : {Handles::full, Handles::projected})
             if (std::any_of(figures.points.begin(), figures.points.end(),
-                            [&](FigurePoint const& p) { return p.handles == handles && quantity_of(p, quantity.figure); }))
-                files.emplace_back(fmt::format("figure-{}-{}.svg", quantity.figure, name_of(handles)),
-                                   steps_picture(figures.points, quantity, handles));
+                            [&](FigurePoint const& p) {
+                                return p.handles == handles && quantity_of(p, quantity.figure);
+                            }))
+                files.emplace_back(
+                    fmt::format("figure-{}-{}.svg", quantity.figure, name_of(handles)),
+                    steps_picture(figures.points, quantity, handles));
     }
     return files;
 }

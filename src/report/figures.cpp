@@ -9,12 +9,12 @@
 #include <numeric>
 
 #include "console/text.hpp"
-#include "report/version.hpp"
 #include "io/output.hpp"
-#include "mpi/first_rank.hpp"
-#include "report/chapter_figures.hpp"
 #include "measure/hardware.hpp"
 #include "measure/operation_counts.hpp"
+#include "mpi/first_rank.hpp"
+#include "report/chapter_figures.hpp"
+#include "report/version.hpp"
 
 namespace catena::command {
 namespace {
@@ -32,12 +32,14 @@ Json json_of(Operations const& o) {
             {"divisions", o.divisions}, {"square_roots", o.square_roots},       {"sum", o.sum()}};
 }
 Json json_of(HandleOperations const& h) {
-    return {
-        {"directions", h.directions},
-        {"assembly", {{"matrices", json_of(h.assembly_matrices)}, {"biases", json_of(h.assembly_biases)}}},
-        {"disassembly", json_of(h.disassembly)},
-        {"leaf",
-         {{"matrices", json_of(h.leaf_matrices)}, {"biases", json_of(h.leaf_biases)}, {"accelerations", json_of(h.leaf_accelerations)}}}};
+    return {{"directions", h.directions},
+            {"assembly",
+             {{"matrices", json_of(h.assembly_matrices)}, {"biases", json_of(h.assembly_biases)}}},
+            {"disassembly", json_of(h.disassembly)},
+            {"leaf",
+             {{"matrices", json_of(h.leaf_matrices)},
+              {"biases", json_of(h.leaf_biases)},
+              {"accelerations", json_of(h.leaf_accelerations)}}}};
 }
 Json json_of(std::optional<Spread> const& s) {
     if (!s) return nullptr;
@@ -50,43 +52,53 @@ void add_table(Outcome& outcome) {
     std::vector<std::int64_t> const merges = merges_of_levels(bodies);
     auto const all = std::accumulate(merges.begin(), merges.end(), std::int64_t{0});
     Table levels({"levels", "kernel operations", "chapter", "% of a solve", "chapter"});
-    Json& json = outcome.json["table_2.1"] = {{"bodies", bodies}, {"levels", Json::array()}, {"operations", Json::array()}};
+    Json& json = outcome.json["table_2.1"] = {
+        {"bodies", bodies}, {"levels", Json::array()}, {"operations", Json::array()}};
     std::int64_t below = 0;
     for (std::size_t l = 0; l < chapter_levels.size(); ++l) {
         below += merges[l];
         double const percent = 100.0 * static_cast<double>(below) / static_cast<double>(all);
         ChapterLevel const& chapter = chapter_levels[l];
-        levels.add({chapter.level, std::to_string(below), std::to_string(chapter.operations), fmt::format("{:.1f}", percent),
-                    std::to_string(chapter.percent)});
+        levels.add({chapter.level, std::to_string(below), std::to_string(chapter.operations),
+                    fmt::format("{:.1f}", percent), std::to_string(chapter.percent)});
         json["levels"].push_back({{"levels", chapter.level},
                                   {"kernel_operations", below},
                                   {"chapter_kernel_operations", chapter.operations},
                                   {"percent", percent},
                                   {"chapter_percent", chapter.percent}});
     }
-    outcome.text += fmt::format("Table 2.1: merges of the lowest levels, {} bodies\n", bodies) + levels.text();
-    Table operations({"joint", "directions", "assembly", "disassembly", "leaf", "full: directions", "assembly", "disassembly", "leaf",
-                      "assembly, full over projected"});
+    outcome.text +=
+        fmt::format("Table 2.1: merges of the lowest levels, {} bodies\n", bodies) + levels.text();
+    Table operations({"joint", "directions", "assembly", "disassembly", "leaf", "full: directions",
+                      "assembly", "disassembly", "leaf", "assembly, full over projected"});
     for (JointOperations const& joint : count_operations()) {
         HandleOperations const &p = joint.projected, &f = joint.full;
-        operations.add({joint.joint, std::to_string(p.directions), std::to_string(p.assembly()), std::to_string(p.disassembly.sum()),
-                        std::to_string(p.leaf()), std::to_string(f.directions), std::to_string(f.assembly()),
+        operations.add({joint.joint, std::to_string(p.directions), std::to_string(p.assembly()),
+                        std::to_string(p.disassembly.sum()), std::to_string(p.leaf()),
+                        std::to_string(f.directions), std::to_string(f.assembly()),
                         std::to_string(f.disassembly.sum()), std::to_string(f.leaf()),
-                        fmt::format("{:.3g}", static_cast<double>(f.assembly()) / static_cast<double>(p.assembly()))});
-        json["operations"].push_back({{"joint", joint.joint}, {"projected", json_of(p)}, {"full", json_of(f)}});
+                        fmt::format("{:.3g}", static_cast<double>(f.assembly()) /
+                                                  static_cast<double>(p.assembly()))});
+        json["operations"].push_back(
+            {{"joint", joint.joint}, {"projected", json_of(p)}, {"full", json_of(f)}});
     }
-    outcome.text += "Floating-point operations of one merge and one body (a fused one counts twice), projected handles, then full ones\n" +
-                    operations.text();
+    outcome.text +=
+        "Floating-point operations of one merge and one body (a fused one counts twice), projected "
+        "handles, then full ones\n" +
+        operations.text();
 }
 
-Json json_of(LevelSeconds const& s) { return {{"assembly", s.assembly}, {"disassembly", s.disassembly}}; }
+Json json_of(LevelSeconds const& s) {
+    return {{"assembly", s.assembly}, {"disassembly", s.disassembly}};
+}
 
 /// "CPU", "GPU", or "-" where there is nothing to compare.
 char const* cheapest_place(LevelPoint const& p) {
     double cpu = p.one_core.assembly;
     if (p.threads) cpu = std::min(cpu, p.threads->assembly);
-    bool const known =
-        p.gpu && std::isfinite(p.gpu->assembly) && std::isfinite(p.one_core.assembly) && (!p.threads || std::isfinite(p.threads->assembly));
+    bool const known = p.gpu && std::isfinite(p.gpu->assembly) &&
+                       std::isfinite(p.one_core.assembly) &&
+                       (!p.threads || std::isfinite(p.threads->assembly));
     return !known ? "-" : p.gpu->assembly < cpu ? "GPU" : "CPU";
 }
 
@@ -94,7 +106,8 @@ char const* cheapest_place(LevelPoint const& p) {
 struct Resolved {
     int all = 0, missing = 0;
     void add(LevelSeconds const& s) {
-        for (double const value : {s.assembly, s.disassembly}) ++all, missing += std::isfinite(value) ? 0 : 1;
+        for (double const value : {s.assembly, s.disassembly})
+            ++all, missing += std::isfinite(value) ? 0 : 1;
     }
 };
 Resolved resolved(std::vector<LevelStudy> const& studies) {
@@ -110,31 +123,43 @@ Resolved resolved(std::vector<LevelStudy> const& studies) {
 std::string resolution_text(std::vector<LevelStudy> const& studies) {
     Resolved const count = resolved(studies);
     if (count.missing == 0) return "";
-    return fmt::format("; figure 2.3: {} of {} times not resolved, noise is larger (raise --repeat, or measure on an idle machine)",
-                       count.missing, count.all);
+    return fmt::format(
+        "; figure 2.3: {} of {} times not resolved, noise is larger (raise --repeat, or measure on "
+        "an idle machine)",
+        count.missing, count.all);
 }
 
 void add_levels(Outcome& outcome, LevelStudy const& study) {
-    Table table({"level", "merges", "one core", "threads", "GPU", "transfers", "cheapest", "one core", "threads", "GPU"}, {0, 6});
+    Table table({"level", "merges", "one core", "threads", "GPU", "transfers", "cheapest",
+                 "one core", "threads", "GPU"},
+                {0, 6});
     Json levels = Json::array();
     for (LevelPoint const& p : study.levels) {
         auto const us = [](double seconds) { return number(microseconds * seconds); };
-        auto const part = [&](std::optional<LevelSeconds> const& s, double LevelSeconds::* what) { return s ? us((*s).*what) : "-"; };
-        table.add({std::to_string(p.level), std::to_string(p.merges), us(p.one_core.assembly), part(p.threads, &LevelSeconds::assembly),
-                   part(p.gpu, &LevelSeconds::assembly), p.transfers ? us(*p.transfers) : "-", cheapest_place(p),
-                   us(p.one_core.disassembly), part(p.threads, &LevelSeconds::disassembly), part(p.gpu, &LevelSeconds::disassembly)});
-        levels.push_back({{"level", p.level},
-                          {"merges", p.merges},
-                          {"one_core", json_of(p.one_core)},
-                          {"threads", p.threads ? json_of(*p.threads) : Json(nullptr)},
-                          {"gpu", p.gpu ? json_of(*p.gpu) : Json(nullptr)},
-                          {"transfers_cut_above", p.transfers ? Json(*p.transfers) : Json(nullptr)}});
+        auto const part = [&](std::optional<LevelSeconds> const& s, double LevelSeconds::* what) {
+            return s ? us((*s).*what) : "-";
+        };
+        table.add({std::to_string(p.level), std::to_string(p.merges), us(p.one_core.assembly),
+                   part(p.threads, &LevelSeconds::assembly), part(p.gpu, &LevelSeconds::assembly),
+                   p.transfers ? us(*p.transfers) : "-", cheapest_place(p),
+                   us(p.one_core.disassembly), part(p.threads, &LevelSeconds::disassembly),
+                   part(p.gpu, &LevelSeconds::disassembly)});
+        levels.push_back(
+            {{"level", p.level},
+             {"merges", p.merges},
+             {"one_core", json_of(p.one_core)},
+             {"threads", p.threads ? json_of(*p.threads) : Json(nullptr)},
+             {"gpu", p.gpu ? json_of(*p.gpu) : Json(nullptr)},
+             {"transfers_cut_above", p.transfers ? Json(*p.transfers) : Json(nullptr)}});
     }
     outcome.valid = outcome.valid && study.valid();
     outcome.text += fmt::format(
-        "Figure 2.3: each level of the tree, {} bodies, {} handles, {} threads; microseconds: assembly, transfers of a tree cut above the "
-        "level, the cheapest place, disassembly. Level 1 includes the bodies. Residual {:.1e}, bound {:.1e}, {}\n",
-        study.bodies, name_of(study.handles), study.threads, study.residual, study.residual_bound, verdict(study.valid()));
+        "Figure 2.3: each level of the tree, {} bodies, {} handles, {} threads; microseconds: "
+        "assembly, transfers of a tree cut above the "
+        "level, the cheapest place, disassembly. Level 1 includes the bodies. Residual {:.1e}, "
+        "bound {:.1e}, {}\n",
+        study.bodies, name_of(study.handles), study.threads, study.residual, study.residual_bound,
+        verdict(study.valid()));
     outcome.text += table.text();
     outcome.json["figure_2.3"].push_back({{"bodies", study.bodies},
                                           {"handles", name_of(study.handles)},
@@ -149,37 +174,43 @@ void add_points(Outcome& outcome, std::vector<FigurePoint> const& points) {
     outcome.json["points"] = Json::array();
     for (FigurePoint const& p : points) {
         outcome.valid = outcome.valid && p.valid();
-        outcome.json["points"].push_back({{"bodies", p.bodies},
-                                          {"handles", name_of(p.handles)},
-                                          {"case", p.what.name},
-                                          {"backend", name_of(p.what.backend)},
-                                          {"gpu_levels", p.what.backend == Backend::cuda_levels ? Json(p.what.gpu_levels) : Json(nullptr)},
-                                          {"threads", p.threads},
-                                          {"repeat", p.step.count},
-                                          {"full_step", json_of(p.step)},
-                                          {"solve", json_of(p.solve)},
-                                          {"upload", json_of(p.upload)},
-                                          {"download", json_of(p.download)},
-                                          {"levels_on_gpu", json_of(p.lower)},
-                                          {"levels_on_host", json_of(p.upper)},
-                                          {"residual", p.residual},
-                                          {"residual_bound", p.residual_bound},
-                                          {"valid", p.valid()}});
+        outcome.json["points"].push_back(
+            {{"bodies", p.bodies},
+             {"handles", name_of(p.handles)},
+             {"case", p.what.name},
+             {"backend", name_of(p.what.backend)},
+             {"gpu_levels",
+              p.what.backend == Backend::cuda_levels ? Json(p.what.gpu_levels) : Json(nullptr)},
+             {"threads", p.threads},
+             {"repeat", p.step.count},
+             {"full_step", json_of(p.step)},
+             {"solve", json_of(p.solve)},
+             {"upload", json_of(p.upload)},
+             {"download", json_of(p.download)},
+             {"levels_on_gpu", json_of(p.lower)},
+             {"levels_on_host", json_of(p.upper)},
+             {"residual", p.residual},
+             {"residual_bound", p.residual_bound},
+             {"valid", p.valid()}});
     }
 }
 
-/// A row a number of bodies: the cases measured, the worst of their residuals, and the chapter's row where it has one.
-void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points, FigureQuantity const& quantity, Handles handles) {
+/// A row a number of bodies: the cases measured, the worst of their residuals, and the chapter's
+/// row where it has one.
+void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points,
+                  FigureQuantity const& quantity, Handles handles) {
     std::vector<std::string> names;
     std::map<std::int64_t, std::map<std::string, FigurePoint const*>> rows;
     for (FigurePoint const& p : points) {
         if (p.handles != handles || !quantity_of(p, quantity.figure)) continue;
-        if (std::find(names.begin(), names.end(), p.what.name) == names.end()) names.push_back(p.what.name);
+        if (std::find(names.begin(), names.end(), p.what.name) == names.end())
+            names.push_back(p.what.name);
         rows[p.bodies][p.what.name] = &p;
     }
     if (names.empty()) {
-        outcome.text += fmt::format("Figure {}: {}, {} handles: left out, no case here has transfers that are timed\n", quantity.figure,
-                                    quantity.title, name_of(handles));
+        outcome.text += fmt::format(
+            "Figure {}: {}, {} handles: left out, no case here has transfers that are timed\n",
+            quantity.figure, quantity.title, name_of(handles));
         return;
     }
     std::vector<std::string> header{"bodies"};
@@ -200,11 +231,13 @@ void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points, Figu
         }
         cells.insert(cells.end(), {fmt::format("{:.1e}", worst), verdict(valid)});
         auto const found = chapter.find(bodies);
-        for (std::size_t i = 0; i < chapter_columns.size(); ++i) cells.push_back(found == chapter.end() ? "" : number(found->second[i]));
+        for (std::size_t i = 0; i < chapter_columns.size(); ++i)
+            cells.push_back(found == chapter.end() ? "" : number(found->second[i]));
         table.add(cells);
     }
-    outcome.text +=
-        fmt::format("Figure {}: {}, {} handles; milliseconds\n", quantity.figure, quantity.title, name_of(handles)) + table.text();
+    outcome.text += fmt::format("Figure {}: {}, {} handles; milliseconds\n", quantity.figure,
+                                quantity.title, name_of(handles)) +
+                    table.text();
 }
 
 void make_folder(Communicator const& communicator, std::string const& folder) {
@@ -212,7 +245,8 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (error || !std::filesystem::is_directory(folder, error))
-            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
+            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder,
+                             "name another");
     });
 }
 
@@ -222,42 +256,49 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
     std::string const folder = request.output.empty() ? "catena-figures" : request.output;
     make_folder(communicator, folder);
     auto const wanted = [&](std::string_view figure) {
-        return std::find(request.figures.begin(), request.figures.end(), figure) != request.figures.end();
+        return std::find(request.figures.begin(), request.figures.end(), figure) !=
+               request.figures.end();
     };
     std::vector<Handles> handles{Handles::full, Handles::projected};
-    if (!request.handles.empty()) handles = {request.handles == "full" ? Handles::full : Handles::projected};
+    if (!request.handles.empty())
+        handles = {request.handles == "full" ? Handles::full : Handles::projected};
     int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
     std::vector<std::string> left_out;
     std::vector<FigureCase> const cases = figure_cases(left_out);
-    if (cases.back().backend == Backend::cuda) left_out.emplace_back("cuda in figure 2.7: its transfers are not timed by themselves");
+    if (cases.back().backend == Backend::cuda)
+        left_out.emplace_back("cuda in figure 2.7: its transfers are not timed by themselves");
 
     Figures figures;
     std::int64_t const largest = *std::max_element(request.sizes.begin(), request.sizes.end());
     if (wanted("2.3") && communicator.size() == 1)
         for (Handles const kind : handles)
-            figures.levels.push_back(measure_levels(kind, largest, threads > 0 ? threads : cores_of_rank(communicator), request.repeat));
+            figures.levels.push_back(
+                measure_levels(kind, largest, threads > 0 ? threads : cores_of_rank(communicator),
+                               request.repeat));
     else if (wanted("2.3"))
         left_out.emplace_back("figure 2.3: levels are timed on one rank");
     if (wanted("2.5") || wanted("2.6") || wanted("2.7"))
         for (Handles const kind : handles)
             for (std::int64_t const bodies : request.sizes) {
-                auto const points = measure_steps(cases, kind, bodies, threads, request.repeat, communicator);
+                auto const points =
+                    measure_steps(cases, kind, bodies, threads, request.repeat, communicator);
                 figures.points.insert(figures.points.end(), points.begin(), points.end());
                 spdlog::info("{} bodies, {} handles: measured", bodies, name_of(kind));
             }
 
     Outcome outcome;
-    outcome.json = {
-        {"bench", "figures"},
-        {"build", version_json()},
-        {"hardware", hardware_json()},
-        {"ranks", communicator.size()},
-        {"case",
-         "the chapter's pendulum at rest, one step of RK4 of 1e-4 s; medians, seconds; of a solve: both sweeps, transfers included"},
-        {"left_out", left_out}};
+    outcome.json = {{"bench", "figures"},
+                    {"build", version_json()},
+                    {"hardware", hardware_json()},
+                    {"ranks", communicator.size()},
+                    {"case",
+                     "the chapter's pendulum at rest, one step of RK4 of 1e-4 s; medians, seconds; "
+                     "of a solve: both sweeps, transfers included"},
+                    {"left_out", left_out}};
     outcome.text =
-        fmt::format("medians of {}, cases in turn. {}, {}; {}, {}. ch.: the chapter, {}\n", request.repeat,
-                    counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set(), chapter_hardware);
+        fmt::format("medians of {}, cases in turn. {}, {}; {}, {}. ch.: the chapter, {}\n",
+                    request.repeat, counted(communicator.size(), "rank", "ranks"), hardware_text(),
+                    compiler_name(), instruction_set(), chapter_hardware);
     if (wanted("table-2.1")) add_table(outcome);
     for (LevelStudy const& study : figures.levels) add_levels(outcome, study);
     add_points(outcome, figures.points);
@@ -267,10 +308,12 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
     for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
     Json chapter = Json::object();
     for (auto const& [figure, rows] : chapter_figures())
-        for (auto const& [bodies, row] : rows) chapter[figure].push_back({bodies, row[0], row[1], row[2], row[3], row[4], row[5]});
-    outcome.json["chapter"] = {{"hardware", chapter_hardware},
-                               {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
-                               {"milliseconds", chapter}};
+        for (auto const& [bodies, row] : rows)
+            chapter[figure].push_back({bodies, row[0], row[1], row[2], row[3], row[4], row[5]});
+    outcome.json["chapter"] = {
+        {"hardware", chapter_hardware},
+        {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
+        {"milliseconds", chapter}};
     outcome.json["valid"] = outcome.valid;
     outcome.json["not_resolved"] = resolved(figures.levels).missing;
     outcome.complaint = "a residual above its bound: see the results";
@@ -281,7 +324,8 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
             write_text_file(fmt::format("{}/{}", folder, name), svg);
             outcome.text += ", " + name;
         }
-        outcome.text += fmt::format("\n{}{}\n", verdict(outcome.valid), resolution_text(figures.levels));
+        outcome.text +=
+            fmt::format("\n{}{}\n", verdict(outcome.valid), resolution_text(figures.levels));
     });
     return outcome;
 }

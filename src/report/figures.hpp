@@ -21,12 +21,15 @@ struct FigureQuantity {
     char const* chapter;  // in chapter_figures()
 };
 inline constexpr FigureQuantity figure_quantities[] = {
-    {"2.5", "a full step of RK4", "full_step"}, {"2.6", "one solve", "solve"}, {"2.7", "transfers of one solve", "transfer"}};
+    {"2.5", "a full step of RK4", "full_step"},
+    {"2.6", "one solve", "solve"},
+    {"2.7", "transfers of one solve", "transfer"}};
 /// Seconds; nothing where the case has none.
 std::optional<Spread> quantity_of(FigurePoint const&, std::string const& figure);
 
 /// SVG files, name and content, of the figures among `asked`.
-std::vector<std::pair<std::string, std::string>> draw_figures(Figures const&, std::vector<std::string> const& asked);
+std::vector<std::pair<std::string, std::string>> draw_figures(
+    Figures const&, std::vector<std::string> const& asked);
 
 Outcome bench_figures(Communicator const&, BenchRequest const&);
 

@@ -21,12 +21,16 @@ Json json_of(ForceStudy const& study) {
 }
 
 ReportSection section_of(ForceStudy const& study) {
-    Table table({"platform", "precision", "rms error", "largest error", "bound", "time", ""}, {0, 1, 6});
-    CurveFamily family{study.title + ": forces", "seconds of an evaluation", "relative error (rms)", {}};
+    Table table({"platform", "precision", "rms error", "largest error", "bound", "time", ""},
+                {0, 1, 6});
+    CurveFamily family{
+        study.title + ": forces", "seconds of an evaluation", "relative error (rms)", {}};
     for (ForcePoint const& p : study.points) {
-        table.add({p.platform, p.precision, exponent(p.error), exponent(p.largest_error), exponent(p.bound),
-                   duration_text(p.seconds.median), p.valid() ? "VALID" : "INVALID"});
-        family.curves.push_back({p.platform + ", " + p.precision, {p.seconds.median}, {p.error}, false, true});
+        table.add({p.platform, p.precision, exponent(p.error), exponent(p.largest_error),
+                   exponent(p.bound), duration_text(p.seconds.median),
+                   p.valid() ? "VALID" : "INVALID"});
+        family.curves.push_back(
+            {p.platform + ", " + p.precision, {p.seconds.median}, {p.error}, false, true});
     }
     return {fmt::format("{}: {} beads", study.title, study.beads), table, {family}};
 }
@@ -34,19 +38,22 @@ ReportSection section_of(ForceStudy const& study) {
 }  // namespace
 
 ReportPart force_part(std::vector<ForceStudy> const& studies) {
-    ReportPart part{
-        "forces",
-        "forces",
-        "Error of OpenMM's forces against run time",
-        "Differences from OpenMM's Reference platform (double precision), over the forces' own root mean square and largest; "
-        "median time of an evaluation of the forces alone. Bound of both: 2^12 units of the precision in which pairs are computed (2^-24, "
-        "double 2^-53), on GPUs also 64 of the steps of 2^-32 kJ/mol/nm in which they add up and 64 times 2^-24, in which they keep "
-        "parameters.",
-        {},
-        Json::array()};
+    ReportPart part{"forces",
+                    "forces",
+                    "Error of OpenMM's forces against run time",
+                    "Differences from OpenMM's Reference platform (double precision), over the "
+                    "forces' own root mean square and largest; "
+                    "median time of an evaluation of the forces alone. Bound of both: 2^12 units "
+                    "of the precision in which pairs are computed (2^-24, "
+                    "double 2^-53), on GPUs also 64 of the steps of 2^-32 kJ/mol/nm in which they "
+                    "add up and 64 times 2^-24, in which they keep "
+                    "parameters.",
+                    {},
+                    Json::array()};
     for (ForceStudy const& study : studies) {
         part.json.push_back(json_of(study));
-        part.valid = part.valid && std::all_of(study.points.begin(), study.points.end(), [](ForcePoint const& p) { return p.valid(); });
+        part.valid = part.valid && std::all_of(study.points.begin(), study.points.end(),
+                                               [](ForcePoint const& p) { return p.valid(); });
         part.sections.push_back(section_of(study));
     }
     return part;

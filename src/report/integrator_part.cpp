@@ -11,10 +11,16 @@ namespace {
 Json or_null(std::optional<double> const& number) { return number ? Json(*number) : Json(); }
 
 Json json_of(IntegratorPoint const& p) {
-    Json json = {{"step", p.step}, {"error", p.error}, {"energy_error", or_null(p.energy_error)}, {"seconds", spread_json(p.seconds)}};
+    Json json = {{"step", p.step},
+                 {"error", p.error},
+                 {"energy_error", or_null(p.energy_error)},
+                 {"seconds", spread_json(p.seconds)}};
     json["no_error"] = p.no_error;
     if (p.tolerance > 0)
-        json.update({{"tolerance", p.tolerance}, {"taken", p.taken}, {"rejected", p.rejected}, {"allowed_error", p.allowed}});
+        json.update({{"tolerance", p.tolerance},
+                     {"taken", p.taken},
+                     {"rejected", p.rejected},
+                     {"allowed_error", p.allowed}});
     return json;
 }
 
@@ -76,7 +82,8 @@ double energy_error_of(IntegratorPoint const& p) { return *p.energy_error; }
 double seconds_of(IntegratorPoint const& p) { return p.seconds.median; }
 double step_of(IntegratorPoint const& p) { return p.step; }
 
-CurveFamily picture(IntegratorStudy const& study, Quantity x, std::string const& x_label, Quantity error, std::string const& name) {
+CurveFamily picture(IntegratorStudy const& study, Quantity x, std::string const& x_label,
+                    Quantity error, std::string const& name) {
     CurveFamily family{study.title + ": " + name, x_label, "relative " + name, {}};
     for (IntegratorCurve const& c : study.curves) {
         if (c.scheme == Scheme::adaptive && x == step_of) continue;
@@ -99,17 +106,21 @@ CurveFamily picture_over_step(IntegratorStudy const& study) {
     for (IntegratorCurve const& c : study.curves) {
         if (c.scheme == Scheme::explicit_steps) limit = std::max(limit, c.unstable_from());
         for (IntegratorPoint const& p : c.points)
-            if (c.scheme != Scheme::adaptive && p.error > 0) least = std::min(least, p.error), most = std::max(most, p.error);
+            if (c.scheme != Scheme::adaptive && p.error > 0)
+                least = std::min(least, p.error), most = std::max(most, p.error);
     }
-    if (limit > 0 && least < most) family.curves.push_back({"explicit: unstable", {limit, limit}, {least, most}, true});
+    if (limit > 0 && least < most)
+        family.curves.push_back({"explicit: unstable", {limit, limit}, {least, most}, true});
     return family;
 }
 
 std::string verdict_of(IntegratorCurve const& c) {
-    std::string const verdict = c.as_promised() ? "" : ": INVALID", limit = exponent(c.unstable_from());
+    std::string const verdict = c.as_promised() ? "" : ": INVALID",
+                      limit = exponent(c.unstable_from());
     if (c.exact) return "errors are roundings";
     if (c.too_stiff) return "unstable from " + limit;
-    if (c.scheme == Scheme::adaptive) return c.as_promised() ? "within what is allowed" : "beyond what is allowed: INVALID";
+    if (c.scheme == Scheme::adaptive)
+        return c.as_promised() ? "within what is allowed" : "beyond what is allowed: INVALID";
     if (!c.slope) return "not above the reference's error: INVALID";
     std::string text = fmt::format("{:.3f}, nominal {}", *c.slope, c.order);
     if (c.slope_beyond) text += fmt::format(", beyond the explicit limit {:.3f}", *c.slope_beyond);
@@ -121,30 +132,36 @@ ReportSection section_of(IntegratorStudy const& study) {
     auto const is_adaptive = [](IntegratorCurve const& c) { return c.scheme == Scheme::adaptive; };
     bool const any_adaptive = std::any_of(study.curves.begin(), study.curves.end(), is_adaptive);
     std::vector<std::string> columns{"integrator", "step", "error", "energy error", "time"};
-    if (any_adaptive) columns.insert(columns.end(), {"tolerance", "inner steps", "rejected", "error allowed"});
+    if (any_adaptive)
+        columns.insert(columns.end(), {"tolerance", "inner steps", "rejected", "error allowed"});
     columns.emplace_back("order");
     Table table(columns, {0});
     for (IntegratorCurve const& c : study.curves)
         for (IntegratorPoint const& p : c.points) {
             bool const known = p.no_error.empty();
-            std::vector<std::string> row{c.name, exponent(p.step), known ? exponent(p.error) : p.no_error,
-                                         p.energy_error ? exponent(*p.energy_error) : "-", known ? duration_text(p.seconds.median) : "-"};
+            std::vector<std::string> row{c.name, exponent(p.step),
+                                         known ? exponent(p.error) : p.no_error,
+                                         p.energy_error ? exponent(*p.energy_error) : "-",
+                                         known ? duration_text(p.seconds.median) : "-"};
             if (is_adaptive(c))
-                row.insert(row.end(),
-                           {fmt::format("{:.0e}", p.tolerance), std::to_string(p.taken), std::to_string(p.rejected), exponent(p.allowed)});
+                row.insert(row.end(), {fmt::format("{:.0e}", p.tolerance), std::to_string(p.taken),
+                                       std::to_string(p.rejected), exponent(p.allowed)});
             row.resize(columns.size() - 1);
             row.push_back(&p == &c.points.back() ? verdict_of(c) : "");
             table.add(row);
         }
     bool const ends = std::isfinite(study.reference_error);
-    std::string const reference = ends ? fmt::format("which is {:.1e} from itself at twice the step", study.reference_error)
-                                       : "which came to no end at so wide a step: INVALID";
-    std::string heading =
-        fmt::format("{}: {} bodies over {:g}; reference: {}, {}", study.title, study.bodies, study.time, study.reference, reference);
-    if (!study.no_implicit.empty()) heading += "; no integrators with implicit springs: " + study.no_implicit;
+    std::string const reference =
+        ends ? fmt::format("which is {:.1e} from itself at twice the step", study.reference_error)
+             : "which came to no end at so wide a step: INVALID";
+    std::string heading = fmt::format("{}: {} bodies over {:g}; reference: {}, {}", study.title,
+                                      study.bodies, study.time, study.reference, reference);
+    if (!study.no_implicit.empty())
+        heading += "; no integrators with implicit springs: " + study.no_implicit;
     if (study.refine > 0)
-        heading += fmt::format("; solutions of rk4, dormand-prince and velocity-verlet refined {} (solver.refine)",
-                               counted(study.refine, "time", "times"));
+        heading += fmt::format(
+            "; solutions of rk4, dormand-prince and velocity-verlet refined {} (solver.refine)",
+            counted(study.refine, "time", "times"));
     std::string const time = "seconds of the whole time";
     std::vector<CurveFamily> pictures{picture(study, seconds_of, time, error_of, "error")};
     if (study.has_implicit()) pictures.push_back(picture_over_step(study));
@@ -156,37 +173,53 @@ ReportSection section_of(IntegratorStudy const& study) {
 }
 
 ReportSection section_of(std::vector<DriftStudy> const& drifts) {
-    Table table(
-        {"scene", "integrator", "step", "steps", "kinetic energy", "scatter of the energy", "drift of all steps", "standard error", ""},
-        {0, 1, 8});
+    Table table({"scene", "integrator", "step", "steps", "kinetic energy", "scatter of the energy",
+                 "drift of all steps", "standard error", ""},
+                {0, 1, 8});
     for (DriftStudy const& d : drifts) {
         double const time = static_cast<double>(d.steps) * d.step;
-        table.add({d.title, d.name, exponent(d.step), std::to_string(d.steps), fmt::format("{:.4g}", d.kinetic_energy), exponent(d.scatter),
-                   exponent(d.slope * time), exponent(d.slope_error * time), d.valid() ? "VALID" : "INVALID"});
+        table.add({d.title, d.name, exponent(d.step), std::to_string(d.steps),
+                   fmt::format("{:.4g}", d.kinetic_energy), exponent(d.scatter),
+                   exponent(d.slope * time), exponent(d.slope_error * time),
+                   d.valid() ? "VALID" : "INVALID"});
     }
-    return {"Drift of the energy: a straight line through means over 50 blocks; VALID within four standard errors", table, {}};
+    return {
+        "Drift of the energy: a straight line through means over 50 blocks; VALID within four "
+        "standard errors",
+        table,
+        {}};
 }
 
 }  // namespace
 
-ReportPart integrator_part(std::vector<IntegratorStudy> const& studies, std::vector<DriftStudy> const& drifts) {
-    ReportPart part{
-        "integrators",
-        "integrators",
-        "Integrator error against run time",
-        "Median time of a whole run; error: the largest distance of a centre of mass from the reference at the end, over the "
-        "scene's extent; energy error: the largest change of the total energy over the largest kinetic energy. The order is "
-        "that of the two finest steps whose errors stand above 20 times the reference's; within 0.1 of the nominal one is VALID, one that "
-        "cannot be seen is INVALID unless all errors are roundings (a smaller dynamics.step is a shorter time). g-baoab and "
-        "implicit-g-baoab are taken at zero friction. dormand-prince goes by a tolerance, in inner steps that it chooses between stops at "
-        "every eighth of the time; the error may be the tolerance times the inner steps. Where joints have springs, staggered and "
-        "implicit-g-baoab take them implicitly: what vibrates faster than the step moves more slowly than it would, by design, but little, "
-        "so that errors of positions are those of the slow motion. They must go on where the explicit integrator of their kind "
-        "(velocity-verlet, g-baoab) cannot, in the report's own scene at second order within 0.1 (a line through errors below a "
-        "hundredth): it is unstable (more than four times the reference's kinetic energy) or comes to no end (equations without a "
-        "solution). Such points are not drawn.",
-        {},
-        {{"scenes", Json::array()}, {"drifts", Json::array()}}};
+ReportPart integrator_part(std::vector<IntegratorStudy> const& studies,
+                           std::vector<DriftStudy> const& drifts) {
+    ReportPart part{"integrators",
+                    "integrators",
+                    "Integrator error against run time",
+                    "Median time of a whole run; error: the largest distance of a centre of mass "
+                    "from the reference at the end, over the "
+                    "scene's extent; energy error: the largest change of the total energy over the "
+                    "largest kinetic energy. The order is "
+                    "that of the two finest steps whose errors stand above 20 times the "
+                    "reference's; within 0.1 of the nominal one is VALID, one that "
+                    "cannot be seen is INVALID unless all errors are roundings (a smaller "
+                    "dynamics.step is a shorter time). g-baoab and "
+                    "implicit-g-baoab are taken at zero friction. dormand-prince goes by a "
+                    "tolerance, in inner steps that it chooses between stops at "
+                    "every eighth of the time; the error may be the tolerance times the inner "
+                    "steps. Where joints have springs, staggered and "
+                    "implicit-g-baoab take them implicitly: what vibrates faster than the step "
+                    "moves more slowly than it would, by design, but little, "
+                    "so that errors of positions are those of the slow motion. They must go on "
+                    "where the explicit integrator of their kind "
+                    "(velocity-verlet, g-baoab) cannot, in the report's own scene at second order "
+                    "within 0.1 (a line through errors below a "
+                    "hundredth): it is unstable (more than four times the reference's kinetic "
+                    "energy) or comes to no end (equations without a "
+                    "solution). Such points are not drawn.",
+                    {},
+                    {{"scenes", Json::array()}, {"drifts", Json::array()}}};
     for (IntegratorStudy const& study : studies) {
         part.json["scenes"].push_back(json_of(study));
         part.valid = part.valid && study.valid();

@@ -1,4 +1,5 @@
-// What a report is made of: parts with sections, each a table with its pictures; printed, written as JSON and laid out as a page.
+// What a report is made of: parts with sections, each a table with its pictures; printed, written
+// as JSON and laid out as a page.
 #pragma once
 
 #include <string>
@@ -6,8 +7,8 @@
 
 #include "console/outcome.hpp"
 #include "console/text.hpp"
-#include "page/curve_family.hpp"
 #include "measure/timing.hpp"
+#include "page/curve_family.hpp"
 
 namespace catena::command {
 
@@ -17,7 +18,8 @@ struct ReportSection {
     std::vector<CurveFamily> pictures;  // on the page alone
 };
 struct ReportPart {
-    std::string key, picture;  // in the JSON, and of the picture that a script draws (without .png; empty: none)
+    std::string key,
+        picture;  // in the JSON, and of the picture that a script draws (without .png; empty: none)
     std::string title;
     std::string note;  // what the numbers mean
     std::vector<ReportSection> sections;
@@ -30,7 +32,8 @@ struct ReportPart {
 
 std::string text_of(ReportPart const&);
 /// Self-contained; `subtitle`: hardware and build.
-std::string page_of(std::string const& title, std::string const& subtitle, std::vector<ReportPart> const&);
+std::string page_of(std::string const& title, std::string const& subtitle,
+                    std::vector<ReportPart> const&);
 
 Json spread_json(Spread const&);
 /// "1.2e-15"

@@ -35,26 +35,39 @@ Json json_of(StabilityStudy const& study) {
                           {"settled", settled}});
     }
     Json peers = Json::array();
-    for (StabilityPeer const& p : study.peers) peers.push_back({{"name", p.name}, {"forward_error", p.error}, {"why_not", p.why_not}});
-    return {{"family", study.family},
-            {"name", study.name},
-            {"bodies", study.bodies},
-            {"seeds", study.seeds},
-            {"reference", study.reference},
-            {"condition", study.condition ? Json(*study.condition) : Json()},
-            {"growth", study.growth},
-            {"oracle", {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}}},
-            {"points", points},
-            {"peers", peers},
-            {"best_of_others", study.best_of_others()},
-            {"against_peers", study.against_peers()},
-            {"articulated_against_peers", study.against_peers(true)},
-            {"verdict", name_of(study.verdict())}};
+    for (StabilityPeer const& p : study.peers)
+        peers.push_back({{"name", p.name}, {"forward_error", p.error}, {"why_not", p.why_not}});
+    return {
+        {"family", study.family},
+        {"name", study.name},
+        {"bodies", study.bodies},
+        {"seeds", study.seeds},
+        {"reference", study.reference},
+        {"condition", study.condition ? Json(*study.condition) : Json()},
+        {"growth", study.growth},
+        {"oracle", {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}}},
+        {"points", points},
+        {"peers", peers},
+        {"best_of_others", study.best_of_others()},
+        {"against_peers", study.against_peers()},
+        {"articulated_against_peers", study.against_peers(true)},
+        {"verdict", name_of(study.verdict())}};
 }
 
-std::vector<std::string> const columns{
-    "case",       "condition",    "growth", "articulated bodies", "forward error",       "over bound", "residual",
-    "over bound", "refined once", "twice",  "as often as helps",  "articulated handles", "refined",    ""};
+std::vector<std::string> const columns{"case",
+                                       "condition",
+                                       "growth",
+                                       "articulated bodies",
+                                       "forward error",
+                                       "over bound",
+                                       "residual",
+                                       "over bound",
+                                       "refined once",
+                                       "twice",
+                                       "as often as helps",
+                                       "articulated handles",
+                                       "refined",
+                                       ""};
 
 /// The largest of the points with or without articulated handles; empty where one has none.
 std::string worst(StabilityStudy const& study, bool articulated, auto const& value) {
@@ -72,38 +85,49 @@ std::string worst(StabilityStudy const& study, bool articulated, auto const& val
 
 void add_row(Table& table, StabilityStudy const& study) {
     using Number = std::optional<double>;
-    bool const refused = !study.all(false, [](StabilityPoint const& p) { return p.refused.empty(); });
+    bool const refused =
+        !study.all(false, [](StabilityPoint const& p) { return p.refused.empty(); });
     auto const error = [](StabilityPoint const& p) { return Number(p.error); };
-    auto const settled = [](StabilityPoint const& p) { return p.settled ? Number(p.settled->error) : std::nullopt; };
-    auto const after = [&](std::size_t steps) {
-        return worst(study, false,
-                     [&](StabilityPoint const& p) { return p.refined.size() >= steps ? Number(p.refined[steps - 1].error) : Number(); });
+    auto const settled = [](StabilityPoint const& p) {
+        return p.settled ? Number(p.settled->error) : std::nullopt;
     };
-    table.add({study.name, study.condition ? exponent(*study.condition) : "", exponent(study.growth), exponent(study.oracle_error),
-               refused ? "refused" : worst(study, false, error),
-               worst(study, false, [](StabilityPoint const& p) { return Number(p.of_bound); }),
-               worst(study, false, [](StabilityPoint const& p) { return Number(p.residual); }),
-               worst(study, false, [](StabilityPoint const& p) { return Number(p.of_residual_bound); }), after(1), after(2),
-               worst(study, false, settled), worst(study, true, error), worst(study, true, settled), name_of(study.verdict())});
+    auto const after = [&](std::size_t steps) {
+        return worst(study, false, [&](StabilityPoint const& p) {
+            return p.refined.size() >= steps ? Number(p.refined[steps - 1].error) : Number();
+        });
+    };
+    table.add(
+        {study.name, study.condition ? exponent(*study.condition) : "", exponent(study.growth),
+         exponent(study.oracle_error), refused ? "refused" : worst(study, false, error),
+         worst(study, false, [](StabilityPoint const& p) { return Number(p.of_bound); }),
+         worst(study, false, [](StabilityPoint const& p) { return Number(p.residual); }),
+         worst(study, false, [](StabilityPoint const& p) { return Number(p.of_residual_bound); }),
+         after(1), after(2), worst(study, false, settled), worst(study, true, error),
+         worst(study, true, settled), name_of(study.verdict())});
 }
 
 CurveFamily picture(std::vector<StabilityStudy> const& studies) {
-    CurveFamily family{"Forward error over growth, all cases", "growth", "forward error (medians)", {}};
-    NamedCurve oracle{"articulated bodies", {}, {}, false, true, false}, one{"2^-53 growth", {1, 1e13}, {0x1p-53, 0x1p-53 * 1e13}, true};
+    CurveFamily family{
+        "Forward error over growth, all cases", "growth", "forward error (medians)", {}};
+    NamedCurve oracle{"articulated bodies", {}, {}, false, true, false},
+        one{"2^-53 growth", {1, 1e13}, {0x1p-53, 0x1p-53 * 1e13}, true};
     std::map<std::string, NamedCurve> curves;
     for (StabilityStudy const& study : studies) {
         oracle.x.push_back(study.growth), oracle.y.push_back(study.oracle_error);
         for (StabilityPoint const& p : study.points) {
             if (p.handles == name_of(Handles::full)) continue;
-            NamedCurve& curve = curves[p.backend + (p.is_articulated() ? ", articulated handles" : "")];
+            NamedCurve& curve =
+                curves[p.backend + (p.is_articulated() ? ", articulated handles" : "")];
             curve.x.push_back(study.growth), curve.y.push_back(p.error);
         }
     }
     std::map<std::string, NamedCurve> of_peers;
     for (StabilityStudy const& study : studies)
-        for (StabilityPeer const& p : study.peers) of_peers[p.name].x.push_back(study.growth), of_peers[p.name].y.push_back(p.error);
+        for (StabilityPeer const& p : study.peers)
+            of_peers[p.name].x.push_back(study.growth), of_peers[p.name].y.push_back(p.error);
     curves.merge(of_peers);
-    for (auto& [name, curve] : curves) family.curves.push_back({name, curve.x, curve.y, false, true, false});
+    for (auto& [name, curve] : curves)
+        family.curves.push_back({name, curve.x, curve.y, false, true, false});
     NamedCurve refined{"refined as often as helps", {}, {}, false, true, false};
     for (StabilityStudy const& study : studies)
         for (StabilityPoint const& p : study.points)
@@ -116,20 +140,27 @@ CurveFamily picture(std::vector<StabilityStudy> const& studies) {
 }  // namespace
 
 ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
-    ReportPart part{
-        "stability",
-        "stability",
-        "Stability suite",
-        "Medians over the seeds, the worst of all backends and handle kinds. Growth: by how much roundings of the data and of each body's "
-        "and joint's equations change the answer; condition: of the joint-space inertia, or of the links' matrix. Bounds: of the residual "
-        "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both hold. REFINED: they hold after refinement alone "
-        "(catena solve --refine; ten steps at most, as long as each halves the error). Refined errors must also be at most the larger of "
-        "4 times the best of others' (articulated bodies in double, other programs) and the residual's bound, else the case is INVALID. "
-        "Where 2^-53 growth is above 1e-3 the equations of joint forces in double determine fewer than three digits: ARTICULATED, where "
-        "articulated handles (catena solve --handles articulated), refined, keep to all that; else the answer is that of a chain nearby, "
-        "or refused: BEYOND where others have none either or 2^-53 condition is above 1e-3, too, else LOST.",
-        {},
-        Json::array()};
+    ReportPart part{"stability",
+                    "stability",
+                    "Stability suite",
+                    "Medians over the seeds, the worst of all backends and handle kinds. Growth: "
+                    "by how much roundings of the data and of each body's "
+                    "and joint's equations change the answer; condition: of the joint-space "
+                    "inertia, or of the links' matrix. Bounds: of the residual "
+                    "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both "
+                    "hold. REFINED: they hold after refinement alone "
+                    "(catena solve --refine; ten steps at most, as long as each halves the error). "
+                    "Refined errors must also be at most the larger of "
+                    "4 times the best of others' (articulated bodies in double, other programs) "
+                    "and the residual's bound, else the case is INVALID. "
+                    "Where 2^-53 growth is above 1e-3 the equations of joint forces in double "
+                    "determine fewer than three digits: ARTICULATED, where "
+                    "articulated handles (catena solve --handles articulated), refined, keep to "
+                    "all that; else the answer is that of a chain nearby, "
+                    "or refused: BEYOND where others have none either or 2^-53 condition is above "
+                    "1e-3, too, else LOST.",
+                    {},
+                    Json::array()};
     for (StabilityStudy const& study : studies) {
         part.json.push_back(json_of(study));
         part.valid = part.valid && study.verdict() != Verdict::invalid;

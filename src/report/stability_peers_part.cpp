@@ -19,7 +19,8 @@ double least_bound(StabilityStudy const& study) {
 /// Empty where there is none: a bound of no answer, an answer of a peer that has none.
 std::string number(double value) { return std::isfinite(value) ? exponent(value) : ""; }
 
-/// In how many cases of a peer Catena's worst error is the smaller one, as it comes and after refinement.
+/// In how many cases of a peer Catena's worst error is the smaller one, as it comes and after
+/// refinement.
 struct Score {
     int ran = 0, within = 0, closer = 0;  // within: neither BEYOND nor LOST
     int refined = 0, closer_refined = 0;  // within, where all points were refined
@@ -29,14 +30,18 @@ struct Score {
         if (study.beyond()) return;
         ++within;
         closer += study.worst(&StabilityPoint::plain_error) < error ? 1 : 0;
-        if (!study.all(false, [](StabilityPoint const& p) { return p.settled.has_value(); })) return;
+        if (!study.all(false, [](StabilityPoint const& p) { return p.settled.has_value(); }))
+            return;
         ++refined;
         closer_refined += study.worst(&StabilityPoint::last_error) < error ? 1 : 0;
     }
 };
 
 ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& peers) {
-    ReportSection section{"peers", Table({"", "version", "cases", "not beyond", "Catena is closer", "refined"}, {0, 1}), {}};
+    ReportSection section{
+        "peers",
+        Table({"", "version", "cases", "not beyond", "Catena is closer", "refined"}, {0, 1}),
+        {}};
     for (Json const& peer : peers) {
         if (peer.contains("not_run")) continue;
         std::string const name = peer.at("name");
@@ -44,15 +49,17 @@ ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& pee
         for (StabilityStudy const& study : studies)
             for (StabilityPeer const& p : study.peers)
                 if (p.name == name && p.why_not.empty()) score.add(study, p.error);
-        section.table.add({name, peer.value("version", ""), std::to_string(score.ran), std::to_string(score.within),
-                           std::to_string(score.closer), fmt::format("{} of {}", score.closer_refined, score.refined)});
+        section.table.add({name, peer.value("version", ""), std::to_string(score.ran),
+                           std::to_string(score.within), std::to_string(score.closer),
+                           fmt::format("{} of {}", score.closer_refined, score.refined)});
     }
     return section;
 }
 
 /// Without where in its own source a program says so.
 std::string shortened(std::string const& why) {
-    std::size_t const place = why.find(" thrown at "), text = place == std::string::npos ? place : why.find(": ", place + 11);
+    std::size_t const place = why.find(" thrown at "),
+                      text = place == std::string::npos ? place : why.find(": ", place + 11);
     std::string const rest = text == std::string::npos ? why : why.substr(text + 2);
     return rest.size() > 100 ? rest.substr(0, 100) + " ..." : rest;
 }
@@ -64,7 +71,8 @@ ReportSection stops(std::vector<StabilityStudy> const& studies) {
     for (StabilityStudy const& study : studies)
         for (StabilityPeer const& p : study.peers) {
             std::string const key = p.name + "/" + study.family;
-            if (p.why_not.empty() || std::find(said.begin(), said.end(), key) != said.end()) continue;
+            if (p.why_not.empty() || std::find(said.begin(), said.end(), key) != said.end())
+                continue;
             said.push_back(key);
             section.table.add({p.name, study.family, study.name, shortened(p.why_not)});
         }
@@ -74,16 +82,19 @@ ReportSection stops(std::vector<StabilityStudy> const& studies) {
 }  // namespace
 
 ReportPart peers_part(std::vector<StabilityStudy> const& studies, Json peers) {
-    ReportPart part{
-        "peers",
-        "",
-        "Stability suite by other programs",
-        "Forward errors, medians over the seeds. Catena: the worst of all backends and handle kinds, as it comes and refined "
-        "as often as helps. Ratio: the latter over the larger of 4 times the best of the others, articulated bodies in double "
-        "among them, and the residual's bound (where nothing is refined: Catena's error, the bound times the growth). Above 1 a "
-        "case is INVALID, unless these equations lose all digits: LOST where others keep them, else BEYOND.",
-        {scores(studies, peers)},
-        std::move(peers)};
+    ReportPart part{"peers",
+                    "",
+                    "Stability suite by other programs",
+                    "Forward errors, medians over the seeds. Catena: the worst of all backends and "
+                    "handle kinds, as it comes and refined "
+                    "as often as helps. Ratio: the latter over the larger of 4 times the best of "
+                    "the others, articulated bodies in double "
+                    "among them, and the residual's bound (where nothing is refined: Catena's "
+                    "error, the bound times the growth). Above 1 a "
+                    "case is INVALID, unless these equations lose all digits: LOST where others "
+                    "keep them, else BEYOND.",
+                    {scores(studies, peers)},
+                    std::move(peers)};
     std::vector<std::string> columns{"case", "bound", "Catena", "refined", "articulated bodies"};
     if (!studies.empty())
         for (StabilityPeer const& p : studies.front().peers) columns.push_back(p.name);
@@ -91,9 +102,12 @@ ReportPart peers_part(std::vector<StabilityStudy> const& studies, Json peers) {
     columns.emplace_back();
     for (StabilityStudy const& study : studies) {
         double const worst = study.worst(&StabilityPoint::plain_error);
-        bool const refined = study.all(false, [](StabilityPoint const& p) { return p.settled.has_value(); });
-        std::vector<std::string> row{study.name, number(least_bound(study)), std::isinf(worst) ? "refused" : exponent(worst),
-                                     refined ? number(study.worst(&StabilityPoint::last_error)) : "", number(study.oracle_error)};
+        bool const refined =
+            study.all(false, [](StabilityPoint const& p) { return p.settled.has_value(); });
+        std::vector<std::string> row{
+            study.name, number(least_bound(study)), std::isinf(worst) ? "refused" : exponent(worst),
+            refined ? number(study.worst(&StabilityPoint::last_error)) : "",
+            number(study.oracle_error)};
         for (StabilityPeer const& p : study.peers) row.push_back(number(p.error));
         row.push_back(number(study.against_peers()));
         row.emplace_back(name_of(study.verdict()));

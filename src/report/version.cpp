@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "cuda/device/gpu.hpp"
-#include "math/simd_level.hpp"
 #include "force/openmm_force.hpp"
 #include "io/output.hpp"
-#include "mpi/communicator.hpp"
+#include "math/simd_level.hpp"
 #include "measure/hardware.hpp"
+#include "mpi/communicator.hpp"
 
 namespace catena::command {
 
@@ -29,13 +29,17 @@ std::string simd_names() {
 std::string version() { return CATENA_VERSION; }
 
 nlohmann::ordered_json version_json() {
-    return {{"catena", version()},    {"compiler", compiler_name()},      {"flags", CATENA_FLAGS},   {"instruction_set", instruction_set()},
-            {"simd", simd_names()},   {"mpi", message_passing_library()}, {"openmp", CATENA_OPENMP}, {"openmm", openmm_version()},
-            {"hdf5", hdf5_version()}, {"cuda", cuda::version()}};
+    return {{"catena", version()},     {"compiler", compiler_name()},
+            {"flags", CATENA_FLAGS},   {"instruction_set", instruction_set()},
+            {"simd", simd_names()},    {"mpi", message_passing_library()},
+            {"openmp", CATENA_OPENMP}, {"openmm", openmm_version()},
+            {"hdf5", hdf5_version()},  {"cuda", cuda::version()}};
 }
 
 nlohmann::ordered_json hardware_json() {
-    nlohmann::ordered_json hardware{{"processor", processor_name()}, {"hardware_threads", processor_threads()}, {"gpu", nullptr}};
+    nlohmann::ordered_json hardware{{"processor", processor_name()},
+                                    {"hardware_threads", processor_threads()},
+                                    {"gpu", nullptr}};
     if (cuda::why_not().empty()) hardware["gpu"] = cuda::device_name();
     return hardware;
 }
@@ -46,10 +50,15 @@ std::string hardware_text() {
 }
 
 std::string version_text() {
-    std::string text = fmt::format("catena {} ({}, {})\n", version(), compiler_name(), instruction_set());
+    std::string text =
+        fmt::format("catena {} ({}, {})\n", version(), compiler_name(), instruction_set());
     nlohmann::ordered_json const all = version_json();
-    for (auto const& [label, key] :
-         {std::pair{"SIMD", "simd"}, {"MPI", "mpi"}, {"OpenMP", "openmp"}, {"OpenMM", "openmm"}, {"HDF5", "hdf5"}, {"CUDA", "cuda"}})
+    for (auto const& [label, key] : {std::pair{"SIMD", "simd"},
+                                     {"MPI", "mpi"},
+                                     {"OpenMP", "openmp"},
+                                     {"OpenMM", "openmm"},
+                                     {"HDF5", "hdf5"},
+                                     {"CUDA", "cuda"}})
         text += fmt::format("  {:<8}{}\n", label, all.at(key).get<std::string>());
     return text;
 }

@@ -42,7 +42,8 @@ void evaluate(JointDynamics& group, bool once) {
     group.solver().wait();
 }
 
-/// Seconds of this rank's own work. All ranks begin together, as they share their hosts' memory in a run.
+/// Seconds of this rank's own work. All ranks begin together, as they share their hosts' memory in
+/// a run.
 template <class Action>
 double own_seconds(TimedCommunicator const& communicator, Action const& action) {
     communicator.barrier();
@@ -53,7 +54,8 @@ double own_seconds(TimedCommunicator const& communicator, Action const& action) 
 
 }  // namespace
 
-std::vector<OwnCost> measure_own_costs(Scene const& scene, Axes axes, Communicator const& communicator, double implicit_step) {
+std::vector<OwnCost> measure_own_costs(Scene const& scene, Axes axes,
+                                       Communicator const& communicator, double implicit_step) {
     std::optional<Scene> chains_alone;
     if (scene.forces.openmm) {
         chains_alone = scene;
@@ -61,7 +63,8 @@ std::vector<OwnCost> measure_own_costs(Scene const& scene, Axes axes, Communicat
     }
     TimedCommunicator const timed(communicator);
     ChainSystem system(chains_alone ? *chains_alone : scene, axes, timed, implicit_step);
-    for (AbsoluteDynamics* group : system.absolute()) evaluate(*group);  // what comes first takes longer
+    for (AbsoluteDynamics* group : system.absolute())
+        evaluate(*group);  // what comes first takes longer
     for (JointDynamics* group : system.joint()) evaluate(*group, system.solves_once());
     std::vector<std::vector<double>> seconds(system.groups().size());
     double const start = seconds_now();
@@ -69,22 +72,28 @@ std::vector<OwnCost> measure_own_costs(Scene const& scene, Axes axes, Communicat
         bool const enough = i >= least_evaluations && seconds_now() - start > enough_seconds;
         if (timed.max(enough ? 1 : 0) > 0) break;
         std::size_t g = 0;
-        for (AbsoluteDynamics* group : system.absolute()) seconds[g++].push_back(own_seconds(timed, [&] { evaluate(*group); }));
+        for (AbsoluteDynamics* group : system.absolute())
+            seconds[g++].push_back(own_seconds(timed, [&] { evaluate(*group); }));
         for (JointDynamics* group : system.joint())
-            seconds[g++].push_back(own_seconds(timed, [&] { evaluate(*group, system.solves_once()); }));
+            seconds[g++].push_back(
+                own_seconds(timed, [&] { evaluate(*group, system.solves_once()); }));
     }
     std::vector<OwnCost> costs;
-    for (AbsoluteDynamics const* group : system.absolute()) costs.push_back({group->group().size, median(seconds[costs.size()])});
-    for (JointDynamics const* group : system.joint()) costs.push_back({group->group().size, median(seconds[costs.size()])});
+    for (AbsoluteDynamics const* group : system.absolute())
+        costs.push_back({group->group().size, median(seconds[costs.size()])});
+    for (JointDynamics const* group : system.joint())
+        costs.push_back({group->group().size, median(seconds[costs.size()])});
     return costs;
 }
 
-dca::Shares agree_on_shares(Communicator const& communicator, std::vector<OwnCost> const& of_groups) {
+dca::Shares agree_on_shares(Communicator const& communicator,
+                            std::vector<OwnCost> const& of_groups) {
     auto const ranks = static_cast<std::size_t>(communicator.size());
     std::size_t const groups = of_groups.size();
     std::vector<OwnCost> all(ranks * groups);
-    communicator.all_gather(std::as_bytes(std::span(of_groups)), std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(groups * sizeof(OwnCost))));
+    communicator.all_gather(
+        std::as_bytes(std::span(of_groups)), std::as_writable_bytes(std::span(all)),
+        std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(groups * sizeof(OwnCost))));
     std::vector<double> taken(ranks, 0), expected(ranks, 0), speeds;
     for (std::size_t g = 0; g < groups; ++g) {
         double bodies = 0, seconds = 0;
@@ -98,7 +107,8 @@ dca::Shares agree_on_shares(Communicator const& communicator, std::vector<OwnCos
         for (std::size_t r = 0; r < ranks && bodies > 0; ++r)
             expected[r] += seconds / bodies * static_cast<double>(all[r * groups + g].bodies);
     }
-    for (std::size_t r = 0; r < ranks; ++r) speeds.push_back(taken[r] > 0 ? expected[r] / taken[r] : 0);
+    for (std::size_t r = 0; r < ranks; ++r)
+        speeds.push_back(taken[r] > 0 ? expected[r] / taken[r] : 0);
     return dca::shares_of_speeds(speeds);
 }
 

@@ -26,60 +26,78 @@ Values values_in(Checkpoint const& c) {
 }
 
 void require_same_coordinates(Checkpoint const& c, Scene const& scene, std::string const& file) {
-    bool const joint = uses_joint_coordinates(scene.dynamics.integrator), was_joint = c.arrays.contains("q");
+    bool const joint = uses_joint_coordinates(scene.dynamics.integrator),
+               was_joint = c.arrays.contains("q");
     if (joint == was_joint) return;
-    auto const kind = [](bool in_joint) { return std::string(in_joint ? "joint" : "absolute") + " coordinates"; };
-    throw InputError(
-        "the state is in " + kind(was_joint) + ", but integrator " + name_of(scene.dynamics.integrator) + " works in " + kind(joint), file,
-        was_joint ? "take an integrator in joint coordinates (rk4, velocity-verlet, ...)" : "take rattle, g-baoab or implicit-g-baoab");
+    auto const kind = [](bool in_joint) {
+        return std::string(in_joint ? "joint" : "absolute") + " coordinates";
+    };
+    throw InputError("the state is in " + kind(was_joint) + ", but integrator " +
+                         name_of(scene.dynamics.integrator) + " works in " + kind(joint),
+                     file,
+                     was_joint
+                         ? "take an integrator in joint coordinates (rk4, velocity-verlet, ...)"
+                         : "take rattle, g-baoab or implicit-g-baoab");
 }
 
 }  // namespace
 
 void keep_values(Scene const& scene, std::map<std::string, std::string>& notes) {
     json kept = json::object();
-    for (scene::DecidingValue const& each : scene::deciding_values(scene)) kept[each.key] = each.value;
+    for (scene::DecidingValue const& each : scene::deciding_values(scene))
+        kept[each.key] = each.value;
     notes[note_of_scene] = kept.dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
 void require_own(Checkpoint const& c, Scene const& scene, std::string const& file) {
     if (c.scene_hash == scene.hash) return;
     std::string const other = "the checkpoint belongs to another scene";
-    std::string const may = "restart with the scene that made it (solver, steps and how often it writes may differ)";
+    std::string const may =
+        "restart with the scene that made it (solver, steps and how often it writes may differ)";
     Values const before = values_in(c);
     std::vector<scene::ChangedValue> const changed =
-        before.empty() ? std::vector<scene::ChangedValue>() : scene::changes(before, scene::deciding_values(scene));
+        before.empty() ? std::vector<scene::ChangedValue>()
+                       : scene::changes(before, scene::deciding_values(scene));
     if (changed.empty()) throw InputError(other, file, may);
     scene::ChangedValue const& first = changed.front();
-    throw InputError(other + ": " + first.key + " was " + first.before + ", now it is " + first.now, file,
-                     may + ", or branch off with --branch --output OTHER");
+    throw InputError(other + ": " + first.key + " was " + first.before + ", now it is " + first.now,
+                     file, may + ", or branch off with --branch --output OTHER");
 }
 
-std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const& scene, std::string const& file) {
+std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const& scene,
+                                                std::string const& file) {
     Values const before = values_in(c);
     if (before.empty())
-        throw InputError("the checkpoint does not hold the values of its scene", file, "branch from a checkpoint that this version wrote");
-    std::vector<scene::ChangedValue> changed = scene::changes(before, scene::deciding_values(scene));
+        throw InputError("the checkpoint does not hold the values of its scene", file,
+                         "branch from a checkpoint that this version wrote");
+    std::vector<scene::ChangedValue> changed =
+        scene::changes(before, scene::deciding_values(scene));
     for (scene::ChangedValue const& each : changed)
         if (each.role == scene::Role::fixed)
-            throw InputError("a branch keeps its chains and units: " + each.key + " was " + each.before + ", now it is " + each.now, file,
-                             "start this scene anew");
+            throw InputError("a branch keeps its chains and units: " + each.key + " was " +
+                                 each.before + ", now it is " + each.now,
+                             file, "start this scene anew");
     require_same_coordinates(c, scene, file);
-    std::erase_if(changed, [](scene::ChangedValue const& each) { return each.role == scene::Role::start; });
+    std::erase_if(changed,
+                  [](scene::ChangedValue const& each) { return each.role == scene::Role::start; });
     return changed;
 }
 
-std::string note_of_branch(std::string const& file, std::int64_t step, std::vector<scene::ChangedValue> const& changes) {
+std::string note_of_branch(std::string const& file, std::int64_t step,
+                           std::vector<scene::ChangedValue> const& changes) {
     std::string text = "branched at step " + std::to_string(step) + " from " + file + ": ";
     if (changes.empty()) text += "with the values of its scene";
     for (std::size_t i = 0; i < changes.size(); ++i)
-        text += (i > 0 ? ", " : "") + changes[i].key + " " + changes[i].before + " -> " + changes[i].now;
+        text += (i > 0 ? ", " : "") + changes[i].key + " " + changes[i].before + " -> " +
+                changes[i].now;
     return text + "; the verdict covers the branch alone";
 }
 
-json json_of_branch(std::string const& file, std::int64_t step, std::vector<scene::ChangedValue> const& changes) {
+json json_of_branch(std::string const& file, std::int64_t step,
+                    std::vector<scene::ChangedValue> const& changes) {
     json list = json::array();
-    for (scene::ChangedValue const& each : changes) list.push_back({{"key", each.key}, {"before", each.before}, {"now", each.now}});
+    for (scene::ChangedValue const& each : changes)
+        list.push_back({{"key", each.key}, {"before", each.before}, {"now", each.now}});
     return {{"from", file}, {"step", step}, {"changes", list}};
 }
 

@@ -11,7 +11,8 @@ using nlohmann::json;
 
 std::vector<std::int64_t> of_ranks(Communicator const& communicator, std::int64_t own) {
     std::vector<std::int64_t> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)),
+    communicator.all_gather(std::as_bytes(std::span(&own, 1)),
+                            std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(own)));
     return all;
 }
@@ -22,7 +23,8 @@ json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, s
     auto const a_step = [&](std::int64_t own) {
         std::vector<double> shares;
         for (std::int64_t const all : of_ranks(communicator, own))
-            shares.push_back(static_cast<double>(all) / static_cast<double>(std::max<std::int64_t>(1, steps)));
+            shares.push_back(static_cast<double>(all) /
+                             static_cast<double>(std::max<std::int64_t>(1, steps)));
         return shares;
     };
     std::vector<std::int64_t> own;
@@ -54,7 +56,8 @@ json summary_of_forces(ChainSystem const& system, std::int64_t steps) {
                     {"matrix_sweep_hidden", matrix > 0 ? system.hidden_seconds() / matrix : 0.0},
                     {"largest_context", openmm->largest_context()}};
     if (DevicePath const* const path = openmm->device_path())
-        if (auto const [made, kept] = path->pair_lists(); made > 0) summary["pair_lists"] = {{"made", made}, {"kept", kept}};
+        if (auto const [made, kept] = path->pair_lists(); made > 0)
+            summary["pair_lists"] = {{"made", made}, {"kept", kept}};
     GhostTraffic const traffic = openmm->traffic();
     if (traffic.updates > 0) summary["ghosts"] = summary_of_ghosts(system, traffic, steps);
     return summary;

@@ -1,4 +1,5 @@
-// What a run's summary says of OpenMM: where it computed, how much ran beside it, and what ranks told each other for it.
+// What a run's summary says of OpenMM: where it computed, how much ran beside it, and what ranks
+// told each other for it.
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,8 @@
 
 namespace catena {
 
-/// First steps make lists, find memory and compile kernels: a short run's mean says little about a long one.
+/// First steps make lists, find memory and compile kernels: a short run's mean says little about a
+/// long one.
 class Pace {
   public:
     /// After each step: how many there have been, from which on they count, and the clock.
@@ -17,7 +18,11 @@ class Pace {
         begun_ = now_;
     }
     /// 0: there were none that count.
-    double steps_per_second() const { return steps_ > from_ && now_ > begun_ ? static_cast<double>(steps_ - from_) / (now_ - begun_) : 0; }
+    double steps_per_second() const {
+        return steps_ > from_ && now_ > begun_
+                   ? static_cast<double>(steps_ - from_) / (now_ - begun_)
+                   : 0;
+    }
 
   private:
     std::int64_t steps_ = 0, from_ = 0;

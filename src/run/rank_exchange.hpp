@@ -1,4 +1,5 @@
-// What ranks tell each other about a run beside its steps: the checkpoint at its start, their timelines at its end.
+// What ranks tell each other about a run beside its steps: the checkpoint at its start, their
+// timelines at its end.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,8 +11,8 @@
 
 namespace catena {
 
-/// Arrays of more numbers are of bodies: each rank gets its own later (ChainSystem::set_state). What a run keeps beside them is shorter: at
-/// most a number a rank.
+/// Arrays of more numbers are of bodies: each rank gets its own later (ChainSystem::set_state).
+/// What a run keeps beside them is shorter: at most a number a rank.
 inline constexpr std::size_t largest_shared_array = 1 << 16;
 /// Rank 0's checkpoint to every rank, but its notes and those arrays. Collective.
 void share(Communicator const&, Checkpoint&);

@@ -18,8 +18,9 @@ bool same_folder(fs::path const& a, fs::path const& b) {
     return fs::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, ignored);
 }
 
-char const* const files_of_a_run[] = {"trajectory.h5md", "topology.pdb",           "topology.cif", "topology.psf",  "observables.csv",
-                                      "checkpoint.h5",   "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
+char const* const files_of_a_run[] = {
+    "trajectory.h5md", "topology.pdb",           "topology.cif", "topology.psf",  "observables.csv",
+    "checkpoint.h5",   "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
 
 }  // namespace
 
@@ -36,34 +37,42 @@ bool is_vacant(std::string const& folder) {
     std::error_code error;
     fs::directory_iterator entries(folder, error);
     if (error) return false;
-    return std::all_of(fs::begin(entries), fs::end(entries),
-                       [](fs::directory_entry const& e) { return e.path().filename() == run_lock_name; });
+    return std::all_of(fs::begin(entries), fs::end(entries), [](fs::directory_entry const& e) {
+        return e.path().filename() == run_lock_name;
+    });
 }
 
 bool is_there(std::string const& folder) {
     std::error_code error;
     bool const exists = fs::exists(folder, error);
-    if (error) throw InputError("the output folder cannot be looked into: " + error.message(), folder, "name another with --output");
+    if (error)
+        throw InputError("the output folder cannot be looked into: " + error.message(), folder,
+                         "name another with --output");
     return exists;
 }
 
 }  // namespace
 
-RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options)
+RunFolder::RunFolder(Scene const& scene, Communicator const& communicator,
+                     RunOptions const& options)
     : scene_(scene), communicator_(communicator), folder_(options.output) {
-    file_wish_of_run(communicator);  // a wrong one is refused before anything is replaced
+    requested_io_mode_of_run(communicator);  // a wrong one is refused before anything is replaced
     on_first_rank(communicator, [&] {
         bool const exists = is_there(folder_);
         std::error_code ignored;
-        appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
+        appends_ = exists && !options.restart.empty() &&
+                   same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_, ignored))
             throw InputError("the output is not a folder", folder_, "name another with --output");
-        if (appends_ && options.branch) throw InputError("a branch needs a folder of its own", folder_, "name another with --output");
+        if (appends_ && options.branch)
+            throw InputError("a branch needs a folder of its own", folder_,
+                             "name another with --output");
         if (exists && !appends_) refuse_unless_free(options);
         make_output_folder(folder_);
         lock_ = std::make_unique<RunLock>(folder_);
         if (!appends_) refuse_unless_free(options);  // a run may have come and gone
-        for (char const* name : files_of_a_run) fs::remove(path(std::string(name) + ".writing"), ignored);
+        for (char const* name : files_of_a_run)
+            fs::remove(path(std::string(name) + ".writing"), ignored);
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(path(name), ignored);
     });
@@ -74,8 +83,11 @@ void RunFolder::refuse_unless_free(RunOptions const& options) const {
     if (!lock_) RunLock::refuse_if_taken(folder_);
     if (options.overwrite || is_vacant(folder_)) return;
     std::string const checkpoint = newest_checkpoint();
-    std::string const go_on = options.restart.empty() && !checkpoint.empty() ? ", go on with --restart " + checkpoint : "";
-    throw InputError("the output folder exists", folder_, "name another with --output" + go_on + ", or replace it with --overwrite");
+    std::string const go_on = options.restart.empty() && !checkpoint.empty()
+                                  ? ", go on with --restart " + checkpoint
+                                  : "";
+    throw InputError("the output folder exists", folder_,
+                     "name another with --output" + go_on + ", or replace it with --overwrite");
 }
 
 /// Between two renames of a checkpoint that was being written, only the one before is there.
@@ -86,21 +98,26 @@ std::string RunFolder::newest_checkpoint() const {
     return {};
 }
 
-void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns, GoOn const& go_on) {
-    std::optional<GoOn> const after = appends_ ? std::optional(go_on) : std::nullopt;
+void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns,
+                     Continuation const& go_on) {
+    std::optional<Continuation> const after = appends_ ? std::optional(go_on) : std::nullopt;
     on_first_rank(communicator_, [&] {
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
     });
     TrajectoryOfRanks made =
-        make_trajectory(communicator_, path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
+        make_trajectory(communicator_, path("trajectory.h5md"), topology, scene_.output.velocities,
+                        scene_.output.joint_forces, after);
     trajectory_ = std::move(made.writer);
     frames_way_ = made.way;
     on_first_rank(communicator_, [&] {
-        observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");
+        observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after,
+                                                           scene_.si ? "s" : "ps");
     });
 }
 
-std::int64_t RunFolder::records_before(std::int64_t n) const { return trajectory_ ? trajectory_->frames() - (step_ == n ? 1 : 0) : 0; }
+std::int64_t RunFolder::records_before(std::int64_t n) const {
+    return trajectory_ ? trajectory_->frames() - (step_ == n ? 1 : 0) : 0;
+}
 
 std::string RunFolder::way_back() const {
     std::string const checkpoint = newest_checkpoint();
@@ -165,17 +182,21 @@ void RunFolder::put(std::span<Frame const> parts) {
     with_frames([&] { trajectory_->put(parts); });
 }
 
-void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables) {
+void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces,
+                    std::vector<double> const& observables) {
     with_frames([&] { trajectory_->end(tip_forces); });
-    if (communicator_.rank() == 0) keeping_failure([&] { observables_->write(step_, time_, observables); });
+    if (communicator_.rank() == 0)
+        keeping_failure([&] { observables_->write(step_, time_, observables); });
 }
 
 void RunFolder::check() {
     on_disk([&] { throw_kept(); });
 }
 
-void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system, ChainSystem::OwnState const& own) {
-    with_frames([&] { trajectory_->flush(); });  // a restart finds every frame up to the checkpoint's step
+void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system,
+                                 ChainSystem::OwnState const& own) {
+    with_frames(
+        [&] { trajectory_->flush(); });  // a restart finds every frame up to the checkpoint's step
     on_disk([&] {
         throw_kept();
         observables_->flush();
@@ -187,9 +208,13 @@ void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const
         checkpoints_way_ = writer.way();
         for (auto const& [name, array] : own)
             if (checkpoints_way_.collective)
-                system.pass_own_array(array, [&, &of = name](std::vector<ArrayPart> const& parts) { writer.put(of, parts); });
+                system.pass_own_array(array, [&, &of = name](std::vector<ArrayPart> const& parts) {
+                    writer.put(of, parts);
+                });
             else
-                system.pass_array(array, [&, &of = name](ArrayPart const& part) { writer.put(of, std::span(&part, 1)); });
+                system.pass_array(array, [&, &of = name](ArrayPart const& part) {
+                    writer.put(of, std::span(&part, 1));
+                });
         writer.finish();
     });
 }
@@ -204,7 +229,8 @@ void RunFolder::finish(std::string const& summary, std::string const& timeline) 
         write_run_report(folder_);
         for (char const* const name : {"trajectory.h5md", "observables.csv"})
             if (std::error_code ignored; !fs::exists(path(name), ignored))
-                throw ComputationError("a file of the run was deleted while it ran (" + path(name) + "): run it again from the start");
+                throw ComputationError("a file of the run was deleted while it ran (" + path(name) +
+                                       "): run it again from the start");
     });
 }
 

@@ -26,7 +26,8 @@ namespace {
 struct Holder {
     std::string host;
     long process = 0;
-    std::string started;  // as the system counts it: the number of a process that has ended is given again
+    std::string
+        started;  // as the system counts it: the number of a process that has ended is given again
     std::string since;
 };
 
@@ -35,7 +36,8 @@ std::string this_host() {
     return ::gethostname(name, sizeof name - 1) == 0 && name[0] != '\0' ? name : "unknown";
 }
 
-/// Ticks from the host's start to the process's: the 22nd word of its status, the 20th behind the name in brackets. Empty: no such process.
+/// Ticks from the host's start to the process's: the 22nd word of its status, the 20th behind the
+/// name in brackets. Empty: no such process.
 std::string start_of(long process) {
     std::ifstream in(fmt::format("/proc/{}/stat", process));
     std::string text;
@@ -77,22 +79,32 @@ Holder holder_soon_in(int descriptor) {
 }
 
 bool is_alive(Holder const& holder) {
-    if (holder.process <= 0 || (::kill(static_cast<pid_t>(holder.process), 0) != 0 && errno == ESRCH)) return false;
+    if (holder.process <= 0 ||
+        (::kill(static_cast<pid_t>(holder.process), 0) != 0 && errno == ESRCH))
+        return false;
     std::string const started = start_of(holder.process);
     return started.empty() || started == holder.started;
 }
 
-[[noreturn]] void refuse_taken(Holder const& holder, std::string const& folder, std::string const& more = "") {
-    std::string const who =
-        holder.since.empty() ? "" : fmt::format(": process {} on host {}, since {}", holder.process, holder.host, holder.since);
-    throw InputError("another run is writing to this folder" + who, folder, "wait for its end, or name another with --output" + more);
+[[noreturn]] void refuse_taken(Holder const& holder, std::string const& folder,
+                               std::string const& more = "") {
+    std::string const who = holder.since.empty()
+                                ? ""
+                                : fmt::format(": process {} on host {}, since {}", holder.process,
+                                              holder.host, holder.since);
+    throw InputError("another run is writing to this folder" + who, folder,
+                     "wait for its end, or name another with --output" + more);
 }
 
 [[noreturn]] void refuse_file(std::string const& file, int error) {
     if (error == ENOSPC || error == EDQUOT || error == EIO)
-        throw ComputationError("cannot write the lock of the run's folder (" + file + "): " + std::generic_category().message(error));
-    if (error == ELOOP) throw InputError("the lock of the run's folder is a link", file, "remove it");
-    throw InputError("the output folder cannot be locked: " + std::generic_category().message(error), file, "name another with --output");
+        throw ComputationError("cannot write the lock of the run's folder (" + file +
+                               "): " + std::generic_category().message(error));
+    if (error == ELOOP)
+        throw InputError("the lock of the run's folder is a link", file, "remove it");
+    throw InputError(
+        "the output folder cannot be locked: " + std::generic_category().message(error), file,
+        "name another with --output");
 }
 
 /// By flock: 0, EWOULDBLOCK, or what says that the file system has none.
@@ -115,8 +127,8 @@ int lock_patiently(int descriptor) {
 
 bool is_of_name(int descriptor, std::string const& file) {
     struct stat open{}, named{};
-    return ::fstat(descriptor, &open) == 0 && ::lstat(file.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
-           open.st_ino == named.st_ino;
+    return ::fstat(descriptor, &open) == 0 && ::lstat(file.c_str(), &named) == 0 &&
+           open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 /// A file, never a link, a pipe or a device; -1 where it is not there and not to be made.
@@ -131,7 +143,8 @@ int open_lock(std::string const& file, int flags) {
 
 void write_holder(int descriptor, std::string const& file) {
     std::string const text = text_of_this();
-    if (::ftruncate(descriptor, 0) != 0 || ::pwrite(descriptor, text.data(), text.size(), 0) != std::ssize(text)) {
+    if (::ftruncate(descriptor, 0) != 0 ||
+        ::pwrite(descriptor, text.data(), text.size(), 0) != std::ssize(text)) {
         int const error = errno;
         ::unlink(file.c_str());
         ::close(descriptor);
@@ -139,7 +152,8 @@ void write_holder(int descriptor, std::string const& file) {
     }
 }
 
-/// Where there is no flock: a file that another process made stands for its lock, unless that has ended.
+/// Where there is no flock: a file that another process made stands for its lock, unless that has
+/// ended.
 void refuse_or_remove(int descriptor, std::string const& file, std::string const& folder) {
     Holder const holder = holder_soon_in(descriptor);
     bool const dead = holder.host == this_host() && !is_alive(holder);
@@ -170,12 +184,14 @@ RunLock::RunLock(std::string const& folder) : file_(folder + "/" + run_lock_name
             refuse_or_remove(descriptor_, file_, folder);
             continue;
         }
-        if (!is_of_name(descriptor_, file_)) continue;  // removed by its last holder between the opening and the lock
+        if (!is_of_name(descriptor_, file_))
+            continue;  // removed by its last holder between the opening and the lock
         closing.keeps = true;
         write_holder(descriptor_, file_);
         return;
     }
-    throw InputError("the output folder cannot be locked: others take it and leave it all the time", folder, "name another with --output");
+    throw InputError("the output folder cannot be locked: others take it and leave it all the time",
+                     folder, "name another with --output");
 }
 
 RunLock::~RunLock() {
@@ -190,7 +206,8 @@ void RunLock::refuse_if_taken(std::string const& folder) {
     int const error = try_lock(descriptor, LOCK_SH);
     Holder const holder = error == 0 ? Holder{} : holder_soon_in(descriptor);
     ::close(descriptor);
-    bool const by_file = error != 0 && error != EWOULDBLOCK && (holder.host != this_host() || is_alive(holder));
+    bool const by_file =
+        error != 0 && error != EWOULDBLOCK && (holder.host != this_host() || is_alive(holder));
     if (error == EWOULDBLOCK || by_file) refuse_taken(holder, folder);
 }
 

@@ -12,20 +12,20 @@
 
 #include "cuda/device/gpu.hpp"
 #include "error.hpp"
-#include "run/branch.hpp"
 #include "integrate/checkpoint_values.hpp"
-#include "run/force_summary.hpp"
-#include "run/pace.hpp"
-#include "run/run_folder.hpp"
-#include "observe/run_verdict.hpp"
-#include "run/rank_exchange.hpp"
-#include "observe/sites.hpp"
-#include "start/start_report.hpp"
-#include "start/start_velocities.hpp"
 #include "integrate/step_failure.hpp"
-#include "run/step_messages.hpp"
 #include "integrate/stepper.hpp"
 #include "mpi/first_rank.hpp"
+#include "observe/run_verdict.hpp"
+#include "observe/sites.hpp"
+#include "run/branch.hpp"
+#include "run/force_summary.hpp"
+#include "run/pace.hpp"
+#include "run/rank_exchange.hpp"
+#include "run/run_folder.hpp"
+#include "run/step_messages.hpp"
+#include "start/start_report.hpp"
+#include "start/start_velocities.hpp"
 
 namespace catena {
 namespace {
@@ -35,19 +35,22 @@ using nlohmann::json;
 /// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
 constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
-/// The constraint error is looked at with every output and checkpoint, at the last step, and this often; and after 1, 2, 4, ... steps,
-/// while what started at rest gains speed.
+/// The constraint error is looked at with every output and checkpoint, at the last step, and this
+/// often; and after 1, 2, 4, ... steps, while what started at rest gains speed.
 constexpr std::int64_t check_every = 100;
 
 json as_json(Traffic const& sum, std::int64_t steps) {
     json a_step;
-    sum.for_each([&](char const* name, std::int64_t count) { a_step[name] = static_cast<double>(count) / static_cast<double>(steps); });
+    sum.for_each([&](char const* name, std::int64_t count) {
+        a_step[name] = static_cast<double>(count) / static_cast<double>(steps);
+    });
     return a_step;
 }
 
 class Run {
   public:
-    Run(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::optional<StartRelaxation> relaxation)
+    Run(Scene const& scene, Communicator const& communicator, RunOptions const& options,
+        std::optional<StartRelaxation> relaxation)
         : scene_(scene),
           communicator_(communicator),
           options_(options),
@@ -57,12 +60,16 @@ class Run {
           implicit_step_(is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0),
           from_(options_.restart.empty() ? std::nullopt : std::optional(read_start())),
           shares_(shares()),
-          sites_of_scene_(root_ ? std::async([this] { return Sites(scene_); }) : std::future<Sites>()),
+          sites_of_scene_(root_ ? std::async([this] { return Sites(scene_); })
+                                : std::future<Sites>()),
           system_(scene_, axes_, communicator, implicit_step_, shares_) {
         Integrator const integrator = scene_.dynamics.integrator;
         if (scene_.solver.refine > 0 && !is_refined(integrator))
-            throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
-                             "leave it out, or take rk4, dormand-prince or velocity-verlet where the chains allow it");
+            throw InputError("solutions under integrator " + std::string(name_of(integrator)) +
+                                 " are not refined",
+                             "solver.refine",
+                             "leave it out, or take rk4, dormand-prince or velocity-verlet where "
+                             "the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         if (root_) sites_ = sites_of_scene_.get();
         notes_ = scene_.notes;
@@ -76,10 +83,12 @@ class Run {
         std::int64_t const first = options_.restart.empty() ? 0 : restore();
         first_ = first;
         if (last_ < first)
-            throw InputError("the checkpoint stands at step " + std::to_string(first) + ", the run would end before, at step " +
-                                 std::to_string(last_) + (options_.steps ? " (--steps)" : " (dynamics.steps)"),
+            throw InputError("the checkpoint stands at step " + std::to_string(first) +
+                                 ", the run would end before, at step " + std::to_string(last_) +
+                                 (options_.steps ? " (--steps)" : " (dynamics.steps)"),
                              options_.restart,
-                             "ask for more than " + std::to_string(first) + " with --steps, which counts from the scene's start");
+                             "ask for more than " + std::to_string(first) +
+                                 " with --steps, which counts from the scene's start");
         note_outputs(first);
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
@@ -87,33 +96,41 @@ class Run {
         StopAgreement agreement(communicator_, [this] { return wish(); }, first);
         saved_at_ = seconds_now();
         for (std::int64_t n = first;; ++n) {
-            if (frame_.valid() && frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) end_frame();  // it may have failed
+            if (frame_.valid() &&
+                frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+                end_frame();  // it may have failed
             bool const writes = is_frame(n);
-            bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
+            bool const saves = scene_.output.checkpoint_every > 0 &&
+                               n % scene_.output.checkpoint_every == 0 && n > first;
             bool const looks =
-                writes || saves || n % check_every == 0 || (n < check_every && std::has_single_bit(static_cast<std::uint64_t>(n)));
+                writes || saves || n % check_every == 0 ||
+                (n < check_every && std::has_single_bit(static_cast<std::uint64_t>(n)));
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
             bool const renews = (saves || n == last_) && system_.openmm();
             if (renews) system_.openmm()->renew_ghosts();  // as after a restart from here
             Traffic const before = chains_traffic();
             bool const mended = !prepare(n, timeline);
             Traffic of_step = chains_traffic() - before;
-            if (n == first) open(n);  // nothing is written or replaced before forces have been found
+            if (n == first)
+                open(n);  // nothing is written or replaced before forces have been found
             int const agreed = n == last_ ? 0 : agreement.reason_at(n);
             bool const saves_by_time = agreed == save_wish;
             stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
-            // What is saved has been looked at: steps that left joints open cannot be taken again after a restart.
+            // What is saved has been looked at: steps that left joints open cannot be taken again
+            // after a restart.
             double const error = looks || saves_by_time || ends || n == first ? look(n) : 0;
             // Another look is the clock's: what it found counts where the run is worthless.
-            if (looks || error > scene_.dynamics.constraint_tolerance) verdict_.note_error(n, error);
+            if (looks || error > scene_.dynamics.constraint_tolerance)
+                verdict_.note_error(n, error);
             if (looks) adapt(n, error);
             if (writes) output(n, error);
             if (!ends) at_start_.reset();
             if (saves || saves_by_time || ends) checkpoint(n);
             if (ends) {
                 if (!writes && !is_kept(n))
-                    output(n, error);  // after the checkpoint: a restart from there is the undisturbed run, without this frame
+                    output(n, error);  // after the checkpoint: a restart from there is the
+                                       // undisturbed run, without this frame
                 end_frame();
                 reached_ = n;
                 verdict_.note_end(n, error);
@@ -123,7 +140,8 @@ class Run {
             at_step(n, true, [&] { stepper_->step(n, timeline); });
             of_step += chains_traffic() - prepared;
             stepper_->note_error(n);
-            if (n > first && !renews && !mended) count_messages(of_step);  // others may evaluate once more
+            if (n > first && !renews && !mended)
+                count_messages(of_step);  // others may evaluate once more
             if (n == first) {
                 system_.wait();
                 first_step_after_ = seconds_now() - options_.begun;
@@ -142,25 +160,34 @@ class Run {
         if (!uses_gpu(system_.backend()) || communicator_.size() == 1) return;
         int const ranks = cuda::most_ranks_of_a_gpu(communicator_);
         if (ranks > 1)
-            notes_.push_back("warning: " + std::to_string(ranks) +
-                             " ranks share a GPU, where each waits for the others: start one rank a GPU");
+            notes_.push_back(
+                "warning: " + std::to_string(ranks) +
+                " ranks share a GPU, where each waits for the others: start one rank a GPU");
     }
     void note_outputs(std::int64_t first) {
         std::int64_t const every = scene_.output.every;
         if (last_ > first && every > last_ - first && (last_ - 1) / every == first / every)
-            notes_.push_back("output.every = " + std::to_string(every) + " exceeds the " + std::to_string(last_ - first) +
+            notes_.push_back("output.every = " + std::to_string(every) + " exceeds the " +
+                             std::to_string(last_ - first) +
                              " steps of this run: no frame lies between its first and last states");
         if (scene_.output.coordinates && root_ && sites_.topology().bodies.empty())
-            notes_.push_back("output.coordinates: no chain has rigid bodies, so there are no coordinates to write");
+            notes_.push_back(
+                "output.coordinates: no chain has rigid bodies, so there are no coordinates to "
+                "write");
     }
-    double time(std::int64_t n) const { return time_origin_ + static_cast<double>(n) * scene_.dynamics.step; }
+    double time(std::int64_t n) const {
+        return time_origin_ + static_cast<double>(n) * scene_.dynamics.step;
+    }
     /// Frames that hang on the step alone, not on where a run ends; a branch begins with one.
-    bool is_frame(std::int64_t n) const { return n % scene_.output.every == 0 || (options_.branch && n == first_); }
+    bool is_frame(std::int64_t n) const {
+        return n % scene_.output.every == 0 || (options_.branch && n == first_);
+    }
 
     /// What ranks agree on at a step: to save, or by which signal, a number above it, to stop.
     static constexpr int save_wish = 1;
     int wish() const {
-        if (int const stop = options_.stop ? options_.stop() : 0; stop != 0) return save_wish + stop;
+        if (int const stop = options_.stop ? options_.stop() : 0; stop != 0)
+            return save_wish + stop;
         double const minutes = scene_.output.checkpoint_minutes;
         return root_ && minutes > 0 && seconds_now() - saved_at_ >= 60 * minutes ? save_wish : 0;
     }
@@ -180,19 +207,25 @@ class Run {
         folder_->open(sites_.topology(), observables_->columns(), go_on());
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
-        topology_is_due_ = is_frame(n) && may_write_beside() && options_.topology_beside.value_or(uses_gpu(system_.backend()));
+        topology_is_due_ = is_frame(n) && may_write_beside() &&
+                           options_.topology_beside.value_or(uses_gpu(system_.backend()));
         if (topology_is_due_) return;
         at_start_->bodies = own_bodies();
         write_topology(*at_start_->bodies);
         folder_->check();
     }
-    /// The frame of the checkpoint's step is written anew, or it stays as that run's, or it goes: a run that ended there wrote it, which
-    /// the undisturbed one would not have done.
-    GoOn go_on() const { return {is_frame(first_) || !was_frame_ ? first_ - 1 : first_, records_before_}; }
-    bool is_kept(std::int64_t n) const { return n == first_ && !folder_->wants_topology() && go_on().after_step == n; }
+    /// The frame of the checkpoint's step is written anew, or it stays as that run's, or it goes: a
+    /// run that ended there wrote it, which the undisturbed one would not have done.
+    Continuation go_on() const {
+        return {is_frame(first_) || !was_frame_ ? first_ - 1 : first_, records_before_};
+    }
+    bool is_kept(std::int64_t n) const {
+        return n == first_ && !folder_->wants_topology() && go_on().after_step == n;
+    }
     void write_topology(ChainSystem::OwnBodies const& at_start) {
         system_.pass_bodies(at_start, [&](ChainSystem::Bodies const& bodies) {
-            folder_->put_topology(sites_.part(bodies, false, system_.executor()), system_.executor());
+            folder_->put_topology(sites_.part(bodies, false, system_.executor()),
+                                  system_.executor());
         });
         folder_->end_topology();
     }
@@ -203,11 +236,13 @@ class Run {
     };
     /// `anyway`: forces are found, whether somebody asks for what comes of them or not.
     Observed observed(bool anyway = false) {
-        stepper_->observe({.joint_forces = scene_.output.joint_forces, .energies = anyway || has_energies(scene_)});
+        stepper_->observe({.joint_forces = scene_.output.joint_forces,
+                           .energies = anyway || has_energies(scene_)});
         return {has_energies(scene_) ? system_.potential_energy() : std::vector<EnergyTerm>()};
     }
     ChainSystem::OwnBodies own_bodies() {
-        return system_.own_bodies(scene_.output.joint_forces, scene_.output.coordinates && axes_ == Axes::joint);
+        return system_.own_bodies(scene_.output.joint_forces,
+                                  scene_.output.coordinates && axes_ == Axes::joint);
     }
 
     struct PendingFrame {
@@ -216,15 +251,18 @@ class Run {
         Observed now;
         std::vector<Vector<double, 6>> at_tips;
     };
-    bool may_write_beside() const { return communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside; }
-    /// On one rank, of many bodies, the frame, and with the first one a topology that is due, is written by a thread of its own while steps
-    /// go on, until something else is to be written.
+    bool may_write_beside() const {
+        return communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside;
+    }
+    /// On one rank, of many bodies, the frame, and with the first one a topology that is due, is
+    /// written by a thread of its own while steps go on, until something else is to be written.
     void output(std::int64_t n, double error) {
         end_frame();
         pending_ = {n, error, at_start_ ? std::move(*at_start_) : observed(), {}};
         if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
         if (scene_.output.joint_forces)
-            for (TipForce const& tip : system_.tip_forces()) pending_->at_tips.push_back(tip.wrench);
+            for (TipForce const& tip : system_.tip_forces())
+                pending_->at_tips.push_back(tip.wrench);
         if (may_write_beside() && write_beside()) return;
         write(*pending_);
         pending_.reset();
@@ -254,7 +292,8 @@ class Run {
         observables_->begin();
         bool const together = folder_->frames_way().collective;
         system_.pass_bodies(*frame.now.bodies, [&](ChainSystem::Bodies const& bodies) {
-            Frame const part = sites_.part(bodies, scene_.output.velocities && !together, system_.executor());
+            Frame const part =
+                sites_.part(bodies, scene_.output.velocities && !together, system_.executor());
             if (!together) folder_->put(std::span(&part, 1));
             observables_->add(bodies.motion, part.positions);
             for (Vec3 const& x : bodies.motion.position) verdict_.note_coordinate(norm(x));
@@ -278,10 +317,11 @@ class Run {
     void put_own(ChainSystem::OwnBodies const& own) {
         system_.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
             std::vector<Frame> parts(runs.size());
-            system_.executor().for_each_of_many_or_few(std::ssize(runs), [&](std::int64_t i, Executor const& within) {
-                auto const r = static_cast<std::size_t>(i);
-                parts[r] = sites_.part(runs[r], scene_.output.velocities, within);
-            });
+            system_.executor().for_each_of_many_or_few(
+                std::ssize(runs), [&](std::int64_t i, Executor const& within) {
+                    auto const r = static_cast<std::size_t>(i);
+                    parts[r] = sites_.part(runs[r], scene_.output.velocities, within);
+                });
             folder_->put(parts);
         });
     }
@@ -295,8 +335,8 @@ class Run {
         return error;
     }
 
-    /// Another sweep where one is due. At steps that the scene chooses alone, not where a run happens to end: a restart is to be the
-    /// undisturbed run.
+    /// Another sweep where one is due. At steps that the scene chooses alone, not where a run
+    /// happens to end: a restart is to be the undisturbed run.
     void adapt(std::int64_t n, double error) {
         if (n == first_ && !options_.restart.empty()) return;  // the run before did
         if (stepper_->adapt(watch_, error, scene_.dynamics.constraint_tolerance))
@@ -310,8 +350,9 @@ class Run {
         ++counted_steps_;
         counted_ += of_step;
         for (std::size_t i = 0; i < messages_.size(); ++i)
-            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i], communicator_.gather_way()),
-                                              stepper_->parts(), stepper_->solved());
+            predicted_ += messages_[i].a_step(
+                stepper_->sweeps(), cut_of(*system_.groups()[i], communicator_.gather_way()),
+                stepper_->parts(), stepper_->solved());
     }
 
     /// What fails within a step says at which; `has_started`: not at the scene's start.
@@ -326,8 +367,9 @@ class Run {
         }
     }
 
-    /// Forces that fail where a step has torn joints open are those of a step that is taken again. Where one rank alone knows of the
-    /// failure, the run ends. Returns whether there was nothing to mend.
+    /// Forces that fail where a step has torn joints open are those of a step that is taken again.
+    /// Where one rank alone knows of the failure, the run ends. Returns whether there was nothing
+    /// to mend.
     bool prepare(std::int64_t n, StepTimeline* timeline) {
         try {
             at_step(n, n > 0, [&] { stepper_->prepare(timeline); });
@@ -365,14 +407,17 @@ class Run {
         saved_at_ = seconds_now();
     }
 
-    static constexpr char const *number_of_records = "records_before", *whether_frame = "frame_at_step", *step_of_branch = "branched_at",
-                                *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
+    static constexpr char const *number_of_records = "records_before",
+                                *whether_frame = "frame_at_step", *step_of_branch = "branched_at",
+                                *note_of_platform = "openmm_platform",
+                                *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
     }
 
-    /// The checkpoint to go on from, on every rank but for its notes and arrays of bodies. Collective.
+    /// The checkpoint to go on from, on every rank but for its notes and arrays of bodies.
+    /// Collective.
     Checkpoint read_start() {
         Checkpoint c;
         on_first_rank(communicator_, [&] {
@@ -382,7 +427,8 @@ class Run {
             else
                 require_own(c, scene_, options_.restart);
             if (c.notes["tree_table"] != std::to_string(dca::tree_table_version))
-                throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " +
+                throw InputError("the checkpoint was made with tree table " +
+                                     c.notes["tree_table"] + ", this version has " +
                                      std::to_string(dca::tree_table_version),
                                  options_.restart, "go on with the version that made it");
         });
@@ -390,40 +436,50 @@ class Run {
         return c;
     }
 
-    /// Those of the checkpoint, where as many ranks made it: a restart is to be the undisturbed run, with OpenMM too. Collective.
+    /// Those of the checkpoint, where as many ranks made it: a restart is to be the undisturbed
+    /// run, with OpenMM too. Collective.
     dca::Shares shares() {
         if (!scene_.solver.balance || communicator_.size() == 1) return {};
-        std::vector<double> const stored = from_ ? from_->arrays[array_of_shares] : std::vector<double>();
+        std::vector<double> const stored =
+            from_ ? from_->arrays[array_of_shares] : std::vector<double>();
         shares_are_stored_ = std::ssize(stored) == communicator_.size();
         auto const is_share = [](double share) { return share >= 1 && share <= 1e6; };
-        shares_are_stored_ = shares_are_stored_ && std::all_of(stored.begin(), stored.end(), is_share);
+        shares_are_stored_ =
+            shares_are_stored_ && std::all_of(stored.begin(), stored.end(), is_share);
         if (shares_are_stored_) return {stored.begin(), stored.end()};
-        return agree_on_shares(communicator_, options_.own_costs(scene_, axes_, communicator_, implicit_step_));
+        return agree_on_shares(communicator_,
+                               options_.own_costs(scene_, axes_, communicator_, implicit_step_));
     }
 
     std::int64_t restore() {
         Checkpoint const c = *std::exchange(from_, std::nullopt);
         auto const made_on = c.notes.find(note_of_platform);
         if (system_.openmm() && made_on != c.notes.end() && made_on->second != platform())
-            notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second + ", this run goes on on " + platform() +
+            notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second +
+                             ", this run goes on on " + platform() +
                              ", whose forces round otherwise (forces.openmm.platform chooses)");
         system_.set_state(c.arrays);
         if (options_.branch) return branch(c);
         time_origin_ = number_in(c, array_of_origin, 0);
-        if (auto const found = c.integers.find(number_of_records); found != c.integers.end()) records_before_ = found->second;
-        if (auto const found = c.integers.find(whether_frame); found != c.integers.end()) was_frame_ = found->second != 0;
+        if (auto const found = c.integers.find(number_of_records); found != c.integers.end())
+            records_before_ = found->second;
+        if (auto const found = c.integers.find(whether_frame); found != c.integers.end())
+            was_frame_ = found->second != 0;
         if (c.integers.contains(step_of_branch)) count_from_branch(step_of(c, step_of_branch, 0));
         stepper_->restore(c);
         if (std::string const note = verdict_.restore(c); !note.empty()) notes_.push_back(note);
-        if (std::vector<double> const watch = few_numbers_of(c, array_of_watch, 2); !watch.empty()) watch_.set_state(watch);
+        if (std::vector<double> const watch = few_numbers_of(c, array_of_watch, 2); !watch.empty())
+            watch_.set_state(watch);
         return c.step;
     }
 
-    /// Time goes on where it was, whatever the step. Without `steps` there are as many more as the scene says.
+    /// Time goes on where it was, whatever the step. Without `steps` there are as many more as the
+    /// scene says.
     std::int64_t branch(Checkpoint c) {
         double const h = scene_.dynamics.step;
         time_origin_ = number_in(c, array_of_origin, 0);
-        if (number_in(c, array_of_step, h) != h) time_origin_ = c.time - static_cast<double>(c.step) * h;
+        if (number_in(c, array_of_step, h) != h)
+            time_origin_ = c.time - static_cast<double>(c.step) * h;
         c.arrays[array_of_origin] = {time_origin_};
         stepper_->branch(c);
         verdict_.branch();
@@ -432,7 +488,8 @@ class Run {
         return c.step;
     }
 
-    /// Without --steps a branch, and a restart of it, ends as many steps after its beginning as the scene says.
+    /// Without --steps a branch, and a restart of it, ends as many steps after its beginning as the
+    /// scene says.
     void count_from_branch(std::int64_t step) {
         branched_at_ = step;
         if (!options_.steps) last_ = step + scene_.dynamics.steps;
@@ -443,11 +500,13 @@ class Run {
         bool const valid = communicator_.sum(all_passed(found) ? 0 : 1) == 0;
         for (RunCheck const& verdict : found)
             if (verdict.passed && !verdict.advice.empty()) notes_.push_back(verdict.advice);
-        if (std::string const note = stepper_->note_of_sweeps(); !note.empty()) notes_.push_back(note);
+        if (std::string const note = stepper_->note_of_sweeps(); !note.empty())
+            notes_.push_back(note);
         json summary = summarise(first, valid, summary_of_forces(system_, reached_ - first));
         summary["verdict"] = as_json(found);
         json const timeline = gather_timelines(communicator_, timelines_);
-        folder_->finish(summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n", timeline.dump() + "\n");
+        folder_->finish(summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n",
+                        timeline.dump() + "\n");
         return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
     }
 
@@ -468,18 +527,23 @@ class Run {
         if (json const inner = stepper_->inner_steps(); !inner.is_null()) s["inner_steps"] = inner;
         if (options_.branch) s["branch"] = json_of_branch(options_.restart, first, changes_);
         if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
-        s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
+        s["speed"] = {{"seconds", seconds_},
+                      {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
         if (first_step_after_ > 0) s["speed"]["seconds_to_first_step"] = first_step_after_;
-        if (double const rate = pace_.steps_per_second(); rate > 0) s["speed"]["steps_per_second_of_second_half"] = rate;
-        if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
-        s["parallel"] = {{"ranks", communicator_.size()},
-                         {"threads", system_.executor().threads()},
-                         {"message_passing", message_passing_library()},
-                         {"gathers", communicator_.gather_way().text()},
-                         {"frames_written", folder_->frames_way().text},
-                         {"frames_beside_steps", frames_beside_},
-                         {"checkpoints_written", folder_->checkpoints_way().text},
-                         {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
+        if (double const rate = pace_.steps_per_second(); rate > 0)
+            s["speed"]["steps_per_second_of_second_half"] = rate;
+        if (!scene_.si)
+            s["speed"]["ns_per_day"] =
+                seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
+        s["parallel"] = {
+            {"ranks", communicator_.size()},
+            {"threads", system_.executor().threads()},
+            {"message_passing", message_passing_library()},
+            {"gathers", communicator_.gather_way().text()},
+            {"frames_written", folder_->frames_way().text},
+            {"frames_beside_steps", frames_beside_},
+            {"checkpoints_written", folder_->checkpoints_way().text},
+            {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         if (!shares_.empty()) s["parallel"].update(json_of_shares());
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
         if (counted_steps_ > 0)
@@ -499,21 +563,27 @@ class Run {
                                {"depth", r.depth},
                                {"direct_exchange", r.direct_exchange}});
         }
-        s["solver"] = {{"backend", name_of(system_.backend())}, {"tree_table", dca::tree_table_version}, {"groups", solvers}};
+        s["solver"] = {{"backend", name_of(system_.backend())},
+                       {"tree_table", dca::tree_table_version},
+                       {"groups", solvers}};
         s["solver"].update(stepper_->describe());
-        bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(), [](auto const& g) { return g->has_tips(); });
+        bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(),
+                                      [](auto const& g) { return g->has_tips(); });
         if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
-            s["constraints"] = {{"largest_error", verdict_.largest_error()}, {"tolerance", scene_.dynamics.constraint_tolerance}};
+            s["constraints"] = {{"largest_error", verdict_.largest_error()},
+                                {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (system_.openmm()) s["forces"] = forces;
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;
         if (options_.restart.empty()) s["start"] = json_of(start_);
-        for (std::size_t i = 0; i < last_row_.size(); ++i) s["last_observables"][observables_->columns()[i]] = last_row_[i];
-        for (char const* name :
-             {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
+        for (std::size_t i = 0; i < last_row_.size(); ++i)
+            s["last_observables"][observables_->columns()[i]] = last_row_[i];
+        for (char const* name : {"trajectory.h5md", "topology.pdb", "observables.csv",
+                                 "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
             s["files"][name] = folder_->path(name);
         for (char const* name : {"topology.cif", "topology.psf"})
-            if (std::error_code ignored; root_ && std::filesystem::exists(folder_->path(name), ignored))
+            if (std::error_code ignored;
+                root_ && std::filesystem::exists(folder_->path(name), ignored))
                 s["files"][name] = folder_->path(name);
         return s;
     }
@@ -524,11 +594,14 @@ class Run {
         json shares = json::array(), bodies = json::array();
         for (std::size_t r = 0; r < shares_.size(); ++r) {
             std::int64_t own = 0;
-            for (auto const& group : system_.groups()) own += group->first_of_rank()[r + 1] - group->first_of_rank()[r];
+            for (auto const& group : system_.groups())
+                own += group->first_of_rank()[r + 1] - group->first_of_rank()[r];
             shares.push_back(static_cast<double>(shares_[r]) / sum);
             bodies.push_back(own);
         }
-        return {{"shares", shares}, {"shares_from", shares_are_stored_ ? "checkpoint" : "measurement"}, {"bodies_of_rank", bodies}};
+        return {{"shares", shares},
+                {"shares_from", shares_are_stored_ ? "checkpoint" : "measurement"},
+                {"bodies_of_rank", bodies}};
     }
 
     Scene const& scene_;
@@ -542,8 +615,9 @@ class Run {
     std::vector<scene::ChangedValue> changes_;  // of a branch, on rank 0
     std::optional<Checkpoint> from_;            // until it is restored
     bool shares_are_stored_ = false;
-    dca::Shares shares_;                 // empty: equal
-    std::future<Sites> sites_of_scene_;  // found while the system is made; after ranks have measured their speeds
+    dca::Shares shares_;  // empty: equal
+    std::future<Sites>
+        sites_of_scene_;  // found while the system is made; after ranks have measured their speeds
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
     std::vector<StepMessages> messages_;  // one a group
@@ -565,25 +639,33 @@ class Run {
     std::optional<std::int64_t> branched_at_;  // of a branch, or a restart of one
     int stopped_by_ = 0;
     std::map<std::string, std::string> values_of_scene_;  // for checkpoints, on rank 0
-    double time_origin_ = 0, saved_at_ = 0;               // of time: at step 0; when the last checkpoint was written
-    std::int64_t records_before_ = 0;                     // frames that the run before left before the checkpoint's step, at least
-    bool was_frame_ = true;                               // that step was one of its frames, not only its last state
+    double time_origin_ = 0,
+           saved_at_ = 0;  // of time: at step 0; when the last checkpoint was written
+    std::int64_t records_before_ =
+        0;  // frames that the run before left before the checkpoint's step, at least
+    bool was_frame_ = true;  // that step was one of its frames, not only its last state
     std::optional<PendingFrame> pending_;
     std::future<void> frame_;  // last: it ends before what it uses
 };
 
 }  // namespace
 
-json run_simulation(Scene const& scene, Communicator const& communicator, RunOptions const& options) {
+json run_simulation(Scene const& scene, Communicator const& communicator,
+                    RunOptions const& options) {
     if (!scene.dynamics.given)
-        throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
+        throw InputError("the scene has no dynamics section", scene.file,
+                         "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
     if (!options.steps && scene.dynamics.steps == 0 && !scene.dynamics.has_steps)
-        throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
+        throw InputError("no steps to run", scene.file + ": dynamics.steps",
+                         "say how many there or with --steps");
     std::optional<RelaxedScene> const relaxed =
-        options.restart.empty() ? relaxed_where_asked(scene, communicator, relaxation_says(options.quiet)) : std::nullopt;
+        options.restart.empty()
+            ? relaxed_where_asked(scene, communicator, relaxation_says(options.quiet))
+            : std::nullopt;
     Scene const& start = relaxed ? relaxed->scene : scene;
     if (options.restart.empty() && !relaxed) refuse_coinciding(scene, communicator);
-    std::optional<StartRelaxation> const relaxation = relaxed ? std::optional(relaxed->relaxation) : std::nullopt;
+    std::optional<StartRelaxation> const relaxation =
+        relaxed ? std::optional(relaxed->relaxation) : std::nullopt;
     // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
     if (uses_joint_coordinates(scene.dynamics.integrator)) {
         Scene const with_velocities = with_start_velocities(start, communicator);

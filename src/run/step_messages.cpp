@@ -20,24 +20,40 @@ class Sum {
         traffic_ += one * times;
     }
     /// As exchange_from_inboard: the last body goes to the rank after.
-    void from_inboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.outboard); }
-    void from_outboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.inboard); }
+    void from_inboard(std::int64_t times, std::int64_t numbers) {
+        exchanges(times, numbers, cut_.outboard);
+    }
+    void from_outboard(std::int64_t times, std::int64_t numbers) {
+        exchanges(times, numbers, cut_.inboard);
+    }
     /// As RingEnds::take.
     void from_ring_ends(std::int64_t times, std::int64_t numbers) {
         traffic_.exchanges += times * cut_.ring_ends;
         traffic_.sent_bytes += times * bytes(cut_.ring_ends * numbers);
     }
     /// Sweeps of the tree with K directions a handle (segment.hpp, articulated.hpp).
-    void matrix_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) { gathers(times, of_matrices(k, articulated)); }
-    void bias_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) { gathers(times, of_biases(k, articulated)); }
+    void matrix_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) {
+        gathers(times, of_matrices(k, articulated));
+    }
+    void bias_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) {
+        gathers(times, of_biases(k, articulated));
+    }
     /// Both at once.
-    void evaluations(std::int64_t times, std::int64_t k) { gathers(times, of_matrices(k, false) + of_biases(k, false)); }
+    void evaluations(std::int64_t times, std::int64_t k) {
+        gathers(times, of_matrices(k, false) + of_biases(k, false));
+    }
     Traffic const& traffic() const { return traffic_; }
 
   private:
-    static std::int64_t of_matrices(std::int64_t k, bool articulated) { return articulated ? 3 * k * k + k * (k + 1) / 2 : 2 * k * k + k; }
-    static std::int64_t of_biases(std::int64_t k, bool articulated) { return (articulated ? 3 : 2) * k; }
-    static std::int64_t bytes(std::int64_t numbers) { return numbers * static_cast<std::int64_t>(sizeof(double)); }
+    static std::int64_t of_matrices(std::int64_t k, bool articulated) {
+        return articulated ? 3 * k * k + k * (k + 1) / 2 : 2 * k * k + k;
+    }
+    static std::int64_t of_biases(std::int64_t k, bool articulated) {
+        return (articulated ? 3 : 2) * k;
+    }
+    static std::int64_t bytes(std::int64_t numbers) {
+        return numbers * static_cast<std::int64_t>(sizeof(double));
+    }
     void exchanges(std::int64_t times, std::int64_t numbers, bool sends) {
         if (!cut_.inboard && !cut_.outboard) return;
         traffic_.exchanges += times;
@@ -49,14 +65,17 @@ class Sum {
 
 /// ChainSolver::at_once() of the group's solver.
 bool solves_at_once(ChainGroup const& group) {
-    return group.handles == Handles::projected && group.directions < 6 && group.partition.trees.front().run_length > 1;
+    return group.handles == Handles::projected && group.directions < 6 &&
+           group.partition.trees.front().run_length > 1;
 }
 
 }  // namespace
 
 Cut cut_of(ChainGroup const& group, GatherWay const& way) {
-    auto const shown = std::count_if(group.rings.begin(), group.rings.end(), [](LocalRing const& ring) { return !ring.is_whole(); });
-    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0, group.neighbour_outboard >= 0, shown, way};
+    auto const shown = std::count_if(group.rings.begin(), group.rings.end(),
+                                     [](LocalRing const& ring) { return !ring.is_whole(); });
+    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0,
+            group.neighbour_outboard >= 0, shown, way};
 }
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
@@ -78,13 +97,16 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     springs_ = loads.springs;
 }
 
-Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts, SweepsAStep const& solved) const {
+Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts,
+                             SweepsAStep const& solved) const {
     return absolute_ ? absolute(sweeps, parts, cut) : joint(sweeps, cut, solved);
 }
 
-/// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its matrices; a projection beside each.
+/// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its
+/// matrices; a projection beside each.
 Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
-    std::int64_t const drifts = (is_langevin(integrator_) ? 2 : 1) * parts, closings = drifts * sweeps;
+    std::int64_t const drifts = (is_langevin(integrator_) ? 2 : 1) * parts,
+                       closings = drifts * sweeps;
     Sum sum(cut);
     sum.matrix_sweeps(drifts, directions_);
     sum.bias_sweeps(drifts + closings, directions_);
@@ -106,10 +128,12 @@ Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
     return sum.traffic();
 }
 
-/// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without loads.
+/// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without
+/// loads.
 Traffic StepMessages::joint(int corrections, Cut const& cut, SweepsAStep const& solved) const {
     auto const [matrices, biases, closings] = solved;
-    std::int64_t const more = tips_ ? closings * (corrections + 1) : 0, motions = biases + more, refinements = matrices * refinements_;
+    std::int64_t const more = tips_ ? closings * (corrections + 1) : 0, motions = biases + more,
+                       refinements = matrices * refinements_;
     std::int64_t const at_once = at_once_ ? matrices : 0;
     Sum sum(cut);
     sum.gathers(motions, 13);

@@ -1,4 +1,5 @@
-// What a step costs in messages, told from the partition alone: the sizes that the communicator then counts. OpenMM's are not among them.
+// What a step costs in messages, told from the partition alone: the sizes that the communicator
+// then counts. OpenMM's are not among them.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -30,7 +31,8 @@ class StepMessages {
     Integrator integrator_;
     SweepsAStep sweeps_;
     std::int64_t directions_;
-    bool articulated_, absolute_, beads_, implicit_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_, at_once_;
+    bool articulated_, absolute_, beads_, implicit_, linked_, joint_loads_, springs_,
+        moving_meeting_, tips_, fixman_, at_once_;
     std::int64_t refinements_;
 };
 

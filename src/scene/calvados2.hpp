@@ -1,5 +1,6 @@
-// The CALVADOS 2 model of proteins, one bead a residue: Tesei & Lindorff-Larsen, Open Research Europe 2:94 (2023).
-// Parameters are those of inputs/calvados2_parameters.csv, embedded when the build is configured. Needs no OpenMM.
+// The CALVADOS 2 model of proteins, one bead a residue: Tesei & Lindorff-Larsen, Open Research
+// Europe 2:94 (2023). Parameters are those of inputs/calvados2_parameters.csv, embedded when the
+// build is configured. Needs no OpenMM.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +32,9 @@ Calvados2Residue const* find_calvados2(std::string_view three_letter_name);
 
 namespace calvados2 {
 
-inline constexpr double bond_length = 0.38;           // nm
-inline constexpr double bond_stiffness = 8033;        // kJ/mol/nm2, of harmonic bonds in the links' places
+inline constexpr double bond_length = 0.38;  // nm
+inline constexpr double bond_stiffness =
+    8033;  // kJ/mol/nm2, of harmonic bonds in the links' places
 inline constexpr double first_bead_mass = 2.0;        // amu, added to a chain's first bead
 inline constexpr double last_bead_mass = 16.0;        // amu, added to a chain's last bead
 inline constexpr double first_bead_charge = 1.0;      // e, added to a chain's first bead
@@ -41,13 +43,15 @@ inline constexpr double epsilon = 0.8368;             // kJ/mol, Ashbaugh-Hatch
 inline constexpr double ashbaugh_hatch_cutoff = 2.0;  // nm
 inline constexpr double yukawa_cutoff = 4.0;          // nm
 
-/// Ends of a chain of residues that are charged, and have the mass of, free termini: N before the first bead, C after the last.
+/// Ends of a chain of residues that are charged, and have the mass of, free termini: N before the
+/// first bead, C after the last.
 struct ChargedTermini {
     bool n = true, c = true;
     bool operator==(ChargedTermini const&) const = default;
 };
-/// Those of every chain, as OpenMmSpec::map of a builder has them: 1 or 0 for the first and the last bead, by the chain's name; "" stands
-/// for chains that are not named. Where it says nothing, both ends are charged.
+/// Those of every chain, as OpenMmSpec::map of a builder has them: 1 or 0 for the first and the
+/// last bead, by the chain's name; "" stands for chains that are not named. Where it says nothing,
+/// both ends are charged.
 class ChainEnds {
   public:
     explicit ChainEnds(OpenMmSpec const&);
@@ -68,8 +72,8 @@ struct ChainPlace {
 /// The residue's mass, plus what a charged terminus carries.
 double bead_mass(Calvados2Residue const&, ChainPlace const&);
 
-/// Charge of histidine in e: its protonated fraction 1 / (1 + 10^(pH - 6)), as the authors' own simulations take it;
-/// without a pH it is neutral.
+/// Charge of histidine in e: its protonated fraction 1 / (1 + 10^(pH - 6)), as the authors' own
+/// simulations take it; without a pH it is neutral.
 double histidine_charge(std::optional<double> ph);
 
 /// In e, charged termini included.
@@ -82,7 +86,8 @@ struct Yukawa {
     double prefactor;       // kJ nm/mol
     double kappa;           // 1/nm, inverse Debye length
 };
-/// K, of the measurements behind the permittivity of water (Akerlof & Oshry, J. Am. Chem. Soc. 72:2844, 1950): up to 370 C.
+/// K, of the measurements behind the permittivity of water (Akerlof & Oshry, J. Am. Chem. Soc.
+/// 72:2844, 1950): up to 370 C.
 constexpr double warmest_water = 643;
 /// Temperature in K, ionic strength in mol/l. Precondition: 0 < temperature <= warmest_water.
 Yukawa yukawa(double temperature, double ionic_strength);

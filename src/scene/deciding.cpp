@@ -45,15 +45,19 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     content("system", o.system);
     content("topology", o.topology);
     std::vector<std::string> map;
-    for (auto const& [chain, range] : o.map) map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
+    for (auto const& [chain, range] : o.map)
+        map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
     std::string list = fmt::format("{}", fmt::join(map, ", "));
-    if (list.size() > longest_list) list = fmt::format("{} entries {}", map.size(), text_print(list));  // a line names what differs
+    if (list.size() > longest_list)
+        list = fmt::format("{} entries {}", map.size(),
+                           text_print(list));  // a line names what differs
     if (!map.empty()) add(values, at + (o.builder.empty() ? "map" : "charge_termini"), list);
     add(values, at + "temperature", o.temperature);
     add(values, at + "ionic_strength", o.ionic_strength);
     if (o.ph) add(values, at + "ph", *o.ph);
     add(values, at + "switch_width", o.switch_width);
-    if (!o.force_groups.empty()) add(values, at + "force_groups", fmt::format("{}", fmt::join(o.force_groups, ", ")));
+    if (!o.force_groups.empty())
+        add(values, at + "force_groups", fmt::format("{}", fmt::join(o.force_groups, ", ")));
 }
 
 void add_forces(Values& values, ForceSpec const& f) {
@@ -64,10 +68,12 @@ void add_forces(Values& values, ForceSpec const& f) {
 }
 
 /// `holds_start`: the ground holds a tip where the start puts it.
-void add_prints(Values& values, std::string const& whose, ChainPrints const& prints, bool holds_start) {
+void add_prints(Values& values, std::string const& whose, ChainPrints const& prints,
+                bool holds_start) {
     add(values, whose + ", bodies and joints", prints.kind, Role::fixed);
     add(values, whose + ", springs and loads", prints.loads);
-    add(values, whose + ", start positions", prints.positions, holds_start ? Role::fixed : Role::start);
+    add(values, whose + ", start positions", prints.positions,
+        holds_start ? Role::fixed : Role::start);
     add(values, whose + ", start velocities", prints.velocities, Role::start);
 }
 
@@ -77,7 +83,8 @@ void add_chains(Values& values, std::span<ChainSpec const> chains) {
     add(values, "chains", chains.size(), Role::fixed);
     std::size_t const single = std::min(chains.size(), most_single_chains);
     for (std::size_t i = 0; i < single; ++i)
-        add_prints(values, "chain " + std::to_string(i + 1), prints_of(chains.subspan(i, 1)), has_held_tip(chains[i]));
+        add_prints(values, "chain " + std::to_string(i + 1), prints_of(chains.subspan(i, 1)),
+                   has_held_tip(chains[i]));
     std::span<ChainSpec const> const further = chains.subspan(single);
     if (further.empty()) return;
     add_prints(values, "chains from " + std::to_string(single + 1) + " on", prints_of(further),
@@ -97,7 +104,8 @@ std::vector<DecidingValue> deciding_values(Scene const& scene) {
     return values;
 }
 
-std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before, std::vector<DecidingValue> const& now) {
+std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before,
+                                  std::vector<DecidingValue> const& now) {
     std::vector<ChangedValue> changed;
     std::map<std::string, std::string> gone = before;
     for (DecidingValue const& each : now) {
@@ -107,7 +115,9 @@ std::vector<ChangedValue> changes(std::map<std::string, std::string> const& befo
         if (old != each.value) changed.push_back({each.key, old, each.value, each.role});
     }
     for (auto const& [key, value] : gone) {
-        Role const role = key.starts_with("chain") ? Role::fixed : key == "relax" ? Role::start : Role::free;
+        Role const role = key.starts_with("chain") ? Role::fixed
+                          : key == "relax"         ? Role::start
+                                                   : Role::free;
         changed.push_back({key, value, "none", role});
     }
     return changed;

@@ -1,4 +1,5 @@
-// What decides a scene's motion, value by value: a checkpoint keeps it, so that a restart can name what differs.
+// What decides a scene's motion, value by value: a checkpoint keeps it, so that a restart can name
+// what differs.
 #pragma once
 
 #include <map>
@@ -9,7 +10,8 @@
 
 namespace catena::scene {
 
-/// `fixed`: a branch keeps it. `start`: of the scene's first state, in whose place a checkpoint's stands. `free`: a branch may change it.
+/// `fixed`: a branch keeps it. `start`: of the scene's first state, in whose place a checkpoint's
+/// stands. `free`: a branch may change it.
 enum class Role { free, fixed, start };
 
 struct DecidingValue {
@@ -17,8 +19,9 @@ struct DecidingValue {
     Role role = Role::free;
 };
 
-/// Of everything that fingerprint() goes by, dynamics first, chains last. Chains beyond the first thousand share an entry. Throws
-/// InputError when a file that the scene names cannot be read any more.
+/// Of everything that fingerprint() goes by, dynamics first, chains last. Chains beyond the first
+/// thousand share an entry. Throws InputError when a file that the scene names cannot be read any
+/// more.
 std::vector<DecidingValue> deciding_values(Scene const& scene);
 
 struct ChangedValue {
@@ -26,6 +29,7 @@ struct ChangedValue {
     Role role = Role::free;
 };
 /// In the order of `now`; keys that are gone come last.
-std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before, std::vector<DecidingValue> const& now);
+std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before,
+                                  std::vector<DecidingValue> const& now);
 
 }  // namespace catena::scene

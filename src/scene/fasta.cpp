@@ -33,7 +33,9 @@ struct Record {
 
 std::string trimmed(std::string const& text) {
     std::size_t const first = text.find_first_not_of(" \t\r");
-    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+    return first == std::string::npos
+               ? ""
+               : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
 /// Lines end in LF, CR LF or CR.
@@ -46,7 +48,8 @@ std::string with_line_feeds(std::string text) {
 std::vector<Record> records_of(std::string const& path, Node const& at) {
     std::string const bytes = read_text_file(path, at);
     if (bytes.find('\0') != std::string::npos || bytes.starts_with("\x1F\x8B"))
-        fail(at, "`" + shown_path(path) + "` is no text", "give a FASTA file: `>name`, then one-letter codes");
+        fail(at, "`" + shown_path(path) + "` is no text",
+             "give a FASTA file: `>name`, then one-letter codes");
     std::istringstream stream(with_line_feeds(bytes));
     std::vector<Record> records;
     for (std::string line; std::getline(stream, line);) {
@@ -54,8 +57,11 @@ std::vector<Record> records_of(std::string const& path, Node const& at) {
         if (line[0] == '>') {
             records.push_back({trimmed(line.substr(1)), ""});
         } else if (records.empty()) {
-            auto const n = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.find(line)), '\n');
-            throw InputError("sequence before the first record", fmt::format("{}: line {}", shown_path(path), n),
+            auto const n =
+                1 + std::count(bytes.begin(),
+                               bytes.begin() + static_cast<std::ptrdiff_t>(bytes.find(line)), '\n');
+            throw InputError("sequence before the first record",
+                             fmt::format("{}: line {}", shown_path(path), n),
                              "start the record with a line `>name`");
         } else {
             records.back().sequence += line + "\n";
@@ -78,42 +84,54 @@ std::vector<Record const*> bearers(std::vector<Record> const& records, std::stri
     return found;
 }
 
-Record const& the_only(std::vector<Record const*> const& found, Node const& at, std::string const& name) {
+Record const& the_only(std::vector<Record const*> const& found, Node const& at,
+                       std::string const& name) {
     if (found.size() > 1)
-        fail(at, fmt::format("{} records bear the name `{}`", found.size(), shown(name)), "choose one by its number: `record: 1`");
+        fail(at, fmt::format("{} records bear the name `{}`", found.size(), shown(name)),
+             "choose one by its number: `record: 1`");
     return *found[0];
 }
 
-Record const& recorded(std::vector<Record> const& records, Node const& record, std::string const& path) {
+Record const& recorded(std::vector<Record> const& records, Node const& record,
+                       std::string const& path) {
     std::string const wanted = text(record);
-    if (auto const found = bearers(records, wanted); !found.empty()) return the_only(found, record, wanted);
+    if (auto const found = bearers(records, wanted); !found.empty())
+        return the_only(found, record, wanted);
     double number = 0;
-    if (parse_number(wanted, number) == NumberFault::none && number >= 1 && number <= static_cast<double>(records.size()) &&
+    if (parse_number(wanted, number) == NumberFault::none && number >= 1 &&
+        number <= static_cast<double>(records.size()) &&
         number == static_cast<double>(static_cast<std::size_t>(number)))
         return records[static_cast<std::size_t>(number) - 1];
-    fail(record, fmt::format("`{}` has no record `{}`: it holds {}", shown_path(path), shown(wanted), first_names(records)),
+    fail(record,
+         fmt::format("`{}` has no record `{}`: it holds {}", shown_path(path), shown(wanted),
+                     first_names(records)),
          fmt::format("give a name, or a number from 1 to {}", records.size()));
 }
 
-Record const& chosen(std::vector<Record> const& records, Node const& at, RecordChoice const& choice, std::string const& path) {
+Record const& chosen(std::vector<Record> const& records, Node const& at, RecordChoice const& choice,
+                     std::string const& path) {
     if (choice.record) return recorded(records, *choice.record, path);
     if (records.size() == 1) return records[0];
     if (choice.name)
         if (auto const found = bearers(records, text(*choice.name)); !found.empty())
             return the_only(found, *choice.name, choice.name->text);
-    fail(at, fmt::format("`{}` holds {} records: {}", shown_path(path), records.size(), first_names(records)),
+    fail(at,
+         fmt::format("`{}` holds {} records: {}", shown_path(path), records.size(),
+                     first_names(records)),
          "name the chain after one of them, or add `record: NAME` or its number");
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 [[noreturn]] void refuse_letter(char letter, std::size_t position, Node const& source) {
-    std::string what =
-        fmt::format("`{}` at position {} of the sequence is no residue of calvados2", shown(std::string(1, letter)), position);
+    std::string what = fmt::format("`{}` at position {} of the sequence is no residue of calvados2",
+                                   shown(std::string(1, letter)), position);
     std::string remedy = "use the one-letter codes ARNDCQEGHILKMFPSTWYV";
     if (letter == '*') what += ": a stop within the sequence", remedy = "end the sequence there";
-    if (letter == '-' || letter == '.') what += ": a gap of an alignment", remedy = "give the sequence without gaps";
-    if (std::isdigit(static_cast<unsigned char>(letter))) what += ": a number", remedy = "leave the numbers of positions out";
+    if (letter == '-' || letter == '.')
+        what += ": a gap of an alignment", remedy = "give the sequence without gaps";
+    if (std::isdigit(static_cast<unsigned char>(letter)))
+        what += ": a number", remedy = "leave the numbers of positions out";
     if (letter == 'U') what += ": selenocysteine, or RNA", remedy = "write C for selenocysteine";
     fail(source, what, remedy);
 }
@@ -128,14 +146,17 @@ bool is_cut_into_threes(std::string const& text) {
 }
 
 /// `MET ASP VAL` and `METASPVAL` are most likely not meant as one-letter codes.
-void note_three_letters(std::string const& text, std::string const& letters, Node const& source, Scene& scene) {
+void note_three_letters(std::string const& text, std::string const& letters, Node const& source,
+                        Scene& scene) {
     std::size_t const threes = letters.size() / 3;
     if (letters.size() % 3 != 0 || threes < 2) return;
     std::size_t named = 0;
-    for (std::size_t k = 0; k < threes; ++k) named += meaning_of(letters.substr(3 * k, 3)).kind == ResidueKind::amino_acid;
+    for (std::size_t k = 0; k < threes; ++k)
+        named += meaning_of(letters.substr(3 * k, 3)).kind == ResidueKind::amino_acid;
     if (is_cut_into_threes(text) ? 2 * named < threes : threes < 3 || named < threes) return;
     scene.note(
-        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, {}, {}, ...): write one letter per residue",
+        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, "
+                    "{}, {}, ...): write one letter per residue",
                     source.path(), letters.size(), letters[0], letters[1], letters[2]));
 }
 
@@ -143,7 +164,9 @@ void note_nucleotides(std::string const& letters, Node const& source, Scene& sce
     if (letters.size() < 20 || letters.find_first_not_of("ACGT") != std::string::npos) return;
     for (char const base : {'A', 'C', 'G', 'T'})
         if (letters.find(base) == std::string::npos) return;
-    scene.note(fmt::format("`{}` has the letters A, C, G and T alone and is read as a protein: it looks like DNA", source.path()));
+    scene.note(fmt::format(
+        "`{}` has the letters A, C, G and T alone and is read as a protein: it looks like DNA",
+        source.path()));
 }
 
 }  // namespace
@@ -154,7 +177,9 @@ std::string read_fasta(std::string const& path, Node const& at, RecordChoice con
     if (!records.empty()) sequence = trimmed(chosen(records, at, choice, path).sequence);
     while (!sequence.empty() && is_blank(sequence.back())) sequence.pop_back();
     if (!sequence.empty() && sequence.back() == '*') sequence.pop_back();
-    if (sequence.empty()) fail(at, "no sequence in `" + shown_path(path) + "`", "give a record: `>name`, then one-letter codes");
+    if (sequence.empty())
+        fail(at, "no sequence in `" + shown_path(path) + "`",
+             "give a record: `>name`, then one-letter codes");
     return sequence;
 }
 
@@ -170,7 +195,8 @@ std::string one_letter_codes(std::string const& text, Node const& source, Scene&
     }
     if (letters.empty()) fail(source, "the sequence is empty", "give one-letter codes");
     if (small > 0)
-        scene.note(fmt::format("`{}`: {} of {} letters are lower case and are read as capitals", source.path(), small, letters.size()));
+        scene.note(fmt::format("`{}`: {} of {} letters are lower case and are read as capitals",
+                               source.path(), small, letters.size()));
     note_three_letters(text, letters, source, scene);
     note_nucleotides(letters, source, scene);
     return letters;

@@ -11,7 +11,9 @@ namespace catena::scene {
 
 namespace {
 
-bool among(std::string_view name, Names names) { return std::find(names.begin(), names.end(), name) != names.end(); }
+bool among(std::string_view name, Names names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// Levenshtein's distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -22,7 +24,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         row[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
             std::size_t const above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            row[j] =
+                std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
             diagonal = above;
         }
     }
@@ -30,10 +33,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 /// The key, or that of the list that holds the value.
-std::string const& name_of(Node const& node) { return node.key.empty() && node.parent ? name_of(*node.parent) : node.key; }
+std::string const& name_of(Node const& node) {
+    return node.key.empty() && node.parent ? name_of(*node.parent) : node.key;
+}
 
 Node const& scalar(Node const& node, char const* expected, char const* remedy) {
-    if (node.kind != Node::Kind::scalar || node.quoted) fail(node, describe(node) + " is not " + expected, remedy);
+    if (node.kind != Node::Kind::scalar || node.quoted)
+        fail(node, describe(node) + " is not " + expected, remedy);
     return node;
 }
 
@@ -41,20 +47,23 @@ Node const& scalar(Node const& node, char const* expected, char const* remedy) {
 
 Fields::Fields(Node const& map, Names known, Names later) : map_(map) {
     std::vector<std::string_view> const names(known);
-    if (map.kind != Node::Kind::map) fail(map, describe(map) + " is not a map", "give a map with keys among " + joined(names));
+    if (map.kind != Node::Kind::map)
+        fail(map, describe(map) + " is not a map", "give a map with keys among " + joined(names));
     for (Node const& item : map.items) {
         if (among(item.key, known)) continue;
         if (among(item.key, later)) fail_later(item, "key `" + item.key + "`");
         std::vector<std::string_view> all = names;
         all.insert(all.end(), later.begin(), later.end());
         auto const near = nearest(item.key, all);
-        fail(item, "unknown key `" + shown(item.key) + "`", near ? "did you mean `" + *near + "`?" : "use one of " + joined(names));
+        fail(item, "unknown key `" + shown(item.key) + "`",
+             near ? "did you mean `" + *near + "`?" : "use one of " + joined(names));
     }
 }
 
 Node const* Fields::find(std::string_view key) const {
     Node const* const found = map_.find(key);
-    if (found && found->kind == Node::Kind::null) fail(*found, fmt::format("key `{}` has no value", key), "give one or leave the key out");
+    if (found && found->kind == Node::Kind::null)
+        fail(*found, fmt::format("key `{}` has no value", key), "give one or leave the key out");
     return found;
 }
 
@@ -70,15 +79,19 @@ NumberFault parse_number(std::string_view text, double& value) {
     if (digits.empty()) return NumberFault::not_a_number;
     if (digits[0] != '.' && (digits[0] < '0' || digits[0] > '9')) {
         std::string lower(digits);
-        std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return lower == "nan" || lower == "inf" || lower == "infinity" ? NumberFault::not_finite : NumberFault::not_a_number;
+        std::transform(lower.begin(), lower.end(), lower.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return lower == "nan" || lower == "inf" || lower == "infinity" ? NumberFault::not_finite
+                                                                       : NumberFault::not_a_number;
     }
-    if (digits == ".nan" || digits == ".NaN" || digits == ".NAN" || digits == ".inf" || digits == ".Inf" || digits == ".INF")
+    if (digits == ".nan" || digits == ".NaN" || digits == ".NAN" || digits == ".inf" ||
+        digits == ".Inf" || digits == ".INF")
         return NumberFault::not_finite;
     char const* const begin = &digits.front();
     char const* const end = begin + digits.size();
     auto const result = std::from_chars(begin, end, value);
-    if (result.ec == std::errc::invalid_argument || result.ptr != end) return NumberFault::not_a_number;
+    if (result.ec == std::errc::invalid_argument || result.ptr != end)
+        return NumberFault::not_a_number;
     if (result.ec != std::errc()) return NumberFault::out_of_range;
     if (text[0] == '-') value = -value;
     return NumberFault::none;
@@ -102,13 +115,17 @@ double number(Node const& node) {
 
 double positive(Node const& node) {
     double const value = number(node);
-    if (!(value > 0)) fail(node, fmt::format("{} {} is not positive", name_of(node), value), "give a number above 0");
+    if (!(value > 0))
+        fail(node, fmt::format("{} {} is not positive", name_of(node), value),
+             "give a number above 0");
     return value;
 }
 
 double non_negative(Node const& node) {
     double const value = number(node);
-    if (!(value >= 0)) fail(node, fmt::format("{} {} is negative", name_of(node), value), "give 0 or a number above it");
+    if (!(value >= 0))
+        fail(node, fmt::format("{} {} is negative", name_of(node), value),
+             "give 0 or a number above it");
     return value;
 }
 
@@ -119,14 +136,21 @@ std::int64_t whole(Node const& node, std::int64_t least, std::int64_t most) {
     auto const result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) {
         double real = 0;
-        bool const is_whole = parse_number(digits, real) == NumberFault::none && real == std::floor(real);
+        bool const is_whole =
+            parse_number(digits, real) == NumberFault::none && real == std::floor(real);
         if (is_whole && real > 0x1p53)
-            fail(node, fmt::format("{} {} is above {}", name_of(node), digits, most), fmt::format("give {} or less", most));
-        if (!is_whole || real < -0x1p53) fail(node, describe(node) + " is not a whole number", remedy);
+            fail(node, fmt::format("{} {} is above {}", name_of(node), digits, most),
+                 fmt::format("give {} or less", most));
+        if (!is_whole || real < -0x1p53)
+            fail(node, describe(node) + " is not a whole number", remedy);
         value = static_cast<std::int64_t>(real);
     }
-    if (value < least) fail(node, fmt::format("{} {} is below {}", name_of(node), value, least), fmt::format("give {} or more", least));
-    if (value > most) fail(node, fmt::format("{} {} is above {}", name_of(node), value, most), fmt::format("give {} or less", most));
+    if (value < least)
+        fail(node, fmt::format("{} {} is below {}", name_of(node), value, least),
+             fmt::format("give {} or more", least));
+    if (value > most)
+        fail(node, fmt::format("{} {} is above {}", name_of(node), value, most),
+             fmt::format("give {} or less", most));
     return value;
 }
 
@@ -135,30 +159,36 @@ std::uint64_t seed64(Node const& node) {
     std::string const& digits = scalar(node, "a seed", remedy).text;
     std::uint64_t value = 0;
     auto const result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) fail(node, describe(node) + " is not a seed", remedy);
+    if (result.ec != std::errc() || result.ptr != digits.data() + digits.size())
+        fail(node, describe(node) + " is not a seed", remedy);
     return value;
 }
 
 bool truth(Node const& node) {
     std::string const& word = scalar(node, "true or false", "give true or false").text;
-    if (word != "true" && word != "false") fail(node, describe(node) + " is not true or false", "give true or false");
+    if (word != "true" && word != "false")
+        fail(node, describe(node) + " is not true or false", "give true or false");
     return word == "true";
 }
 
 std::string text(Node const& node) {
-    if (node.kind != Node::Kind::scalar || node.text.empty()) fail(node, describe(node) + " is not a text", "give a text");
+    if (node.kind != Node::Kind::scalar || node.text.empty())
+        fail(node, describe(node) + " is not a text", "give a text");
     return node.text;
 }
 
 Node const& list(Node const& node) {
-    if (node.kind != Node::Kind::list) fail(node, describe(node) + " is not a list", "give a list in brackets or with dashes");
+    if (node.kind != Node::Kind::list)
+        fail(node, describe(node) + " is not a list", "give a list in brackets or with dashes");
     return node;
 }
 
 std::vector<double> numbers(Node const& node, std::size_t count) {
     std::string const remedy = fmt::format("give {} numbers in brackets", count);
     if (node.kind != Node::Kind::list) fail(node, describe(node) + " is not a list", remedy);
-    if (node.items.size() != count) fail(node, fmt::format("the list has {} entries, not {}", node.items.size(), count), remedy);
+    if (node.items.size() != count)
+        fail(node, fmt::format("the list has {} entries, not {}", node.items.size(), count),
+             remedy);
     std::vector<double> values;
     for (Node const& item : node.items) values.push_back(number(item));
     return values;
@@ -170,8 +200,11 @@ Vec3 vector3(Node const& node) {
 }
 
 Mat3 matrix3(Node const& node) {
-    if (node.kind != Node::Kind::list) fail(node, describe(node) + " is not a list", "give 3 rows of 3 numbers");
-    if (node.items.size() != 3) fail(node, fmt::format("the matrix has {} rows, not 3", node.items.size()), "give 3 rows of 3 numbers");
+    if (node.kind != Node::Kind::list)
+        fail(node, describe(node) + " is not a list", "give 3 rows of 3 numbers");
+    if (node.items.size() != 3)
+        fail(node, fmt::format("the matrix has {} rows, not 3", node.items.size()),
+             "give 3 rows of 3 numbers");
     Mat3 m;
     for (int i = 0; i < 3; ++i) {
         Vec3 const row = vector3(node.items[static_cast<std::size_t>(i)]);
@@ -196,16 +229,19 @@ std::optional<std::string> nearest(std::string_view name, std::span<std::string_
 
 std::string joined(std::span<std::string_view const> names) {
     std::string line;
-    for (std::string_view const name : names) line += (line.empty() ? "`" : ", `") + std::string(name) + "`";
+    for (std::string_view const name : names)
+        line += (line.empty() ? "`" : ", `") + std::string(name) + "`";
     return line;
 }
 
 void refuse_choice(Node const& node, std::vector<std::string_view> const& choices, Names later) {
-    if (node.kind == Node::Kind::scalar && among(node.text, later)) fail_later(node, fmt::format("`{}: {}`", node.key, node.text));
+    if (node.kind == Node::Kind::scalar && among(node.text, later))
+        fail_later(node, fmt::format("`{}: {}`", node.key, node.text));
     std::vector<std::string_view> all = choices;
     all.insert(all.end(), later.begin(), later.end());
     auto const near = node.kind == Node::Kind::scalar ? nearest(node.text, all) : std::nullopt;
-    std::string const remedy = near ? "did you mean `" + *near + "`?" : "use one of " + joined(choices);
+    std::string const remedy =
+        near ? "did you mean `" + *near + "`?" : "use one of " + joined(choices);
     fail(node, fmt::format("{} is not a value of `{}`", describe(node), name_of(node)), remedy);
 }
 

@@ -1,4 +1,5 @@
-// Strict reading of values: the right type, the right length, finite numbers, no key that nobody reads.
+// Strict reading of values: the right type, the right length, finite numbers, no key that nobody
+// reads.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,9 @@ namespace catena::scene {
 
 using Names = std::initializer_list<std::string_view>;
 
-/// A map whose keys are all known. Throws InputError for a value that is no map, for an unknown key (naming the nearest known one, or all
-/// of them) and for keys of `later`, which the contract knows and this version does not.
+/// A map whose keys are all known. Throws InputError for a value that is no map, for an unknown key
+/// (naming the nearest known one, or all of them) and for keys of `later`, which the contract knows
+/// and this version does not.
 class Fields {
   public:
     Fields(Node const& map, Names known, Names later = {});
@@ -34,7 +36,8 @@ class Fields {
     Node const& map_;
 };
 
-/// The strict grammar of a number: an optional sign, decimal digits with at most one point, an optional exponent, nothing else.
+/// The strict grammar of a number: an optional sign, decimal digits with at most one point, an
+/// optional exponent, nothing else.
 enum class NumberFault { none, not_a_number, not_finite, out_of_range };
 NumberFault parse_number(std::string_view text, double& value);
 
@@ -58,13 +61,16 @@ std::string joined(std::span<std::string_view const> names);
 
 /// One of the names of `choices`; InputError otherwise, "not in this version" for those of `later`.
 template <class Value>
-Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices, Names later = {});
+Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices,
+             Names later = {});
 
 /// What both templates and plain code say about a name that is not among the choices.
-[[noreturn]] void refuse_choice(Node const&, std::vector<std::string_view> const& choices, Names later);
+[[noreturn]] void refuse_choice(Node const&, std::vector<std::string_view> const& choices,
+                                Names later);
 
 template <class Value>
-Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices, Names later) {
+Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices,
+             Names later) {
     std::vector<std::string_view> names;
     for (auto const& [name, value] : choices) {
         if (node.kind == Node::Kind::scalar && node.text == name) return value;

@@ -17,7 +17,9 @@ namespace {
 std::string trimmed(std::string const& text) {
     char const* const blanks = " \t\r\n";
     std::size_t const first = text.find_first_not_of(blanks);
-    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    return first == std::string::npos
+               ? ""
+               : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 /// Lines with their numbers from 1; text from `comment` on is dropped, blank lines are left out.
@@ -43,12 +45,14 @@ std::vector<std::string> cells_of(std::string const& line) {
 bool is_header(std::vector<std::string> const& cells) {
     double value = 0;
     for (std::string const& cell : cells)
-        if (cell.empty() || parse_number(cell, value) != NumberFault::not_a_number || std::isdigit(static_cast<unsigned char>(cell[0])))
+        if (cell.empty() || parse_number(cell, value) != NumberFault::not_a_number ||
+            std::isdigit(static_cast<unsigned char>(cell[0])))
             return false;
     return true;
 }
 
-[[noreturn]] void refuse_line(std::string const& what, std::string const& path, int line, std::string const& remedy) {
+[[noreturn]] void refuse_line(std::string const& what, std::string const& path, int line,
+                              std::string const& remedy) {
     throw InputError(what, fmt::format("{}: line {}", path, line), remedy);
 }
 
@@ -58,13 +62,16 @@ double cell_number(std::string const& cell, std::string const& path, int line) {
         case NumberFault::none:
             return value;
         case NumberFault::not_a_number:
-            refuse_line(fmt::format("`{}` is not a number", shown(cell)), path, line, "give finite decimal numbers");
+            refuse_line(fmt::format("`{}` is not a number", shown(cell)), path, line,
+                        "give finite decimal numbers");
         case NumberFault::not_finite:
-            refuse_line(fmt::format("`{}` is not finite", shown(cell)), path, line, "give finite decimal numbers");
+            refuse_line(fmt::format("`{}` is not finite", shown(cell)), path, line,
+                        "give finite decimal numbers");
         case NumberFault::out_of_range:
             break;
     }
-    refuse_line(fmt::format("`{}` is beyond the range of double precision", shown(cell)), path, line, "give finite decimal numbers");
+    refuse_line(fmt::format("`{}` is beyond the range of double precision", shown(cell)), path,
+                line, "give finite decimal numbers");
 }
 
 }  // namespace
@@ -72,17 +79,22 @@ double cell_number(std::string const& cell, std::string const& path, int line) {
 std::string read_text_file(std::string const& path, Node const& at) {
     std::error_code unseen;
     auto const kind = std::filesystem::status(path, unseen).type();
-    auto const refuse = [&](std::string const& what) { fail(at, fmt::format("{} `{}`", what, shown_path(path)), "check the path"); };
+    auto const refuse = [&](std::string const& what) {
+        fail(at, fmt::format("{} `{}`", what, shown_path(path)), "check the path");
+    };
     if (kind == std::filesystem::file_type::not_found) refuse("no such file:");
     if (unseen) refuse("the file cannot be accessed, " + unseen.message() + ":");
     if (kind == std::filesystem::file_type::directory) refuse("a folder, not a file:");
     if (kind != std::filesystem::file_type::regular) refuse("a device or pipe, not a file:");
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
-    if (!stream) refuse("the file cannot be opened, " + std::generic_category().message(errno) + ":");
+    if (!stream)
+        refuse("the file cannot be opened, " + std::generic_category().message(errno) + ":");
     std::ostringstream text;
     text << stream.rdbuf();
-    if (stream.bad()) fail(at, "the file cannot be read: `" + shown_path(path) + "`", "check the file and its permissions");
+    if (stream.bad())
+        fail(at, "the file cannot be read: `" + shown_path(path) + "`",
+             "check the file and its permissions");
     return text.str();
 }
 
@@ -96,8 +108,11 @@ std::vector<Vec3> read_position_table(std::string const& path, Node const& at) {
     for (auto const& [n, line] : lines_of(read_text_file(path, at), '#')) {
         std::vector<std::string> const cells = cells_of(line);
         if (std::exchange(first, false) && is_header(cells)) continue;
-        if (cells.size() != 3) refuse_line(fmt::format("the line has {} columns, not 3", cells.size()), path, n, "give x,y,z");
-        positions.push_back({{cell_number(cells[0], path, n), cell_number(cells[1], path, n), cell_number(cells[2], path, n)}});
+        if (cells.size() != 3)
+            refuse_line(fmt::format("the line has {} columns, not 3", cells.size()), path, n,
+                        "give x,y,z");
+        positions.push_back({{cell_number(cells[0], path, n), cell_number(cells[1], path, n),
+                              cell_number(cells[2], path, n)}});
     }
     return positions;
 }

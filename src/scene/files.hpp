@@ -9,7 +9,8 @@
 
 namespace catena::scene {
 
-/// Throws InputError for a file that is missing, a folder or unreadable; `at` names the key that asked for it.
+/// Throws InputError for a file that is missing, a folder or unreadable; `at` names the key that
+/// asked for it.
 std::string read_text_file(std::string const& path, Node const& at);
 
 /// `path` as the scene means it: relative to the folder of `scene_file`.

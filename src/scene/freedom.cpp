@@ -9,7 +9,8 @@ namespace catena::scene {
 namespace {
 
 double constexpr printed_digits = 1e-6;
-double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();  // of a few products of rotations
+double constexpr rounding =
+    32 * std::numeric_limits<double>::epsilon();  // of a few products of rotations
 
 /// Follows one axis along the chain: in the axes of the body that was added last.
 class ParallelAxes {
@@ -41,27 +42,32 @@ class ParallelAxes {
 /// False at the first joint, the tip left out, that is not parallel.
 bool add_all(BodyArrays const& bodies, ParallelAxes& axes, std::size_t& first_odd) {
     for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
-        if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd])) return false;
+        if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd]))
+            return false;
     return true;
 }
 
 bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& first_odd) {
     ParallelAxes axes(tolerance);
     if (!add_all(chain.bodies, axes, first_odd)) return false;
-    bool const pinned = chain.tip == Tip::jointed && chain.tip_joint.type == JointType::spherical;  // turns about any axis
-    if (chain.tip == Tip::jointed && !pinned && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation))
+    bool const pinned = chain.tip == Tip::jointed &&
+                        chain.tip_joint.type == JointType::spherical;  // turns about any axis
+    if (chain.tip == Tip::jointed && !pinned &&
+        !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation))
         return false;
     return axes.any();
 }
 
-/// Turning about one axis in one plane: a chain of revolute joints from the ground on. To rounding, for what leaves the plane is then
-/// left out of the dynamics.
+/// Turning about one axis in one plane: a chain of revolute joints from the ground on. To rounding,
+/// for what leaves the plane is then left out of the dynamics.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
     return chain.base == Base::fixed && parallel_within(rounding, chain, odd);
 }
 
-bool are_parallel(Vec3 const& a, Vec3 const& b) { return norm(cross(a, b)) <= rounding * norm(a) * norm(b); }
+bool are_parallel(Vec3 const& a, Vec3 const& b) {
+    return norm(cross(a, b)) <= rounding * norm(a) * norm(b);
+}
 
 /// The universal joint's second axis, in J, at its angles.
 Vec3 second_axis(TipJoint const& tip) {
@@ -78,22 +84,28 @@ int restricted_in_plane(TipJoint const& tip, Vec3 const& normal) {
         case JointType::revolute:
             return are_parallel(tip.axis, normal) ? 2 : 3;
         case JointType::universal:
-            return are_parallel(tip.first_axis, normal) || are_parallel(second_axis(tip), normal) ? 2 : 3;
+            return are_parallel(tip.first_axis, normal) || are_parallel(second_axis(tip), normal)
+                       ? 2
+                       : 3;
         case JointType::prismatic:
-            return std::abs(dot(tip.axis, normal)) <= rounding * norm(tip.axis) * norm(normal) ? 2 : 3;
+            return std::abs(dot(tip.axis, normal)) <= rounding * norm(tip.axis) * norm(normal) ? 2
+                                                                                               : 3;
         default:
             return 3;
     }
 }
 
-/// A chain that its other joints keep in a plane is held across it anyway: its tip restricts what it does within the plane.
+/// A chain that its other joints keep in a plane is held across it anyway: its tip restricts what
+/// it does within the plane.
 std::int64_t restricted_by_tip(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return 0;
     ParallelAxes axes(rounding);
     std::size_t odd = 0;
     bool const may_be_flat = chain.is_ring() || chain.base == Base::fixed;
-    if (!may_be_flat || !add_all(chain.bodies, axes, odd) || !axes.any()) return 6 - coordinates_of(chain.tip_joint.type);
-    return restricted_in_plane(chain.tip_joint, transposed_times(chain.tip_joint.rotation, axes.direction()));
+    if (!may_be_flat || !add_all(chain.bodies, axes, odd) || !axes.any())
+        return 6 - coordinates_of(chain.tip_joint.type);
+    return restricted_in_plane(chain.tip_joint,
+                               transposed_times(chain.tip_joint.rotation, axes.direction()));
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {
@@ -126,7 +138,9 @@ int coordinates_of(JointType type) {
 }
 
 bool resists(BodyArrays const& bodies, std::size_t body) {
-    auto const any = [&](std::vector<Vec3> const& v) { return !v.empty() && (v[body][0] != 0 || v[body][1] != 0 || v[body][2] != 0); };
+    auto const any = [&](std::vector<Vec3> const& v) {
+        return !v.empty() && (v[body][0] != 0 || v[body][1] != 0 || v[body][2] != 0);
+    };
     return any(bodies.stiffness) || any(bodies.damping);
 }
 bool resists(ChainSpec const& chain) {
@@ -135,18 +149,23 @@ bool resists(ChainSpec const& chain) {
     return false;
 }
 
-ImplicitInertias implicit_inertias(BodyArrays const& bodies, std::size_t body, DynamicsSpec const& dynamics) {
+ImplicitInertias implicit_inertias(BodyArrays const& bodies, std::size_t body,
+                                   DynamicsSpec const& dynamics) {
     ImplicitInertias found{HUGE_VAL, 0};
     for (int i = 0; i < coordinates_of(bodies.joint[body]); ++i) {
         double const stiffness = bodies.stiffness.empty() ? 0 : bodies.stiffness[body][i];
         double const damping = bodies.damping.empty() ? 0 : bodies.damping[body][i];
-        double const inertia = dynamics.step * (0.5 * damping + rotor_of_spring(dynamics.integrator) * dynamics.step * stiffness);
+        double const inertia =
+            dynamics.step *
+            (0.5 * damping + rotor_of_spring(dynamics.integrator) * dynamics.step * stiffness);
         found.least = std::min(found.least, inertia), found.most = std::max(found.most, inertia);
     }
     return found;
 }
 
-bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) { return parallel_within(printed_digits, chain, first_odd); }
+bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) {
+    return parallel_within(printed_digits, chain, first_odd);
+}
 
 HandleKind handle_kind(ChainSpec const& chain) {
     if (chain.is_beads() || chain.is_linked()) return HandleKind::link;
@@ -162,27 +181,36 @@ HandleKind handle_kind(ChainSpec const& chain) {
 int directions_of(HandleKind kind) { return 1 + static_cast<int>(kind); }
 
 char const* name_of(HandleKind kind) {
-    static constexpr char const* names[] = {"link", "planar", "spherical", "universal", "revolute", "full"};
+    static constexpr char const* names[] = {"link",      "planar",   "spherical",
+                                            "universal", "revolute", "full"};
     return names[static_cast<int>(kind)];
 }
 
-bool takes_articulated_handles(ChainSpec const& chain) { return chain.bodies.size() > 0 && chain.tip == Tip::free; }
+bool takes_articulated_handles(ChainSpec const& chain) {
+    return chain.bodies.size() > 0 && chain.tip == Tip::free;
+}
 
 std::int64_t degrees_of_freedom(ChainSpec const& chain) {
     if (chain.is_beads() || chain.is_linked()) return freedom_of_links(chain);
     BodyArrays const& bodies = chain.bodies;
     std::int64_t dof = -restricted_by_tip(chain);
     for (JointType const joint : bodies.joint) dof += coordinates_of(joint);
-    for (DrivenJoint const& driven : bodies.driven) dof -= coordinates_of(bodies.joint[static_cast<std::size_t>(driven.body)]);
+    for (DrivenJoint const& driven : bodies.driven)
+        dof -= coordinates_of(bodies.joint[static_cast<std::size_t>(driven.body)]);
     return dof;
 }
 
-std::optional<std::pair<std::size_t, JointType>> joint_without_absolute_coordinates(ChainSpec const& chain) {
-    auto const held = [](JointType t) { return t == JointType::free || t == JointType::spherical || t == JointType::link; };
+std::optional<std::pair<std::size_t, JointType>> joint_without_absolute_coordinates(
+    ChainSpec const& chain) {
+    auto const held = [](JointType t) {
+        return t == JointType::free || t == JointType::spherical || t == JointType::link;
+    };
     auto const& joints = chain.bodies.joint;
     auto const found = std::find_if_not(joints.begin(), joints.end(), held);
-    if (found != joints.end()) return std::pair{static_cast<std::size_t>(found - joints.begin()), *found};
-    if (chain.tip == Tip::jointed && !held(chain.tip_joint.type)) return std::pair{joints.size(), chain.tip_joint.type};
+    if (found != joints.end())
+        return std::pair{static_cast<std::size_t>(found - joints.begin()), *found};
+    if (chain.tip == Tip::jointed && !held(chain.tip_joint.type))
+        return std::pair{joints.size(), chain.tip_joint.type};
     return std::nullopt;
 }
 

@@ -84,7 +84,8 @@ std::string content_of(std::string const& path) {
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
-    if (!stream) throw InputError("the file cannot be read", path, "check the file and its permissions");
+    if (!stream)
+        throw InputError("the file cannot be read", path, "check the file and its permissions");
     return text.str();
 }
 
@@ -135,22 +136,25 @@ void add_driven(Fingerprint& print, std::vector<DrivenJoint> const& driven) {
     for (DrivenJoint const& joint : driven) {
         print.add(std::string("driven"));
         print.add(joint.body);
-        for (Course const& c : joint.course) print.add_each(c.offset, c.rate, c.amplitude, c.frequency, c.phase);
+        for (PrescribedMotion const& c : joint.course)
+            print.add_each(c.offset, c.rate, c.amplitude, c.frequency, c.phase);
     }
 }
 
 void add_linked(Fingerprint& print, LinkedArrays const& l) {
-    add_named(print, "linked", l.size() > 0, l.mass, l.inertia, l.position, l.velocity, l.orientation, l.omega, l.inboard, l.outboard,
-              l.length, l.anchor);
+    add_named(print, "linked", l.size() > 0, l.mass, l.inertia, l.position, l.velocity,
+              l.orientation, l.omega, l.inboard, l.outboard, l.length, l.anchor);
     add_carried(print, l.carried);
 }
 
 void add_chain(Fingerprint& print, ChainSpec const& chain) {
     print.add_each(chain.name, chain.base, chain.tip, chain.velocities);
     BeadArrays const& beads = chain.beads;
-    print.add_each(beads.mass, beads.position, beads.velocity, beads.length, beads.residue, beads.anchor);
+    print.add_each(beads.mass, beads.position, beads.velocity, beads.length, beads.residue,
+                   beads.anchor);
     BodyArrays const& b = chain.bodies;
-    print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.q, b.qd, b.free_position, b.free_velocity);
+    print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.q, b.qd,
+                   b.free_position, b.free_velocity);
     print.add_each(b.torque, b.stiffness, b.damping, b.rest, b.wrench);
     add_named(print, "first axes", !b.first_axis.empty(), b.first_axis);
     add_named(print, "pitches", !b.pitch.empty(), b.pitch);
@@ -166,19 +170,22 @@ void add_chain(Fingerprint& print, ChainSpec const& chain) {
 std::string fingerprint(Scene const& scene) {
     Fingerprint print;
     print.add(std::string("catena scene 1"));
-    print.add_each(scene.si, scene.box.has_value(), scene.box.value_or(Vec3::zero()), scene.forces.gravity, scene.chains.size());
+    print.add_each(scene.si, scene.box.has_value(), scene.box.value_or(Vec3::zero()),
+                   scene.forces.gravity, scene.chains.size());
     for (ChainSpec const& chain : scene.chains) add_chain(print, chain);
     print.add(scene.forces.openmm.has_value());
     if (scene.forces.openmm) {
         OpenMmSpec const& o = *scene.forces.openmm;
-        print.add_each(o.builder, content_of(o.system), content_of(o.topology), o.map, o.temperature, o.ionic_strength, o.ph,
-                       o.switch_width);
+        print.add_each(o.builder, content_of(o.system), content_of(o.topology), o.map,
+                       o.temperature, o.ionic_strength, o.ph, o.switch_width);
         print.add(o.force_groups);
     }
     DynamicsSpec const& d = scene.dynamics;
     ForceSpec const& f = scene.forces;
-    add_named(print, "scene drag", f.linear_drag != 0 || f.angular_drag != 0, f.linear_drag, f.angular_drag);
-    print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
+    add_named(print, "scene drag", f.linear_drag != 0 || f.angular_drag != 0, f.linear_drag,
+              f.angular_drag);
+    print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed,
+                   d.constraint_tolerance);
     add_named(print, "fixman", d.fixman);
     add_named(print, "tolerance", d.tolerance > 0, d.tolerance);
     add_named(print, "relax", scene.relax);
@@ -192,7 +199,8 @@ void add_kind(Fingerprint& print, ChainSpec const& chain) {
     LinkedArrays const& l = chain.linked;
     print.add_each(chain.name, chain.base, chain.tip);
     print.add_each(chain.beads.mass, chain.beads.length, chain.beads.residue, chain.beads.anchor);
-    print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.first_axis, b.pitch);
+    print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation,
+                   b.first_axis, b.pitch);
     print.add_each(l.mass, l.inertia, l.inboard, l.outboard, l.length, l.anchor);
     add_carried(print, chain.carried());
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
@@ -204,12 +212,13 @@ void add_loads(Fingerprint& print, BodyArrays const& b) {
 }
 
 void add_positions(Fingerprint& print, ChainSpec const& chain) {
-    print.add_each(chain.beads.position, chain.bodies.q, chain.bodies.free_position, chain.linked.position, chain.linked.orientation);
+    print.add_each(chain.beads.position, chain.bodies.q, chain.bodies.free_position,
+                   chain.linked.position, chain.linked.orientation);
 }
 
 void add_velocities(Fingerprint& print, ChainSpec const& chain) {
-    print.add_each(chain.velocities, chain.beads.velocity, chain.bodies.qd, chain.bodies.free_velocity, chain.linked.velocity,
-                   chain.linked.omega);
+    print.add_each(chain.velocities, chain.beads.velocity, chain.bodies.qd,
+                   chain.bodies.free_velocity, chain.linked.velocity, chain.linked.omega);
 }
 
 }  // namespace

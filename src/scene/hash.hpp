@@ -8,9 +8,11 @@
 
 namespace catena::scene {
 
-/// 32 hexadecimal digits, the same on every machine: of units, chains (names included), box, forces (the content of system and topology
-/// files, not how and where they are computed) and dynamics but `steps`. Two 64-bit lanes of multiply-and-rotate over the values' bits:
-/// tells scenes apart, no protection against forgery. Throws InputError when a file that the scene names cannot be read any more.
+/// 32 hexadecimal digits, the same on every machine: of units, chains (names included), box, forces
+/// (the content of system and topology files, not how and where they are computed) and dynamics but
+/// `steps`. Two 64-bit lanes of multiply-and-rotate over the values' bits: tells scenes apart, no
+/// protection against forgery. Throws InputError when a file that the scene names cannot be read
+/// any more.
 std::string fingerprint(Scene const& scene);
 
 /// Fingerprints of what chains are and of how they start, 16 hexadecimal digits each.

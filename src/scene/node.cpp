@@ -16,7 +16,9 @@ namespace catena::scene {
 
 namespace {
 
-std::string at_line(std::string const& file, int line) { return line > 0 ? fmt::format("{}: line {}", file, line) : file; }
+std::string at_line(std::string const& file, int line) {
+    return line > 0 ? fmt::format("{}: line {}", file, line) : file;
+}
 
 std::size_t bytes_of(Node const& node) {
     std::size_t bytes = sizeof(Node) + node.key.size() + node.text.size();
@@ -30,15 +32,19 @@ std::size_t depth_of(Node const& node) {
     return 1 + deepest;
 }
 
-/// Values within values: yaml-cpp stops there, and everything that walks the tree calls itself as often.
+/// Values within values: yaml-cpp stops there, and everything that walks the tree calls itself as
+/// often.
 std::size_t constexpr deepest = 500;
 /// Of what anchors keep and aliases repeat. Large files may repeat what they hold.
-std::size_t allowed_copies(std::size_t file) { return std::max(std::size_t{512} << 20, 128 * file); }
+std::size_t allowed_copies(std::size_t file) {
+    return std::max(std::size_t{512} << 20, 128 * file);
+}
 
 /// Builds the tree from yaml-cpp's events.
 class TreeBuilder : public YAML::EventHandler {
   public:
-    TreeBuilder(std::string file, bool lines, std::size_t allowed) : file_(std::move(file)), lines_(lines), allowed_(allowed) {}
+    TreeBuilder(std::string file, bool lines, std::size_t allowed)
+        : file_(std::move(file)), lines_(lines), allowed_(allowed) {}
 
     Node root;
     bool complete = false;
@@ -55,14 +61,16 @@ class TreeBuilder : public YAML::EventHandler {
         if (expects_key()) refuse_key(mark);
         auto const found = anchors_.find(anchor);
         if (found == anchors_.end())
-            throw InputError("an alias refers to the value it stands in", at_line(file_, line(mark)), "write the value out");
+            throw InputError("an alias refers to the value it stands in",
+                             at_line(file_, line(mark)), "write the value out");
         if (open_.size() + depth_of(found->second) > deepest)
-            throw InputError(fmt::format("values nest deeper than {} levels", deepest), at_line(file_, line(mark)),
-                             "write the values out, or nest fewer");
+            throw InputError(fmt::format("values nest deeper than {} levels", deepest),
+                             at_line(file_, line(mark)), "write the values out, or nest fewer");
         count_copy(found->second, line(mark));
         add(found->second, 0);
     }
-    void OnScalar(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor, std::string const& value) override {
+    void OnScalar(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,
+                  std::string const& value) override {
         refuse_tag(mark, tag);
         if (expects_key()) {
             open_.back().key = value;
@@ -77,11 +85,13 @@ class TreeBuilder : public YAML::EventHandler {
         node.text = value;
         add(std::move(node), anchor);
     }
-    void OnSequenceStart(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    void OnSequenceStart(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value) override {
         start(mark, tag, anchor, Node::Kind::list);
     }
     void OnSequenceEnd() override { finish(); }
-    void OnMapStart(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    void OnMapStart(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value) override {
         start(mark, tag, anchor, Node::Kind::map);
     }
     void OnMapEnd() override {
@@ -99,27 +109,37 @@ class TreeBuilder : public YAML::EventHandler {
     };
 
     int line(YAML::Mark const& mark) const { return lines_ ? mark.line + 1 : 0; }
-    bool expects_key() const { return !open_.empty() && open_.back().node.kind == Node::Kind::map && !open_.back().has_key; }
+    bool expects_key() const {
+        return !open_.empty() && open_.back().node.kind == Node::Kind::map && !open_.back().has_key;
+    }
     [[noreturn]] void refuse_key(YAML::Mark const& mark) const {
-        throw InputError("a key is not plain text", at_line(file_, line(mark)),
-                         "write `name: value`, and close every bracket");  // yaml-cpp takes a bracket left open for a key
+        throw InputError(
+            "a key is not plain text", at_line(file_, line(mark)),
+            "write `name: value`, and close every bracket");  // yaml-cpp takes a bracket left open
+                                                              // for a key
     }
     void refuse_tag(YAML::Mark const& mark, std::string const& tag) const {
         if (tag.empty() || tag == "?" || tag == "!") return;
-        throw InputError(fmt::format("YAML tag `{}` is not read", shown(tag)), at_line(file_, line(mark)), "leave the tag out");
+        throw InputError(fmt::format("YAML tag `{}` is not read", shown(tag)),
+                         at_line(file_, line(mark)), "leave the tag out");
     }
     void refuse_duplicates(Node const& map) const {
         std::vector<Node const*> sorted;
         for (Node const& item : map.items) sorted.push_back(&item);
-        std::stable_sort(sorted.begin(), sorted.end(), [](Node const* a, Node const* b) { return a->key < b->key; });
-        auto const twice = std::adjacent_find(sorted.begin(), sorted.end(), [](Node const* a, Node const* b) { return a->key == b->key; });
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](Node const* a, Node const* b) { return a->key < b->key; });
+        auto const twice =
+            std::adjacent_find(sorted.begin(), sorted.end(),
+                               [](Node const* a, Node const* b) { return a->key == b->key; });
         if (twice == sorted.end()) return;
         int const first = (*twice)->line, second = (*(twice + 1))->line;
         throw InputError(fmt::format("key `{}` is given twice", shown((*twice)->key)),
-                         first < second ? fmt::format("{}: lines {} and {}", file_, first, second) : at_line(file_, first),
+                         first < second ? fmt::format("{}: lines {} and {}", file_, first, second)
+                                        : at_line(file_, first),
                          "keep one of them");
     }
-    void start(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor, Node::Kind kind) {
+    void start(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor,
+               Node::Kind kind) {
         if (expects_key()) refuse_key(mark);
         refuse_tag(mark, tag);
         open_.push_back({{}, anchor});
@@ -135,8 +155,10 @@ class TreeBuilder : public YAML::EventHandler {
     void count_copy(Node const& node, int at) {
         copied_ += bytes_of(node);
         if (copied_ > allowed_)
-            throw InputError(fmt::format("anchors and aliases multiply the values to more than {} MB", allowed_ >> 20), at_line(file_, at),
-                             "write the values out, or give fewer of them anchors");
+            throw InputError(
+                fmt::format("anchors and aliases multiply the values to more than {} MB",
+                            allowed_ >> 20),
+                at_line(file_, at), "write the values out, or give fewer of them anchors");
     }
     void add(Node node, YAML::anchor_t anchor) {
         node.key.clear();
@@ -173,9 +195,11 @@ Node parse_tree(std::string const& text, std::string const& file, bool lines) {
         parser.HandleNextDocument(builder);
         TreeBuilder second(file, lines, allowed_copies(text.size()));
         if (builder.complete && parser.HandleNextDocument(second) && second.complete)
-            throw InputError("holds more than one YAML document", at_line(file, second.root.line), "keep one document, without `---`");
+            throw InputError("holds more than one YAML document", at_line(file, second.root.line),
+                             "keep one document, without `---`");
     } catch (YAML::Exception const& error) {
-        throw InputError("not YAML: " + shown(error.msg), at_line(file, lines && !error.mark.is_null() ? error.mark.line + 1 : 0),
+        throw InputError("not YAML: " + shown(error.msg),
+                         at_line(file, lines && !error.mark.is_null() ? error.mark.line + 1 : 0),
                          "correct the syntax there or just before");
     }
     return std::move(builder.root);
@@ -193,13 +217,15 @@ Node const* Node::find(std::string_view name) const {
 std::string Node::path() const {
     if (!parent) return {};
     std::string const before = parent->path();
-    if (parent->kind == Kind::list) return fmt::format("{}[{}]", before, this - parent->items.data());
+    if (parent->kind == Kind::list)
+        return fmt::format("{}[{}]", before, this - parent->items.data());
     return before.empty() ? shown(key) : before + "." + shown(key);
 }
 
 std::int64_t Node::body() const {
     for (Node const* at = this; at->parent; at = at->parent)
-        if (at->parent->kind == Kind::list && at->parent->key == "bodies") return at - at->parent->items.data() + 1;
+        if (at->parent->kind == Kind::list && at->parent->key == "bodies")
+            return at - at->parent->items.data() + 1;
     return 0;
 }
 
@@ -216,16 +242,20 @@ std::string Node::where(char const* noun, std::int64_t index) const {
 
 std::unique_ptr<Node> parse_document(std::string const& text, std::string const& file) {
     auto root = std::make_unique<Node>(parse_tree(text, file, true));
-    if (root->kind == Node::Kind::null) throw InputError("the scene is empty", file, "describe at least one chain under `chains:`");
+    if (root->kind == Node::Kind::null)
+        throw InputError("the scene is empty", file, "describe at least one chain under `chains:`");
     if (root->kind != Node::Kind::map)
-        throw InputError("the scene is " + describe(*root) + ", not a map", at_line(file, root->line),
+        throw InputError("the scene is " + describe(*root) + ", not a map",
+                         at_line(file, root->line),
                          "write keys such as `chains:` at the left margin");
     root->text = file;
     link_parents(*root);
     return root;
 }
 
-Node parse_value(std::string const& text, std::string const& origin) { return parse_tree(text, origin, false); }
+Node parse_value(std::string const& text, std::string const& origin) {
+    return parse_tree(text, origin, false);
+}
 
 void link_parents(Node& node) {
     for (Node& item : node.items) {
@@ -236,7 +266,8 @@ void link_parents(Node& node) {
 
 std::string shown(std::string_view text, std::size_t longest) {
     std::string line;
-    for (char const c : text.substr(0, longest)) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+    for (char const c : text.substr(0, longest))
+        line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
     return printable(line) + (text.size() > longest ? "..." : "");
 }
 
@@ -254,12 +285,17 @@ std::string describe(Node const& node) {
     return "`" + shown(node.text) + "`" + (node.quoted ? " in quotes" : "");
 }
 
-void fail(Node const& at, std::string const& what, std::string const& remedy) { throw InputError(what, at.where(), remedy); }
+void fail(Node const& at, std::string const& what, std::string const& remedy) {
+    throw InputError(what, at.where(), remedy);
+}
 
-void fail_at(Node const& at, char const* noun, std::int64_t body, std::string const& what, std::string const& remedy) {
+void fail_at(Node const& at, char const* noun, std::int64_t body, std::string const& what,
+             std::string const& remedy) {
     throw InputError(what, at.where(noun, body), remedy);
 }
 
-void fail_later(Node const& at, std::string const& feature) { throw not_in_this_version(fmt::format("{} ({})", feature, at.where())); }
+void fail_later(Node const& at, std::string const& feature) {
+    throw not_in_this_version(fmt::format("{} ({})", feature, at.where()));
+}
 
 }  // namespace catena::scene

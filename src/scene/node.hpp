@@ -1,5 +1,6 @@
-// The scene file as a tree: values with their line and their place, so that every message can name both. Far smaller
-// than yaml-cpp's own tree, and it sees what that one hides: duplicate keys, quoted numbers, second documents.
+// The scene file as a tree: values with their line and their place, so that every message can name
+// both. Far smaller than yaml-cpp's own tree, and it sees what that one hides: duplicate keys,
+// quoted numbers, second documents.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +33,9 @@ struct Node {
     std::string where(char const* noun = "body", std::int64_t index = 0) const;
 };
 
-/// Parses YAML text into a tree whose root is a map. Throws InputError (with the line) for a syntax error, an empty or second document,
-/// duplicate keys, keys that are no plain text, tags, and aliases that refer to themselves or multiply without bound.
+/// Parses YAML text into a tree whose root is a map. Throws InputError (with the line) for a syntax
+/// error, an empty or second document, duplicate keys, keys that are no plain text, tags, and
+/// aliases that refer to themselves or multiply without bound.
 std::unique_ptr<Node> parse_document(std::string const& text, std::string const& file);
 
 /// Parses one YAML value; `origin` stands for the file in messages, lines are 0.
@@ -52,8 +54,10 @@ inline std::string shown_path(std::string_view path) { return shown(path, 4096);
 
 [[noreturn]] void fail(Node const& at, std::string const& what, std::string const& remedy);
 
-/// As fail, for the entry `body` (from 1) of something that has no node of its own; `noun`: "body" or "bead".
-[[noreturn]] void fail_at(Node const& at, char const* noun, std::int64_t body, std::string const& what, std::string const& remedy);
+/// As fail, for the entry `body` (from 1) of something that has no node of its own; `noun`: "body"
+/// or "bead".
+[[noreturn]] void fail_at(Node const& at, char const* noun, std::int64_t body,
+                          std::string const& what, std::string const& remedy);
 
 /// The contract knows `feature`, this version does not.
 [[noreturn]] void fail_later(Node const& at, std::string const& feature);

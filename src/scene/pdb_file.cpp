@@ -18,10 +18,13 @@ constexpr std::string_view blanks = " \t\r\n";
 
 std::string_view trimmed(std::string_view text) {
     std::size_t const first = text.find_first_not_of(blanks);
-    return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    return first == std::string_view::npos
+               ? std::string_view()
+               : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Columns from `first` (from 1) on, without blanks at their ends; nothing where the line is shorter.
+/// Columns from `first` (from 1) on, without blanks at their ends; nothing where the line is
+/// shorter.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t count) {
     return line.size() < first ? std::string_view() : trimmed(line.substr(first - 1, count));
 }
@@ -47,28 +50,35 @@ std::string_view without_mark(std::string_view text) {
 
 /// Files of other kinds under this one's name.
 void refuse_other_formats(std::string_view text, std::string const& path) {
-    auto const refuse = [&](char const* what, char const* remedy) { throw InputError(what, path, remedy); };
+    auto const refuse = [&](char const* what, char const* remedy) {
+        throw InputError(what, path, remedy);
+    };
     if (text.starts_with("\x1F\x8B")) refuse("the file is compressed", "unpack it: gunzip");
-    if (text.substr(0, 4096).find('\0') != std::string_view::npos) refuse("the file is no text", "write a PDB file");
+    if (text.substr(0, 4096).find('\0') != std::string_view::npos)
+        refuse("the file is no text", "write a PDB file");
     std::string_view const begin = trimmed(text.substr(0, 4096));
     if (begin.empty() && trimmed(text).empty()) refuse("the file is empty", "write a PDB file");
-    if (begin.starts_with("data_") || begin.starts_with("loop_") || begin.starts_with("_atom_site") ||
-        text.find("\n_atom_site.") != std::string_view::npos)
+    if (begin.starts_with("data_") || begin.starts_with("loop_") ||
+        begin.starts_with("_atom_site") || text.find("\n_atom_site.") != std::string_view::npos)
         refuse("mmCIF is not read yet", "write a PDB file (gemmi convert in.cif out.pdb)");
     if (begin.starts_with("<")) refuse("the file holds HTML or XML", "write a PDB file");
-    if (begin.starts_with(">")) refuse("the file holds sequences (FASTA)", "write a PDB file, or give it as `fasta`");
+    if (begin.starts_with(">"))
+        refuse("the file holds sequences (FASTA)", "write a PDB file, or give it as `fasta`");
 }
 
 [[noreturn]] void refuse_line(std::string const& what, std::string const& path, int line) {
-    throw InputError(what, fmt::format("{}: line {}", path, line),
-                     "give x, y and z in angstrom, with a decimal point, in columns 31-38, 39-46 and 47-54");
+    throw InputError(
+        what, fmt::format("{}: line {}", path, line),
+        "give x, y and z in angstrom, with a decimal point, in columns 31-38, 39-46 and 47-54");
 }
 
-/// A number in another place than its columns leaves a digit at the field's edge, or no digit before its point.
+/// A number in another place than its columns leaves a digit at the field's edge, or no digit
+/// before its point.
 bool stands_apart(std::string_view line, std::string_view field, std::size_t first) {
     std::size_t const point = field.find('.');
     char const next = column(line, first + 8);
-    if (point == std::string_view::npos) return next != '.' && (!is_digit(next) || field.size() >= 7);  // too large for decimals
+    if (point == std::string_view::npos)
+        return next != '.' && (!is_digit(next) || field.size() >= 7);  // too large for decimals
     if (point == 0 || !is_digit(field[point - 1])) return false;
     bool const cut = is_digit(column(line, first + 7)) && is_digit(next);
     return !cut || field.size() - point - 1 == 3 || field.size() == 8;
@@ -77,17 +87,21 @@ bool stands_apart(std::string_view line, std::string_view field, std::size_t fir
 double coordinate(std::string_view line, std::size_t first, std::string const& path, int n) {
     std::string_view const field = columns(line, first, 8);
     double value = 0;
-    if (parse_number(field, value) != NumberFault::none) refuse_line(fmt::format("`{}` is not a number", shown(field)), path, n);
-    if (!stands_apart(line, field, first)) refuse_line(fmt::format("`{}` is cut out of its column", shown(field)), path, n);
+    if (parse_number(field, value) != NumberFault::none)
+        refuse_line(fmt::format("`{}` is not a number", shown(field)), path, n);
+    if (!stands_apart(line, field, first))
+        refuse_line(fmt::format("`{}` is cut out of its column", shown(field)), path, n);
     return value;
 }
 
-/// Columns 18 to 20, with column 21 for the four letters of force fields; else that one belongs to the chain's name.
+/// Columns 18 to 20, with column 21 for the four letters of force fields; else that one belongs to
+/// the chain's name.
 void read_names(std::string_view line, PdbAtom& atom) {
     atom.name = columns(line, 13, 4);
     atom.at_margin = column(line, 13) != ' ' && !is_digit(column(line, 13));
     std::string_view const four = columns(line, 18, 4);
-    bool const long_name = column(line, 21) != ' ' && (column(line, 22) == ' ' || meaning_of(four).kind != ResidueKind::other);
+    bool const long_name = column(line, 21) != ' ' &&
+                           (column(line, 22) == ' ' || meaning_of(four).kind != ResidueKind::other);
     atom.residue = long_name ? four : columns(line, 18, 3);
     atom.chain = long_name || column(line, 21) == ' ' ? columns(line, 22, 1) : columns(line, 21, 2);
     bool const wide = is_digit(column(line, 27));  // numbers above 9999 of some programs
@@ -106,22 +120,28 @@ PdbAtom read_atom(std::string_view line, std::string const& path, int n) {
     read_names(line, atom);
     if (line.size() < 54) refuse_line("the atom's line is cut short", path, n);
     if (is_digit(column(line, 30))) refuse_line("the coordinates begin before column 31", path, n);
-    for (std::size_t i = 0; i < 3; ++i) atom.position[static_cast<int>(i)] = coordinate(line, 31 + 8 * i, path, n);
-    if (double occupancy = 1; parse_number(columns(line, 55, 6), occupancy) == NumberFault::none) atom.occupancy = occupancy;
+    for (std::size_t i = 0; i < 3; ++i)
+        atom.position[static_cast<int>(i)] = coordinate(line, 31 + 8 * i, path, n);
+    if (double occupancy = 1; parse_number(columns(line, 55, 6), occupancy) == NumberFault::none)
+        atom.occupancy = occupancy;
     return atom;
 }
 
 bool is_atom(std::string_view line) {
     if (line.starts_with("HETATM")) return true;
-    return line.starts_with("ATOM") && (blanks.find(column(line, 5)) != std::string_view::npos || is_digit(column(line, 5)));
+    return line.starts_with("ATOM") &&
+           (blanks.find(column(line, 5)) != std::string_view::npos || is_digit(column(line, 5)));
 }
 
-bool is_record(std::string_view line, std::string_view name) { return trimmed(line.substr(0, 6)) == name; }
+bool is_record(std::string_view line, std::string_view name) {
+    return trimmed(line.substr(0, 6)) == name;
+}
 
 /// SEQRES: columns 12 (chain) and 14 to 17 (residues in all).
 void read_sequence_record(std::string_view line, PdbSummary& summary) {
     double residues = 0;
-    if (parse_number(columns(line, 14, 4), residues) == NumberFault::none && residues > 0 && residues < 1e4)
+    if (parse_number(columns(line, 14, 4), residues) == NumberFault::none && residues > 0 &&
+        residues < 1e4)
         summary.sequence[std::string(columns(line, 12, 1))] = static_cast<std::int64_t>(residues);
 }
 
@@ -140,7 +160,8 @@ void read_cell(std::string_view line, PdbSummary& summary) {
 
 }  // namespace
 
-PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path, std::function<void(PdbAtom const&)> const& take) {
+PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
+                             std::function<void(PdbAtom const&)> const& take) {
     text = without_mark(text);
     refuse_other_formats(text, path);
     PdbSummary summary;
@@ -150,7 +171,8 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path, std
         ++number;
         if (is_record(line, "MODEL") || is_record(line, "ENDMDL") || is_record(line, "END")) {
             if (std::exchange(begun, false)) open = false;
-        } else if (line.starts_with("TER") && blanks.find(column(line, 4)) != std::string_view::npos) {
+        } else if (line.starts_with("TER") &&
+                   blanks.find(column(line, 4)) != std::string_view::npos) {
             ++part;
         } else if (is_record(line, "CRYST1")) {
             read_cell(line, summary);
@@ -170,14 +192,16 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path, std
 
 std::optional<std::int64_t> residue_number(std::string_view number) {
     double value = 0;
-    if (parse_number(number, value) == NumberFault::none && value == std::floor(value) && std::abs(value) < 1e6)
+    if (parse_number(number, value) == NumberFault::none && value == std::floor(value) &&
+        std::abs(value) < 1e6)
         return static_cast<std::int64_t>(value);
     if (number.size() != 4 || !std::isalpha(static_cast<unsigned char>(number[0]))) return {};
     bool const lower = std::islower(static_cast<unsigned char>(number[0])) != 0;
     std::int64_t sum = 0;
     for (char const c : number) {
         auto const byte = static_cast<unsigned char>(c);
-        if (!std::isalnum(byte) || (std::isalpha(byte) && (std::islower(byte) != 0) != lower)) return {};
+        if (!std::isalnum(byte) || (std::isalpha(byte) && (std::islower(byte) != 0) != lower))
+            return {};
         sum = 36 * sum + (is_digit(c) ? c - '0' : std::toupper(byte) - 'A' + 10);
     }
     std::int64_t constexpr first = 10LL * 36 * 36 * 36, letters = 26LL * 36 * 36 * 36;

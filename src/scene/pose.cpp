@@ -3,10 +3,12 @@
 namespace catena::scene {
 
 Pose operator*(Pose const& a, Pose const& b) {
-    return {normalized(a.orientation * b.orientation), a.origin + to_matrix(a.orientation) * b.origin};
+    return {normalized(a.orientation * b.orientation),
+            a.origin + to_matrix(a.orientation) * b.origin};
 }
 
-Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch, std::array<double, 4> const& q) {
+Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch,
+                  std::array<double, 4> const& q) {
     switch (type) {
         case JointType::revolute:
             return {from_axis_angle(axis, q[0]), Vec3::zero()};
@@ -29,8 +31,10 @@ Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, doub
 Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard) {
     Vec3 const first_axis = bodies.first_axis.empty() ? Vec3::zero() : bodies.first_axis[k];
     double const pitch = bodies.pitch.empty() ? 0 : bodies.pitch[k];
-    Pose const motion = joint_motion(bodies.joint[k], bodies.axis[k], first_axis, pitch, bodies.q[k]);
-    if (bodies.joint[k] == JointType::free) return {normalized(motion.orientation), bodies.free_position};
+    Pose const motion =
+        joint_motion(bodies.joint[k], bodies.axis[k], first_axis, pitch, bodies.q[k]);
+    if (bodies.joint[k] == JointType::free)
+        return {normalized(motion.orientation), bodies.free_position};
     Pose const frame{to_quaternion(bodies.rotation[k]), bodies.translation[k]};
     return (k == 0 ? Pose{} : inboard) * frame * motion;
 }

@@ -1,4 +1,5 @@
-// Where the bodies of a chain in joint coordinates stand: the joints' own motions and their composition.
+// Where the bodies of a chain in joint coordinates stand: the joints' own motions and their
+// composition.
 #pragma once
 
 #include <cmath>
@@ -17,19 +18,21 @@ struct Pose {
 Pose operator*(Pose const& a, Pose const& b);
 
 /// X(q) of B in J, as BodyArrays defines it; a link and a free joint: their q as it stands.
-Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch, std::array<double, 4> const& q);
+Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch,
+                  std::array<double, 4> const& q);
 
 /// Pose in W of body k + 1, given that of body k (k = 0: ignored).
 Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard);
 
-CATENA_HD double value_at(Course const& c, double t) {
-    return c.offset + c.rate * t + c.amplitude * cos_sin(6.283185307179586476925 * c.frequency * t + c.phase).sin;
+CATENA_HD double value_at(PrescribedMotion const& c, double t) {
+    return c.offset + c.rate * t +
+           c.amplitude * cos_sin(6.283185307179586476925 * c.frequency * t + c.phase).sin;
 }
-CATENA_HD double rate_at(Course const& c, double t) {
+CATENA_HD double rate_at(PrescribedMotion const& c, double t) {
     double const omega = 6.283185307179586476925 * c.frequency;
     return c.rate + c.amplitude * omega * cos_sin(omega * t + c.phase).cos;
 }
-CATENA_HD double acceleration_at(Course const& c, double t) {
+CATENA_HD double acceleration_at(PrescribedMotion const& c, double t) {
     double const omega = 6.283185307179586476925 * c.frequency;
     return -c.amplitude * omega * omega * cos_sin(omega * t + c.phase).sin;
 }

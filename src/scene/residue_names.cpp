@@ -17,8 +17,8 @@ struct Family {
     char const* names;
 };
 
-/// Protonation states and force fields' names (Amber, CHARMM, GROMACS), the wwPDB's common modifications without a change of charge, and
-/// mirror images, which one bead cannot tell apart.
+/// Protonation states and force fields' names (Amber, CHARMM, GROMACS), the wwPDB's common
+/// modifications without a change of charge, and mirror images, which one bead cannot tell apart.
 Family const renamed[] = {
     {"ALA", "ALA DAL AIB ABA"},
     {"ARG", "ARG DAR ARGN AGM"},
@@ -42,18 +42,24 @@ Family const renamed[] = {
     {"VAL", "VAL DVA NVA"},
 };
 
-/// Phosphates, sulfates, carboxylates, and lysine, arginine and glutamate that have lost their charge.
+/// Phosphates, sulfates, carboxylates, and lysine, arginine and glutamate that have lost their
+/// charge.
 Family const recharged[] = {
-    {"SER", "SEP S1P"},     {"THR", "TPO T1P"},         {"TYR", "PTR Y1P TYS"}, {"HIS", "NEP H1D H2D H1E H2E"},
-    {"CYS", "CSD CSP OCS"}, {"LYS", "KCX ALY PYL LLP"}, {"ARG", "CIR"},         {"GLU", "CGU PCA"},
+    {"SER", "SEP S1P"},     {"THR", "TPO T1P"},
+    {"TYR", "PTR Y1P TYS"}, {"HIS", "NEP H1D H2D H1E H2E"},
+    {"CYS", "CSD CSP OCS"}, {"LYS", "KCX ALY PYL LLP"},
+    {"ARG", "CIR"},         {"GLU", "CGU PCA"},
     {"ASP", "PHD"},
 };
 
 Family const caps[] = {{"", "ACE NME NMA NH2 NHE FOR CT3"}};
-Family const waters[] = {{"", "HOH WAT DOD H2O OH2 TIP TIP2 TIP3 TIP4 TIP5 TP3 TP4 T3P T4P SOL SPC SPCE W"}};
+Family const waters[] = {
+    {"", "HOH WAT DOD H2O OH2 TIP TIP2 TIP3 TIP4 TIP5 TP3 TP4 T3P T4P SOL SPC SPCE W"}};
 Family const ions[] = {{"",
-                        "LI LI+ LIT NA NA+ SOD NIO K K+ POT RB RB+ RUB CS CS+ CES MG MG2 CA CA2 CAL SR BA BAR ZN ZN2 MN MN3 FE FE2 CO 3CO "
-                        "NI 3NI CU CU1 CD CD2 HG AL AG AU PT PB F CL CL- CLA CIO BR BR- IOD YB YT3 SM GD GD3 TB LA EU PR HO LU TL IR V CR "
+                        "LI LI+ LIT NA NA+ SOD NIO K K+ POT RB RB+ RUB CS CS+ CES MG MG2 CA CA2 "
+                        "CAL SR BA BAR ZN ZN2 MN MN3 FE FE2 CO 3CO "
+                        "NI 3NI CU CU1 CD CD2 HG AL AG AU PT PB F CL CL- CLA CIO BR BR- IOD YB YT3 "
+                        "SM GD GD3 TB LA EU PR HO LU TL IR V CR "
                         "GA IN PD OS RE U1"}};
 
 void add(Meanings& all, std::span<Family const> families, ResidueKind kind) {
@@ -83,7 +89,8 @@ ResidueMeaning meaning_of(std::string_view name) {
     if (auto const found = all.find(key); found != all.end()) return found->second;
     bool const end = key.size() == 4 && (key[0] == 'N' || key[0] == 'C');
     auto const inner = end ? all.find(key.substr(1)) : all.end();
-    return inner != all.end() && inner->second.kind == ResidueKind::amino_acid ? inner->second : ResidueMeaning{};
+    return inner != all.end() && inner->second.kind == ResidueKind::amino_acid ? inner->second
+                                                                               : ResidueMeaning{};
 }
 
 }  // namespace catena::scene

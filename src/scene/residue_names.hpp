@@ -17,11 +17,12 @@ enum class ResidueKind {
 
 struct ResidueMeaning {
     ResidueKind kind = ResidueKind::other;
-    std::string parent = {};  // three letters, of amino_acid and charged; the name itself where it is one of the twenty
+    std::string parent = {};  // three letters, of amino_acid and charged; the name itself where it
+                              // is one of the twenty
 };
 
-/// In any case, blanks cut off: "MSE" is an amino_acid with the parent "MET". Names of protonation states (HIE, ASH, LYN) and Amber's of
-/// residues at a chain's ends (NMET, CLYS) are their residue.
+/// In any case, blanks cut off: "MSE" is an amino_acid with the parent "MET". Names of protonation
+/// states (HIE, ASH, LYN) and Amber's of residues at a chain's ends (NMET, CLYS) are their residue.
 ResidueMeaning meaning_of(std::string_view name);
 
 }  // namespace catena::scene

@@ -13,16 +13,20 @@ std::int64_t Scene::bodies() const {
 }
 
 void Scene::note(std::string text) {
-    // What is said again follows soon; a search of all would be quadratic where each of many chains has its own note.
+    // What is said again follows soon; a search of all would be quadratic where each of many chains
+    // has its own note.
     std::size_t constexpr looked_at = 1000;
     auto const from = notes.end() - static_cast<std::ptrdiff_t>(std::min(notes.size(), looked_at));
     if (std::find(from, notes.end(), text) == notes.end()) notes.push_back(std::move(text));
 }
 
 GpuLevels SolverSpec::levels_on_gpu() const {
-    auto const number = [](std::string const& part) { return part == "auto" || part == "all" ? GpuLevels::all : std::stoi(part); };
+    auto const number = [](std::string const& part) {
+        return part == "auto" || part == "all" ? GpuLevels::all : std::stoi(part);
+    };
     std::size_t const comma = gpu_levels.find(',');
-    return {number(gpu_levels.substr(0, comma)), number(comma == std::string::npos ? gpu_levels : gpu_levels.substr(comma + 1))};
+    return {number(gpu_levels.substr(0, comma)),
+            number(comma == std::string::npos ? gpu_levels : gpu_levels.substr(comma + 1))};
 }
 
 char const* name_of(JointType type) {

@@ -35,7 +35,8 @@ Descent::Ended Descent::run(Limits const& limits, Tell const& tell) {
         bool const pushed = largest_force_ > limits.large_force;
         double const fall = before - ended.energy;
         // Where overlaps push, the energy rises at times before it falls.
-        if (std::isfinite(ended.energy) && (pushed ? std::abs(fall) < limits.last_fall : fall < limits.fall)) {
+        if (std::isfinite(ended.energy) &&
+            (pushed ? std::abs(fall) < limits.last_fall : fall < limits.fall)) {
             ended.at_rest = true;
             break;
         }
@@ -53,7 +54,8 @@ void Descent::step() {
     if (!move()) return stop(0.3);
     if (accelerate() > 0) {
         mix();
-        if (++downhill_ > patience) step_ = std::min(longer * step_, longest_step), mixing_ *= less_mixing;
+        if (++downhill_ > patience)
+            step_ = std::min(longer * step_, longest_step), mixing_ *= less_mixing;
     } else {
         stop(shorter);
     }
@@ -85,7 +87,8 @@ void Descent::mix() {
         for (std::size_t u = 0; u < velocity_[c].size(); ++u) {
             UnitMotion const& a = acceleration_[c][u];
             UnitMotion& v = velocity_[c][u];
-            v = {plus_scaled((1 - mixing_) * v.shift, along, a.shift), plus_scaled((1 - mixing_) * v.turn, along, a.turn)};
+            v = {plus_scaled((1 - mixing_) * v.shift, along, a.shift),
+                 plus_scaled((1 - mixing_) * v.turn, along, a.turn)};
         }
 }
 
@@ -101,12 +104,14 @@ bool Descent::move() {
     for (std::size_t c = 0; c < chains_.size(); ++c) {
         std::vector<UnitMotion> by = velocity_[c];
         for (std::size_t u = 0; u < by.size(); ++u) {
-            double const way = step_ * chains_[c].size(u, by[u]), part = step_ * (way > cap ? cap / way : 1);
+            double const way = step_ * chains_[c].size(u, by[u]),
+                         part = step_ * (way > cap ? cap / way : 1);
             by[u] = {part * by[u].shift, part * by[u].turn};
         }
         moved = chains_[c].move(by) && moved;
         chains_[c].put_beads(at_);
-        for (std::size_t u = 0; u < by.size(); ++u) velocity_[c][u] = {(1 / step_) * by[u].shift, (1 / step_) * by[u].turn};
+        for (std::size_t u = 0; u < by.size(); ++u)
+            velocity_[c][u] = {(1 / step_) * by[u].shift, (1 / step_) * by[u].turn};
     }
     return moved;
 }

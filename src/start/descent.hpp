@@ -1,4 +1,5 @@
-// Moves chains down the forces on their beads: steps with inertia, which is lost where they lead uphill, and with a cap.
+// Moves chains down the forces on their beads: steps with inertia, which is lost where they lead
+// uphill, and with a cap.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +11,16 @@
 
 namespace catena {
 
-/// Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006): FIRE, on units of chains. A function of its arguments alone.
+/// Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006): FIRE, on units of chains. A function of its
+/// arguments alone.
 class Descent {
   public:
     struct Limits {
         std::int64_t most;    // evaluations
         std::int64_t window;  // evaluations in which the energy must fall ...
-        double fall;          // ... by this much, kJ/mol: else it ends, where no bead feels more than ...
-        double large_force;   // ... this, kJ/mol/nm; where one does ...
-        double last_fall;     // ... it ends where the energy changes by less than this
+        double fall;  // ... by this much, kJ/mol: else it ends, where no bead feels more than ...
+        double large_force;  // ... this, kJ/mol/nm; where one does ...
+        double last_fall;    // ... it ends where the energy changes by less than this
     };
     /// `at`: where the scene's beads stand, in the order of the forces' beads.
     Descent(std::vector<MovingChain>& chains, LoneForces& forces, std::vector<Vec3>& at);

@@ -7,9 +7,9 @@
 
 #include "error.hpp"
 #include "force/contacts.hpp"
-#include "integrate/scene_beads.hpp"
 #include "generate/nearest.hpp"
 #include "generate/random.hpp"
+#include "integrate/scene_beads.hpp"
 
 namespace catena {
 namespace {
@@ -34,7 +34,8 @@ std::unique_ptr<OpenMmForce> LoneForces::make(Scene const& scene, std::optional<
     spec.threads = spec.threads > 0 ? spec.threads : threads_of_cpu;
     spec.precision = "", spec.path = "inline", spec.layers = "none";
     spec.replicate = spec.audit = false;
-    return reach ? make_openmm_contacts(spec, beads_, *alone_, *reach) : make_openmm_force(spec, beads_, *alone_);
+    return reach ? make_openmm_contacts(spec, beads_, *alone_, *reach)
+                 : make_openmm_force(spec, beads_, *alone_);
 }
 
 std::vector<Vec3> LoneForces::forces(std::vector<Vec3> const& positions) {
@@ -47,7 +48,8 @@ std::vector<Vec3> LoneForces::forces(std::vector<Vec3> const& positions) {
         force_->begin(std::as_const(position_).view());
         force_->finish(force_of_bead_.view());
         for (std::int64_t i = 0; i < beads_.size(); ++i) found.push_back(force_of_bead_[i]);
-        finite_ = std::all_of(found.begin(), found.end(), [](Vec3 const& f) { return std::isfinite(dot(f, f)); });
+        finite_ = std::all_of(found.begin(), found.end(),
+                              [](Vec3 const& f) { return std::isfinite(dot(f, f)); });
     } catch (ComputationError const&) {
         finite_ = false;
     }
@@ -65,7 +67,7 @@ double LoneForces::energy() {
     return finite_ && std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-LoneForces::Evaluation LoneForces::at(std::vector<Vec3> const& positions) {
+LoneForces::FusedSweep LoneForces::at(std::vector<Vec3> const& positions) {
     std::vector<Vec3> found = forces(positions);
     double const sum = energy();
     return {sum, std::isfinite(sum) ? std::move(found) : pushes(positions)};
@@ -74,14 +76,18 @@ LoneForces::Evaluation LoneForces::at(std::vector<Vec3> const& positions) {
 std::vector<Vec3> LoneForces::pushes(std::vector<Vec3> const& positions) const {
     std::vector<Vec3> forces(positions.size(), Vec3::zero());
     bool any = false;
-    scene::for_each_near_pair(positions, beads_.box, pushed, [&](std::size_t i, std::size_t j, Vec3 const& apart) {
-        double const distance = norm(apart);
-        Vec3 const along = distance > 0 ? (1 / distance) * apart : scene::Draws(i, static_cast<std::int64_t>(j)).on_sphere();
-        forces[i] = plus_scaled(forces[i], push, along);
-        forces[j] = plus_scaled(forces[j], -push, along);
-        any = true;
-    });
-    for (std::size_t i = 0; i < forces.size() && !any; ++i) forces[i] = push * scene::Draws(i, 0).on_sphere();
+    scene::for_each_near_pair(
+        positions, beads_.box, pushed, [&](std::size_t i, std::size_t j, Vec3 const& apart) {
+            double const distance = norm(apart);
+            Vec3 const along = distance > 0
+                                   ? (1 / distance) * apart
+                                   : scene::Draws(i, static_cast<std::int64_t>(j)).on_sphere();
+            forces[i] = plus_scaled(forces[i], push, along);
+            forces[j] = plus_scaled(forces[j], -push, along);
+            any = true;
+        });
+    for (std::size_t i = 0; i < forces.size() && !any; ++i)
+        forces[i] = push * scene::Draws(i, 0).on_sphere();
     return forces;
 }
 

@@ -9,7 +9,8 @@
 
 namespace catena {
 
-MovingChain::MovingChain(ChainSpec& chain, std::size_t first_bead) : chain_(chain), first_(first_bead) {
+MovingChain::MovingChain(ChainSpec& chain, std::size_t first_bead)
+    : chain_(chain), first_(first_bead) {
     stand_.at = chain.is_beads() ? chain.beads.position : chain.linked.position;
     for (auto const& q : chain.linked.orientation) stand_.turn.push_back({q[0], q[1], q[2], q[3]});
     weight_.assign(units(), 1), squares_.assign(units(), 0), widest_.assign(units(), 0);
@@ -22,7 +23,9 @@ MovingChain::MovingChain(ChainSpec& chain, std::size_t first_bead) : chain_(chai
     }
 }
 
-std::size_t MovingChain::begin_of(std::size_t unit) const { return static_cast<std::size_t>(chain_.linked.carried.offset[unit]); }
+std::size_t MovingChain::begin_of(std::size_t unit) const {
+    return static_cast<std::size_t>(chain_.linked.carried.offset[unit]);
+}
 
 UnitMotion MovingChain::acceleration(std::size_t unit, std::vector<Vec3> const& forces) const {
     if (chain_.is_beads()) return {forces[first_ + unit], Vec3::zero()};
@@ -33,7 +36,8 @@ UnitMotion MovingChain::acceleration(std::size_t unit, std::vector<Vec3> const& 
         force = force + forces[first_ + b];
         torque = torque + cross(r * chain_.linked.carried.position[b], forces[first_ + b]);
     }
-    return {(1 / weight_[unit]) * force, squares_[unit] > 0 ? (1 / squares_[unit]) * torque : Vec3::zero()};
+    return {(1 / weight_[unit]) * force,
+            squares_[unit] > 0 ? (1 / squares_[unit]) * torque : Vec3::zero()};
 }
 
 double MovingChain::product(std::size_t unit, UnitMotion const& x, UnitMotion const& y) const {
@@ -48,7 +52,8 @@ bool MovingChain::move(std::span<UnitMotion> by) {
     Stand before = stand_;
     for (std::size_t u = 0; u < units(); ++u) {
         stand_.at[u] = stand_.at[u] + by[u].shift;
-        if (dot(by[u].turn, by[u].turn) > 0) stand_.turn[u] = normalized(from_rotation_vector(by[u].turn) * stand_.turn[u]);
+        if (dot(by[u].turn, by[u].turn) > 0)
+            stand_.turn[u] = normalized(from_rotation_vector(by[u].turn) * stand_.turn[u]);
     }
     if (!close()) {
         stand_ = std::move(before);
@@ -79,7 +84,8 @@ void MovingChain::write() {
 }
 
 std::vector<std::span<std::byte>> MovingChain::bytes() {
-    return {std::as_writable_bytes(std::span(stand_.at)), std::as_writable_bytes(std::span(stand_.turn))};
+    return {std::as_writable_bytes(std::span(stand_.at)),
+            std::as_writable_bytes(std::span(stand_.turn))};
 }
 
 bool MovingChain::close() {
@@ -87,7 +93,8 @@ bool MovingChain::close() {
     std::vector<double> length, mobility;
     bool const beads = chain_.is_beads(), fixed = chain_.base == Base::fixed;
     auto const add = [&](Vec3 const& p, double l, double m, Vec3 const& in, Vec3 const& out) {
-        at.push_back(p), length.push_back(l), mobility.push_back(m), inboard.push_back(in), outboard.push_back(out);
+        at.push_back(p), length.push_back(l), mobility.push_back(m), inboard.push_back(in),
+            outboard.push_back(out);
     };
     Vec3 const none = Vec3::zero();
     if (fixed) add(beads ? chain_.beads.anchor : chain_.linked.anchor, 0, 0, none, none);
@@ -98,12 +105,14 @@ bool MovingChain::close() {
         }
         LinkedArrays const& linked = chain_.linked;
         Mat3 const r = to_matrix(stand_.turn[u]);
-        add(stand_.at[u], linked.length[u], 1 / std::max(1.0, weight_[u]), r * linked.inboard[u], r * linked.outboard[u]);
+        add(stand_.at[u], linked.length[u], 1 / std::max(1.0, weight_[u]), r * linked.inboard[u],
+            r * linked.outboard[u]);
     }
     TipJoint const& tip = chain_.tip_joint;
     bool const jointed = chain_.tip == Tip::jointed;
     if (jointed && !tip.ring) add(*tip.anchor, tip.length, 0, none, none);
-    bool const closed = links_.project({at, length, mobility, inboard, outboard, jointed && tip.ring ? tip.length : 0});
+    bool const closed = links_.project(
+        {at, length, mobility, inboard, outboard, jointed && tip.ring ? tip.length : 0});
     std::copy_n(at.begin() + (fixed ? 1 : 0), units(), stand_.at.begin());
     return closed;
 }
@@ -114,8 +123,12 @@ std::vector<MovingChain> moving_chains(Scene& scene) {
     for (ChainSpec& chain : scene.chains) {
         if (chain.bead_count() == 0) continue;  // it feels nothing
         if (!chain.is_beads() && !chain.is_linked())
-            throw InputError(fmt::format("`relax` moves beads and rigid domains on links, chain `{}` has other joints", chain.name),
-                             scene.file + ": relax", "leave `relax` out, or give that chain a start without overlaps");
+            throw InputError(
+                fmt::format(
+                    "`relax` moves beads and rigid domains on links, chain `{}` has other joints",
+                    chain.name),
+                scene.file + ": relax",
+                "leave `relax` out, or give that chain a start without overlaps");
         moving.emplace_back(chain, bead);
         bead += chain.bead_count();
     }

@@ -1,18 +1,20 @@
-// Chains of beads and domains on links, pushed by forces on their beads while their links keep their lengths.
+// Chains of beads and domains on links, pushed by forces on their beads while their links keep
+// their lengths.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "generate/link_projection.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
-#include "generate/link_projection.hpp"
 #include "scene/scene.hpp"
 
 namespace catena {
 
-/// Of a unit, along and about its centre: how far it goes, how fast, or what pushes it. A bead does not turn.
+/// Of a unit, along and about its centre: how far it goes, how fast, or what pushes it. A bead does
+/// not turn.
 struct UnitMotion {
     Vec3 shift = Vec3::zero(), turn = Vec3::zero();
 };
@@ -24,13 +26,15 @@ class MovingChain {
     MovingChain(ChainSpec& chain, std::size_t first_bead);
 
     std::size_t units() const { return stand_.at.size(); }
-    /// What `forces` on the scene's beads make of each unit: the mean force, and the torque over the beads' squared distances.
+    /// What `forces` on the scene's beads make of each unit: the mean force, and the torque over
+    /// the beads' squared distances.
     UnitMotion acceleration(std::size_t unit, std::vector<Vec3> const& forces) const;
     /// What a unit's motion weighs in sums over units: of x and y.
     double product(std::size_t unit, UnitMotion const& x, UnitMotion const& y) const;
     /// How far it takes the unit's beads at most; nm for one in nm and rad.
     double size(std::size_t unit, UnitMotion const& motion) const;
-    /// Moves the units, then closes the links: the shifts become what was done. Where they cannot be closed, false and nothing has moved.
+    /// Moves the units, then closes the links: the shifts become what was done. Where they cannot
+    /// be closed, false and nothing has moved.
     bool move(std::span<UnitMotion> by);
 
     void put_beads(std::vector<Vec3>& positions) const;
@@ -50,7 +54,8 @@ class MovingChain {
     ChainSpec& chain_;
     std::size_t first_;
     Stand stand_;
-    std::vector<double> weight_, squares_, widest_;  // of units: beads, their squared distances from the centre, the largest distance
+    std::vector<double> weight_, squares_,
+        widest_;  // of units: beads, their squared distances from the centre, the largest distance
     scene::LinkProjection links_;
 };
 

@@ -9,19 +9,22 @@
 #include <utility>
 
 #include "error.hpp"
-#include "integrate/scene_beads.hpp"
-#include "start/lone_forces.hpp"
-#include "observe/observables.hpp"
-#include "mpi/first_rank.hpp"
 #include "generate/nearest.hpp"
+#include "integrate/scene_beads.hpp"
+#include "mpi/first_rank.hpp"
+#include "observe/observables.hpp"
+#include "start/lone_forces.hpp"
 
 namespace catena {
 namespace {
 
-double constexpr most_energy = 10;        // thermal kinetic energies: what is let go heats the chains as many times
-double constexpr thermal_force = 400;     // kT/nm: five times what a stiff bond pulls with (spread 0.01 nm) in thermal motion
-double constexpr largest_force = 10'000;  // kT/nm: within a thousandth of a nanometre it does ten times kT
-double constexpr touching = 0.45;         // nm: the smallest diameter of a residue's bead
+double constexpr most_energy =
+    10;  // thermal kinetic energies: what is let go heats the chains as many times
+double constexpr thermal_force =
+    400;  // kT/nm: five times what a stiff bond pulls with (spread 0.01 nm) in thermal motion
+double constexpr largest_force =
+    10'000;                        // kT/nm: within a thousandth of a nanometre it does ten times kT
+double constexpr touching = 0.45;  // nm: the smallest diameter of a residue's bead
 double constexpr coinciding = 0.15;       // nm: forces may not be finite below
 double constexpr as_near = 1.05;          // of the smallest distance
 double constexpr least_distance = 1e-6;   // nm: cells have a width
@@ -43,7 +46,9 @@ class Joined {
     }
     bool operator()(std::size_t a, std::size_t b) const {
         if (body_[a] >= 0 && body_[a] == body_[b]) return true;
-        return std::binary_search(pairs_.begin(), pairs_.end(), std::pair(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b)));
+        return std::binary_search(
+            pairs_.begin(), pairs_.end(),
+            std::pair(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b)));
     }
 
   private:
@@ -54,8 +59,11 @@ class Joined {
 /// Chain and number in it, from 0.
 std::pair<std::size_t, std::int64_t> place_of(BeadSystem const& beads, std::size_t bead) {
     auto const number = static_cast<std::int64_t>(bead);
-    auto const chain = std::upper_bound(beads.chain_offset.begin(), beads.chain_offset.end(), number) - beads.chain_offset.begin() - 1;
-    return {static_cast<std::size_t>(chain), number - beads.chain_offset[static_cast<std::size_t>(chain)]};
+    auto const chain =
+        std::upper_bound(beads.chain_offset.begin(), beads.chain_offset.end(), number) -
+        beads.chain_offset.begin() - 1;
+    return {static_cast<std::size_t>(chain),
+            number - beads.chain_offset[static_cast<std::size_t>(chain)]};
 }
 
 std::string name_of(BeadSystem const& beads, std::size_t bead) {
@@ -65,34 +73,44 @@ std::string name_of(BeadSystem const& beads, std::size_t bead) {
 
 std::string name_of(BeadSystem const& beads, scene::NearPair const& pair) {
     auto const a = place_of(beads, pair.first), b = place_of(beads, pair.second);
-    if (a.first == b.first) return fmt::format("beads {} and {} of chain `{}`", a.second + 1, b.second + 1, beads.chain_name[a.first]);
+    if (a.first == b.first)
+        return fmt::format("beads {} and {} of chain `{}`", a.second + 1, b.second + 1,
+                           beads.chain_name[a.first]);
     return name_of(beads, pair.first) + " and " + name_of(beads, pair.second);
 }
 
-std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& beads, std::vector<Vec3> const& positions, double within) {
+std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& beads,
+                                          std::vector<Vec3> const& positions, double within) {
     Joined const joined(beads);
-    return scene::nearest_pair(positions, scene.box, within, [&](std::size_t a, std::size_t b) { return !joined(a, b); });
+    return scene::nearest_pair(positions, scene.box, within,
+                               [&](std::size_t a, std::size_t b) { return !joined(a, b); });
 }
 
-/// Of the pairs that are as near as the nearest, to a few hundredths of their distance, the one on whose beads the largest forces act.
-std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& beads, std::vector<Vec3> const& positions,
+/// Of the pairs that are as near as the nearest, to a few hundredths of their distance, the one on
+/// whose beads the largest forces act.
+std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& beads,
+                                        std::vector<Vec3> const& positions,
                                         std::vector<Vec3> const& forces) {
     std::optional<scene::NearPair> worst = nearest_of(scene, beads, positions, looked_at);
     if (!worst) return worst;
     Joined const joined(beads);
     double felt = -1;
     double const within = std::max(as_near * worst->distance, least_distance);
-    scene::for_each_near_pair(positions, scene.box, within, [&](std::size_t a, std::size_t b, Vec3 const& apart) {
-        if (joined(a, b)) return;
-        double const both = norm(forces[a]) + norm(forces[b]);
-        // Not `<=`: what is not finite is felt most.
-        if (!(both <= felt)) worst = scene::NearPair{a, b, norm(apart)}, felt = both;
-    });
+    scene::for_each_near_pair(positions, scene.box, within,
+                              [&](std::size_t a, std::size_t b, Vec3 const& apart) {
+                                  if (joined(a, b)) return;
+                                  double const both = norm(forces[a]) + norm(forces[b]);
+                                  // Not `<=`: what is not finite is felt most.
+                                  if (!(both <= felt))
+                                      worst = scene::NearPair{a, b, norm(apart)}, felt = both;
+                              });
     return worst;
 }
 
-/// The middle bead of the first three neighbours in a chain that lie on a line, as far as positions resolve it.
-std::optional<std::size_t> middle_of_straight(BeadSystem const& beads, std::vector<Vec3> const& positions) {
+/// The middle bead of the first three neighbours in a chain that lie on a line, as far as positions
+/// resolve it.
+std::optional<std::size_t> middle_of_straight(BeadSystem const& beads,
+                                              std::vector<Vec3> const& positions) {
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
         for (std::int64_t k = beads.chain_offset[c] + 1; k + 1 < beads.chain_offset[c + 1]; ++k) {
             auto const b = static_cast<std::size_t>(k);
@@ -103,9 +121,11 @@ std::optional<std::size_t> middle_of_straight(BeadSystem const& beads, std::vect
 }
 
 [[noreturn]] void refuse_straight(Scene const& scene, BeadSystem const& beads, std::size_t middle) {
-    throw InputError(fmt::format("forces at the start are not finite: {} and its neighbours lie on a line, where torsions are undefined",
+    throw InputError(fmt::format("forces at the start are not finite: {} and its neighbours lie on "
+                                 "a line, where torsions are undefined",
                                  name_of(beads, middle)),
-                     scene.file, "write `relax: true`, which bends the chain, or give other positions");
+                     scene.file,
+                     "write `relax: true`, which bends the chain, or give other positions");
 }
 
 char const* const other_positions = "write `relax: true`, or give other positions";
@@ -124,20 +144,26 @@ bool StartForces::is_absurd() const {
 }
 
 std::string StartForces::energy_text() const {
-    return fmt::format("{:.6g} kJ/mol ({:.3g} times the kinetic energy at {:.6g} K), largest force {:.3g} kJ/mol/nm on {}", energy,
-                       energy / thermal, temperature, largest_force, force_at);
+    return fmt::format(
+        "{:.6g} kJ/mol ({:.3g} times the kinetic energy at {:.6g} K), largest force {:.3g} "
+        "kJ/mol/nm on {}",
+        energy, energy / thermal, temperature, largest_force, force_at);
 }
 
 std::string StartForces::text() const {
-    return nearest < 0 ? energy_text() : energy_text() + fmt::format(", nearest {}: {:.3g} nm apart", nearest_pair, nearest);
+    return nearest < 0 ? energy_text()
+                       : energy_text() +
+                             fmt::format(", nearest {}: {:.3g} nm apart", nearest_pair, nearest);
 }
 
-StartForces start_forces_of(Scene const& scene, BeadSystem const& beads, std::vector<Vec3> const& positions,
-                            std::vector<Vec3> const& forces, double energy) {
+StartForces start_forces_of(Scene const& scene, BeadSystem const& beads,
+                            std::vector<Vec3> const& positions, std::vector<Vec3> const& forces,
+                            double energy) {
     StartForces found;
     found.energy = energy;
     found.temperature = scene.forces.openmm->temperature;
-    found.thermal = 0.5 * static_cast<double>(degrees_of_freedom(scene)) * scene.boltzmann() * found.temperature;
+    found.thermal = 0.5 * static_cast<double>(degrees_of_freedom(scene)) * scene.boltzmann() *
+                    found.temperature;
     std::size_t worst = 0;
     for (std::size_t i = 0; i < forces.size(); ++i)
         if (double const force = norm(forces[i]); !(force <= found.largest_force)) {
@@ -156,7 +182,8 @@ StartForces look_at_start(ChainSystem& system) {
     std::vector<Vec3> const forces = system.bead_forces();
     StartForces found;
     on_first_rank(system.communicator(), [&] {
-        found = start_forces_of(system.scene(), system.beads(), bead_positions_of(system.scene()), forces, energy);
+        found = start_forces_of(system.scene(), system.beads(), bead_positions_of(system.scene()),
+                                forces, energy);
         refuse_absurd(system.scene(), found);
     });
     return found;
@@ -166,9 +193,11 @@ void refuse_absurd(Scene const& scene, StartForces const& start, std::string con
     if (!start.is_absurd()) return;
     bool const overlap = start.nearest >= 0 && start.nearest < touching;
     std::string what = relaxation.empty() ? "" : fmt::format("after relaxation ({}) ", relaxation);
-    what += overlap ? overlap_text(start.nearest_pair, start.nearest) : "the start positions are far from any thermal state: ";
+    what += overlap ? overlap_text(start.nearest_pair, start.nearest)
+                    : "the start positions are far from any thermal state: ";
     what += "potential energy " + (overlap ? start.energy_text() : start.text());
-    throw InputError(what, scene.file, relaxation.empty() ? other_positions : "give other positions");
+    throw InputError(what, scene.file,
+                     relaxation.empty() ? other_positions : "give other positions");
 }
 
 void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
@@ -178,12 +207,14 @@ void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
         BeadSystem const beads = bead_system_of(scene);
         bool const near = nearest_of(scene, beads, positions, coinciding).has_value();
         bool const torsions = !scene.forces.openmm->system.empty();  // perhaps
-        std::optional<std::size_t> const straight = torsions ? middle_of_straight(beads, positions) : std::nullopt;
+        std::optional<std::size_t> const straight =
+            torsions ? middle_of_straight(beads, positions) : std::nullopt;
         if (!near && !straight) return;
         LoneForces forces(scene);
-        LoneForces::Evaluation const found = forces.at(positions);
+        LoneForces::FusedSweep const found = forces.at(positions);
         if (!near && !forces.are_finite()) refuse_straight(scene, beads, *straight);
-        refuse_absurd(scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy));
+        refuse_absurd(
+            scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy));
     });
 }
 

@@ -12,29 +12,33 @@
 #include "clock.hpp"
 #include "error.hpp"
 #include "integrate/scene_beads.hpp"
+#include "mpi/first_rank.hpp"
 #include "start/descent.hpp"
 #include "start/lone_forces.hpp"
 #include "start/moving_chains.hpp"
-#include "mpi/first_rank.hpp"
 
 namespace catena {
 namespace {
 
 double constexpr reach_of_contacts = 1;  // nm
-double constexpr most_columns = 1e4;     // of cells as wide, across the box: OpenMM takes a microsecond for each
+double constexpr most_columns =
+    1e4;  // of cells as wide, across the box: OpenMM takes a microsecond for each
 std::int64_t constexpr most_of_contacts = 3000, window_of_contacts = 50;  // evaluations
-double constexpr bead_evaluations = 3e6;  // with all forces; 300 of a slab of 10,000 beads take some minutes on a core
+double constexpr bead_evaluations =
+    3e6;  // with all forces; 300 of a slab of 10,000 beads take some minutes on a core
 std::int64_t constexpr least_of_all = 200, most_of_all = 3000, window_of_all = 20;
 double constexpr large_force = 400;  // kT/nm: more than any bead feels in thermal motion
 double constexpr least_fall = 0.02;  // of the thermal energy, in a window
 double constexpr seconds_between_lines = 5;
 
-/// Cells of OpenMM's lists are as wide as the forces reach: in a wide box that is nearly empty, short forces would take longer.
+/// Cells of OpenMM's lists are as wide as the forces reach: in a wide box that is nearly empty,
+/// short forces would take longer.
 double contact_reach(Scene const& scene, std::size_t beads) {
     if (!scene.box) return reach_of_contacts;
     Vec3 const& edge = *scene.box;
     double const widest = std::max({edge[0] * edge[1], edge[1] * edge[2], edge[0] * edge[2]});
-    return std::max(reach_of_contacts, std::sqrt(widest / std::max(most_columns, static_cast<double>(beads))));
+    return std::max(reach_of_contacts,
+                    std::sqrt(widest / std::max(most_columns, static_cast<double>(beads))));
 }
 
 /// A line every few seconds.
@@ -44,7 +48,8 @@ class Teller {
     void operator()(std::int64_t evaluations, double energy) {
         if (!say_ || seconds_now() - last_ < seconds_between_lines) return;
         last_ = seconds_now();
-        say_(fmt::format("relaxation, {}: {} evaluations, {:.0f} s, energy {:.6g} kJ/mol", forces_, evaluations, last_ - start_, energy));
+        say_(fmt::format("relaxation, {}: {} evaluations, {:.0f} s, energy {:.6g} kJ/mol", forces_,
+                         evaluations, last_ - start_, energy));
     }
 
   private:
@@ -60,27 +65,32 @@ double furthest(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
 }
 
 /// Overlaps are pushed apart by near forces first, which are cheap; all forces have the last word.
-StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains, RelaxationSays const& say) {
+StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains,
+                            RelaxationSays const& say) {
     LoneForces all(scene);
     std::vector<Vec3> at = bead_positions_of(scene);
     std::vector<Vec3> const given = at;
     auto const look = [&] {
-        LoneForces::Evaluation const found = all.at(at);
+        LoneForces::FusedSweep const found = all.at(at);
         return start_forces_of(scene, all.beads(), at, found.forces, found.energy);
     };
     StartRelaxation found;
     found.from = look();
-    double const kt = scene.boltzmann() * scene.forces.openmm->temperature, fall = least_fall * found.from.thermal;
+    double const kt = scene.boltzmann() * scene.forces.openmm->temperature,
+                 fall = least_fall * found.from.thermal;
     {
         LoneForces near(scene, contact_reach(scene, at.size()));
         Descent descent(chains, near, at);
-        found.steps =
-            descent.run({most_of_contacts, window_of_contacts, fall, large_force * kt, kt}, Teller(say, "forces between near beads"))
-                .evaluations;
+        found.steps = descent
+                          .run({most_of_contacts, window_of_contacts, fall, large_force * kt, kt},
+                               Teller(say, "forces between near beads"))
+                          .evaluations;
     }
-    auto const affordable = static_cast<std::int64_t>(bead_evaluations / static_cast<double>(at.size()));
+    auto const affordable =
+        static_cast<std::int64_t>(bead_evaluations / static_cast<double>(at.size()));
     Descent descent(chains, all, at);
-    Descent::Ended const ended = descent.run({std::clamp(affordable, least_of_all, most_of_all), window_of_all, fall, large_force * kt, kt},
+    Descent::Ended const ended = descent.run({std::clamp(affordable, least_of_all, most_of_all),
+                                              window_of_all, fall, large_force * kt, kt},
                                              Teller(say, "all forces"));
     found.steps += ended.evaluations;
     found.at_rest = ended.at_rest;
@@ -92,10 +102,13 @@ StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains
 
 }  // namespace
 
-std::string StartRelaxation::text() const { return fmt::format("{}: from {} to {}", way_text(), from.text(), to.text()); }
+std::string StartRelaxation::text() const {
+    return fmt::format("{}: from {} to {}", way_text(), from.text(), to.text());
+}
 
 std::string StartRelaxation::way_text() const {
-    return fmt::format("{} evaluations{}, beads moved by up to {:.3g} nm", steps, at_rest ? "" : ", the most that are taken", moved);
+    return fmt::format("{} evaluations{}, beads moved by up to {:.3g} nm", steps,
+                       at_rest ? "" : ", the most that are taken", moved);
 }
 
 RelaxationSays relaxation_says(bool quiet) {
@@ -103,10 +116,11 @@ RelaxationSays relaxation_says(bool quiet) {
     return [](std::string const& line) { std::fprintf(stderr, "catena: %s\n", line.c_str()); };
 }
 
-RelaxedScene relax_start(Scene const& scene, Communicator const& communicator, RelaxationSays const& say) {
+RelaxedScene relax_start(Scene const& scene, Communicator const& communicator,
+                         RelaxationSays const& say) {
     if (!scene.forces.openmm)
-        throw InputError("`relax` needs forces between beads, the scene has no forces.openmm", scene.file + ": relax",
-                         "leave it out, or add `forces: {openmm: ...}`");
+        throw InputError("`relax` needs forces between beads, the scene has no forces.openmm",
+                         scene.file + ": relax", "leave it out, or add `forces: {openmm: ...}`");
     RelaxedScene made{scene, {}};
     std::vector<MovingChain> chains = moving_chains(made.scene);
     on_first_rank(communicator, [&] { made.relaxation = relax_alone(scene, chains, say); });
@@ -117,7 +131,9 @@ RelaxedScene relax_start(Scene const& scene, Communicator const& communicator, R
     return made;
 }
 
-std::optional<RelaxedScene> relaxed_where_asked(Scene const& scene, Communicator const& communicator, RelaxationSays const& say) {
+std::optional<RelaxedScene> relaxed_where_asked(Scene const& scene,
+                                                Communicator const& communicator,
+                                                RelaxationSays const& say) {
     return scene.relax ? std::optional(relax_start(scene, communicator, say)) : std::nullopt;
 }
 

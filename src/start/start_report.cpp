@@ -15,7 +15,8 @@ json json_of(StartForces const& found) {
                 {"temperature", found.temperature},
                 {"largest_force", found.largest_force},
                 {"force_on", found.force_at}};
-    if (found.nearest >= 0) forces.update({{"nearest_distance", found.nearest}, {"nearest_beads", found.nearest_pair}});
+    if (found.nearest >= 0)
+        forces.update({{"nearest_distance", found.nearest}, {"nearest_beads", found.nearest_pair}});
     return forces;
 }
 
@@ -25,16 +26,19 @@ std::string change_text(double change, char const* unit, std::string const& at) 
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> lines_of(Scene const& scene, StartReport const& report) {
+std::vector<std::pair<std::string, std::string>> lines_of(Scene const& scene,
+                                                          StartReport const& report) {
     char const* const unit = scene.si ? "m" : "nm";
     std::vector<std::pair<std::string, std::string>> lines{
         {"largest link change", change_text(report.change.link, unit, report.change.link_at)},
-        {"largest displacement", change_text(report.change.position, unit, report.change.moved_at)}};
+        {"largest displacement",
+         change_text(report.change.position, unit, report.change.moved_at)}};
     if (report.relaxation) {
         lines.emplace_back("relaxation", report.relaxation->way_text());
         lines.emplace_back("energy before", report.relaxation->from.text());
     }
-    if (report.forces) lines.emplace_back(report.relaxation ? "energy after" : "energy", report.forces->text());
+    if (report.forces)
+        lines.emplace_back(report.relaxation ? "energy after" : "energy", report.forces->text());
     return lines;
 }
 

@@ -20,9 +20,9 @@ struct StartReport {
 
 /// Names and values of lines.
 std::vector<std::pair<std::string, std::string>> lines_of(Scene const&, StartReport const&);
-/// {"largest_link_change", "link", "largest_displacement", "bead"; with forces "potential_energy", "thermal_energy", "temperature",
-/// "largest_force", "force_on", "nearest_distance", "nearest_beads"; with relaxation "relaxation": {"steps", "largest_displacement",
-/// "from", "to"}}.
+/// {"largest_link_change", "link", "largest_displacement", "bead"; with forces "potential_energy",
+/// "thermal_energy", "temperature", "largest_force", "force_on", "nearest_distance",
+/// "nearest_beads"; with relaxation "relaxation": {"steps", "largest_displacement", "from", "to"}}.
 nlohmann::json json_of(StartReport const&);
 
 }  // namespace catena

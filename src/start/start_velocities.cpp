@@ -10,13 +10,19 @@ namespace catena {
 namespace {
 
 bool is_thermal(ChainSpec const& chain) { return chain.velocities == StartVelocities::thermal; }
-bool has_absolute_coordinates(ChainSpec const& chain) { return !scene::joint_without_absolute_coordinates(chain); }
+bool has_absolute_coordinates(ChainSpec const& chain) {
+    return !scene::joint_without_absolute_coordinates(chain);
+}
 
 /// State in absolute coordinates, every body of the scene, on every rank.
 struct Drawn {
     std::vector<double> velocity, omega, orientation;  // W; B; quaternions of B in W
-    Vec3 velocity_of(std::size_t body) const { return {{velocity[3 * body], velocity[3 * body + 1], velocity[3 * body + 2]}}; }
-    Vec3 omega_of(std::size_t body) const { return {{omega[3 * body], omega[3 * body + 1], omega[3 * body + 2]}}; }
+    Vec3 velocity_of(std::size_t body) const {
+        return {{velocity[3 * body], velocity[3 * body + 1], velocity[3 * body + 2]}};
+    }
+    Vec3 omega_of(std::size_t body) const {
+        return {{omega[3 * body], omega[3 * body + 1], omega[3 * body + 2]}};
+    }
     Mat3 turn_of(std::size_t body) const {
         double const* const q = orientation.data() + 4 * body;
         return to_matrix(Quat{q[0], q[1], q[2], q[3]});
@@ -25,7 +31,8 @@ struct Drawn {
 
 Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& communicator) {
     ChainSystem system(scene, Axes::world, communicator);
-    dynamics.integrator = Integrator::rattle;  // any in absolute coordinates: its start draws the velocities
+    dynamics.integrator =
+        Integrator::rattle;  // any in absolute coordinates: its start draws the velocities
     make_stepper(system, dynamics);
     auto arrays = system.state();
     auto const n = static_cast<std::size_t>(scene.bodies());
@@ -40,7 +47,8 @@ Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& commun
 
 void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
     chain.velocities = StartVelocities::given;
-    for (std::size_t k = 0; k < chain.beads.size(); ++k) chain.beads.velocity[k] = drawn.velocity_of(first + k);
+    for (std::size_t k = 0; k < chain.beads.size(); ++k)
+        chain.beads.velocity[k] = drawn.velocity_of(first + k);
     for (std::size_t k = 0; k < chain.linked.size(); ++k) {
         chain.linked.velocity[k] = drawn.velocity_of(first + k);
         chain.linked.omega[k] = drawn.omega_of(first + k);
@@ -50,11 +58,13 @@ void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {  // relative to the inboard body, B
         bodies.qd[k] = drawn.omega_of(first + k);
         if (k > 0)
-            bodies.qd[k] =
-                bodies.qd[k] - transposed_times(drawn.turn_of(first + k), drawn.turn_of(first + k - 1) * drawn.omega_of(first + k - 1));
+            bodies.qd[k] = bodies.qd[k] - transposed_times(drawn.turn_of(first + k),
+                                                           drawn.turn_of(first + k - 1) *
+                                                               drawn.omega_of(first + k - 1));
     }
     if (bodies.size() > 0 && chain.base == Base::free)
-        bodies.free_velocity = drawn.velocity_of(first) - drawn.turn_of(first) * cross(drawn.omega_of(first), bodies.com[0]);
+        bodies.free_velocity = drawn.velocity_of(first) -
+                               drawn.turn_of(first) * cross(drawn.omega_of(first), bodies.com[0]);
 }
 
 }  // namespace
@@ -63,7 +73,9 @@ Scene with_start_velocities(Scene scene, Communicator const& communicator) {
     if (std::none_of(scene.chains.begin(), scene.chains.end(), is_thermal)) return scene;
     Scene sampled = scene;
     sampled.forces.openmm.reset();
-    std::erase_if(sampled.chains, [](ChainSpec const& c) { return !has_absolute_coordinates(c); });  // these are never thermal
+    std::erase_if(sampled.chains, [](ChainSpec const& c) {
+        return !has_absolute_coordinates(c);
+    });  // these are never thermal
     Drawn const drawn = draw(sampled, scene.dynamics, communicator);
     std::size_t body = 0;
     for (ChainSpec& chain : scene.chains) {

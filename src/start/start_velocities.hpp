@@ -6,8 +6,9 @@
 
 namespace catena {
 
-/// The scene with the thermal velocities of its chains drawn (temperature and seed of its dynamics) and written in as given ones: for link
-/// and spherical chains in absolute coordinates the very draw of a run. Scenes without thermal chains come back as they are. Collective.
+/// The scene with the thermal velocities of its chains drawn (temperature and seed of its dynamics)
+/// and written in as given ones: for link and spherical chains in absolute coordinates the very
+/// draw of a run. Scenes without thermal chains come back as they are. Collective.
 Scene with_start_velocities(Scene, Communicator const&);
 
 }  // namespace catena

@@ -11,7 +11,8 @@ using namespace OpenMM;  // this file handles nothing else
 template <class Source>
 void copy_globals(Source const& from, Source& to) {
     for (int i = 0; i < from.getNumGlobalParameters(); ++i)
-        to.addGlobalParameter(from.getGlobalParameterName(i), from.getGlobalParameterDefaultValue(i));
+        to.addGlobalParameter(from.getGlobalParameterName(i),
+                              from.getGlobalParameterDefaultValue(i));
 }
 
 template <class Source>
@@ -73,7 +74,8 @@ std::unique_ptr<Force> copy_terms(CustomBondForce const& from, TermFilter& filte
     auto to = std::make_unique<CustomBondForce>(from.getEnergyFunction());
     copy_periodicity(from, *to);
     copy_globals(from, *to);
-    for (int i = 0; i < from.getNumPerBondParameters(); ++i) to->addPerBondParameter(from.getPerBondParameterName(i));
+    for (int i = 0; i < from.getNumPerBondParameters(); ++i)
+        to->addPerBondParameter(from.getPerBondParameterName(i));
     std::vector<double> parameters;
     for (int i = 0; i < from.getNumBonds(); ++i) {
         int a, b;
@@ -87,7 +89,8 @@ std::unique_ptr<Force> copy_terms(CustomAngleForce const& from, TermFilter& filt
     auto to = std::make_unique<CustomAngleForce>(from.getEnergyFunction());
     copy_periodicity(from, *to);
     copy_globals(from, *to);
-    for (int i = 0; i < from.getNumPerAngleParameters(); ++i) to->addPerAngleParameter(from.getPerAngleParameterName(i));
+    for (int i = 0; i < from.getNumPerAngleParameters(); ++i)
+        to->addPerAngleParameter(from.getPerAngleParameterName(i));
     std::vector<double> parameters;
     for (int i = 0; i < from.getNumAngles(); ++i) {
         int a, b, c;
@@ -101,7 +104,8 @@ std::unique_ptr<Force> copy_terms(CustomTorsionForce const& from, TermFilter& fi
     auto to = std::make_unique<CustomTorsionForce>(from.getEnergyFunction());
     copy_periodicity(from, *to);
     copy_globals(from, *to);
-    for (int i = 0; i < from.getNumPerTorsionParameters(); ++i) to->addPerTorsionParameter(from.getPerTorsionParameterName(i));
+    for (int i = 0; i < from.getNumPerTorsionParameters(); ++i)
+        to->addPerTorsionParameter(from.getPerTorsionParameterName(i));
     std::vector<double> parameters;
     for (int i = 0; i < from.getNumTorsions(); ++i) {
         int a, b, c, d;
@@ -114,7 +118,8 @@ std::unique_ptr<Force> copy_terms(CustomTorsionForce const& from, TermFilter& fi
 std::unique_ptr<Force> copy_terms(CustomExternalForce const& from, TermFilter& filter) {
     auto to = std::make_unique<CustomExternalForce>(from.getEnergyFunction());
     copy_globals(from, *to);
-    for (int i = 0; i < from.getNumPerParticleParameters(); ++i) to->addPerParticleParameter(from.getPerParticleParameterName(i));
+    for (int i = 0; i < from.getNumPerParticleParameters(); ++i)
+        to->addPerParticleParameter(from.getPerParticleParameterName(i));
     std::vector<double> parameters;
     for (int i = 0; i < from.getNumParticles(); ++i) {
         int a;
@@ -139,8 +144,9 @@ std::unique_ptr<Force> copy_bonded_as(Force const& from, TermFilter& filter) {
 }  // namespace
 
 std::unique_ptr<Force> copy_bonded(Force const& from, TermFilter& filter) {
-    return copy_bonded_as<HarmonicBondForce, HarmonicAngleForce, PeriodicTorsionForce, RBTorsionForce, CustomBondForce, CustomAngleForce,
-                          CustomTorsionForce, CustomExternalForce>(from, filter);
+    return copy_bonded_as<HarmonicBondForce, HarmonicAngleForce, PeriodicTorsionForce,
+                          RBTorsionForce, CustomBondForce, CustomAngleForce, CustomTorsionForce,
+                          CustomExternalForce>(from, filter);
 }
 
 }  // namespace catena

@@ -15,7 +15,8 @@ class TermFilter {
     virtual bool keep(std::initializer_list<int*> particles) = 0;
 };
 
-/// A copy of a bonded force with the terms that the filter keeps; nullptr for a force that is not bonded (or not one of the common kinds).
+/// A copy of a bonded force with the terms that the filter keeps; nullptr for a force that is not
+/// bonded (or not one of the common kinds).
 std::unique_ptr<OpenMM::Force> copy_bonded(OpenMM::Force const& from, TermFilter& filter);
 
 }  // namespace catena

@@ -16,7 +16,9 @@ double constexpr same_charge = 5e-4;  // e: three decimals are printed
 std::size_t constexpr most_groups = 12;
 
 /// Three decimals, and no "-0.000".
-std::string charge_in_e(double charge) { return fmt::format("{:.3f} e", std::abs(charge) < same_charge ? 0.0 : charge); }
+std::string charge_in_e(double charge) {
+    return fmt::format("{:.3f} e", std::abs(charge) < same_charge ? 0.0 : charge);
+}
 
 /// Consecutive chains of one charge.
 struct Group {
@@ -31,7 +33,8 @@ std::string charge_text(std::span<double const> of_bead, BeadSystem const& beads
     double sum = 0;
     for (std::size_t c = 0; c < beads.chain_name.size(); ++c) {
         double charge = 0;
-        for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k) charge += of_bead[static_cast<std::size_t>(k)];
+        for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k)
+            charge += of_bead[static_cast<std::size_t>(k)];
         sum += charge;
         if (groups.empty() || std::abs(groups.back().charge - charge) >= same_charge)
             groups.push_back({c, c, charge});
@@ -43,7 +46,9 @@ std::string charge_text(std::span<double const> of_bead, BeadSystem const& beads
         Group const& g = groups[i];
         text += i == 0 ? " " : ", ";
         text += scene::shown(beads.chain_name[g.first]);
-        if (g.last > g.first) text += (g.last == g.first + 1 ? " and " : " to ") + scene::shown(beads.chain_name[g.last]);
+        if (g.last > g.first)
+            text +=
+                (g.last == g.first + 1 ? " and " : " to ") + scene::shown(beads.chain_name[g.last]);
         text += " " + charge_in_e(g.charge) + (g.last > g.first ? " each" : "");
     }
     if (groups.size() > most_groups) text += ", ...";

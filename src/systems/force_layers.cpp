@@ -26,8 +26,8 @@ struct Candidate {
 
 bool can_be_taken(OpenMM::Force const& force, int particles) {
     auto const* const pairs = dynamic_cast<CustomNonbondedForce const*>(&force);
-    return pairs && pairs->getNumParticles() == particles && std::isfinite(reach_of(force)) && pairs->getNumInteractionGroups() == 0 &&
-           !pairs->getUseLongRangeCorrection();
+    return pairs && pairs->getNumParticles() == particles && std::isfinite(reach_of(force)) &&
+           pairs->getNumInteractionGroups() == 0 && !pairs->getUseLongRangeCorrection();
 }
 
 /// By their reach, the longest first, as far as no other force reaches farther.
@@ -41,18 +41,25 @@ std::map<double, Candidate, std::greater<>> candidates(OpenMM::System const& sys
             continue;
         }
         std::vector<char> const acts = acting_particles(force);
-        Candidate& candidate = found.try_emplace(reach_of(force), Candidate{{}, std::vector<char>(acts.size(), 0)}).first->second;
+        Candidate& candidate =
+            found.try_emplace(reach_of(force), Candidate{{}, std::vector<char>(acts.size(), 0)})
+                .first->second;
         candidate.forces.push_back(i);
-        for (std::size_t p = 0; p < acts.size(); ++p) candidate.acts[p] = std::max(candidate.acts[p], acts[p]);
+        for (std::size_t p = 0; p < acts.size(); ++p)
+            candidate.acts[p] = std::max(candidate.acts[p], acts[p]);
     }
     found.erase(found.upper_bound(others), found.end());
     if (auto const as_far = found.find(others); as_far != found.end()) found.erase(as_far);
     return found;
 }
 
-/// How many of the candidates to take: where the pairs of all Contexts are fewest, were particles everywhere as dense.
-std::size_t best(std::map<double, Candidate, std::greater<>> const& found, OpenMM::System const& system, double most_pairs) {
-    auto const pairs = [](double count, double reach) { return count * count * reach * reach * reach; };
+/// How many of the candidates to take: where the pairs of all Contexts are fewest, were particles
+/// everywhere as dense.
+std::size_t best(std::map<double, Candidate, std::greater<>> const& found,
+                 OpenMM::System const& system, double most_pairs) {
+    auto const pairs = [](double count, double reach) {
+        return count * count * reach * reach * reach;
+    };
     double const all = system.getNumParticles();
     double reach_of_others = 0;
     for (int i = 0; i < system.getNumForces(); ++i)
@@ -62,7 +69,8 @@ std::size_t best(std::map<double, Candidate, std::greater<>> const& found, OpenM
     double of_taken = 0, least = most_pairs * pairs(all, reach_of(system));
     for (auto candidate = found.begin(); candidate != found.end();) {
         of_taken += pairs(candidate->second.count(), candidate->first);
-        double const next = ++candidate == found.end() ? 0 : candidate->first, sum = of_taken + pairs(all, std::max(next, reach_of_others));
+        double const next = ++candidate == found.end() ? 0 : candidate->first,
+                     sum = of_taken + pairs(all, std::max(next, reach_of_others));
         ++taken;
         if (sum < least) {
             least = sum;
@@ -76,14 +84,18 @@ std::size_t best(std::map<double, Candidate, std::greater<>> const& found, OpenM
 BeadSystem beads_of(std::vector<std::int64_t> const& bead, BeadSystem const& all) {
     BeadSystem some;
     std::vector<std::int64_t> number(static_cast<std::size_t>(all.size()), -1);
-    for (std::size_t i = 0; i < bead.size(); ++i) number[static_cast<std::size_t>(bead[i])] = static_cast<std::int64_t>(i);
-    auto const before = [&](std::int64_t b) { return std::lower_bound(bead.begin(), bead.end(), b) - bead.begin(); };
+    for (std::size_t i = 0; i < bead.size(); ++i)
+        number[static_cast<std::size_t>(bead[i])] = static_cast<std::int64_t>(i);
+    auto const before = [&](std::int64_t b) {
+        return std::lower_bound(bead.begin(), bead.end(), b) - bead.begin();
+    };
     for (std::int64_t const b : bead) some.mass.push_back(all.mass[static_cast<std::size_t>(b)]);
     for (std::int64_t const offset : all.chain_offset) some.chain_offset.push_back(before(offset));
     some.first_of_rank.push_back(0);
     for (int rank = 0; rank + 1 < static_cast<int>(all.first_of_rank.size()); ++rank) {
         for (std::int64_t const b : all.beads_of(rank))
-            if (number[static_cast<std::size_t>(b)] >= 0) some.by_rank.push_back(number[static_cast<std::size_t>(b)]);
+            if (number[static_cast<std::size_t>(b)] >= 0)
+                some.by_rank.push_back(number[static_cast<std::size_t>(b)]);
         some.first_of_rank.push_back(static_cast<std::int64_t>(some.by_rank.size()));
     }
     if (all.by_rank.empty()) some.by_rank.clear();
@@ -100,29 +112,35 @@ ForceLayer layer_of(Candidate const& candidate, OpenMmModel const& model, BeadSy
     for (int p = 0; p < model.system->getNumParticles(); ++p)
         if (candidate.acts[static_cast<std::size_t>(p)] != 0) subset.particles.push_back(p);
     subset.own = subset.fixed = static_cast<int>(subset.particles.size());
-    for (int const p : subset.particles) layer.bead.push_back(model.bead_of_particle[static_cast<std::size_t>(p)]);
+    for (int const p : subset.particles)
+        layer.bead.push_back(model.bead_of_particle[static_cast<std::size_t>(p)]);
     std::vector<std::int64_t> const of_particle = layer.bead;
     std::sort(layer.bead.begin(), layer.bead.end());
     layer.beads = beads_of(layer.bead, beads);
     layer.model.system = system_of(subset, *model.system, candidate.forces);
     for (std::int64_t const bead : of_particle)
-        layer.model.bead_of_particle.push_back(std::lower_bound(layer.bead.begin(), layer.bead.end(), bead) - layer.bead.begin());
+        layer.model.bead_of_particle.push_back(
+            std::lower_bound(layer.bead.begin(), layer.bead.end(), bead) - layer.bead.begin());
     for (int const force : candidate.forces)
-        layer.model.terms.push_back(model.terms[static_cast<std::size_t>(model.system->getForce(force).getForceGroup())]);
+        layer.model.terms.push_back(
+            model.terms[static_cast<std::size_t>(model.system->getForce(force).getForceGroup())]);
     return layer;
 }
 
 }  // namespace
 
-std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads, double most_pairs) {
+std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads,
+                                    double most_pairs) {
     std::vector<ForceLayer> layers;
     for (int i = 0; i < model.system->getNumForces(); ++i)
         if (!can_be_split(model.system->getForce(i))) return layers;
     auto found = candidates(*model.system);
     std::size_t const count = best(found, *model.system, most_pairs);
     std::vector<int> taken;
-    for (auto candidate = found.begin(); candidate != std::next(found.begin(), static_cast<std::ptrdiff_t>(count)); ++candidate) {
-        if (candidate->second.count() > 0) layers.push_back(layer_of(candidate->second, model, beads));
+    for (auto candidate = found.begin();
+         candidate != std::next(found.begin(), static_cast<std::ptrdiff_t>(count)); ++candidate) {
+        if (candidate->second.count() > 0)
+            layers.push_back(layer_of(candidate->second, model, beads));
         taken.insert(taken.end(), candidate->second.forces.begin(), candidate->second.forces.end());
     }
     std::sort(taken.begin(), taken.end(), std::greater<>());
@@ -134,13 +152,15 @@ std::vector<std::int64_t> own_places(ForceLayer const& layer, BeadSystem const& 
     std::vector<std::int64_t> places;
     std::vector<std::int64_t> const own = all.beads_of(rank);
     for (std::size_t k = 0; k < own.size(); ++k)
-        if (std::binary_search(layer.bead.begin(), layer.bead.end(), own[k])) places.push_back(static_cast<std::int64_t>(k));
+        if (std::binary_search(layer.bead.begin(), layer.bead.end(), own[k]))
+            places.push_back(static_cast<std::int64_t>(k));
     return places;
 }
 
 std::string text_of(ForceLayer const& layer, BeadSystem const& all) {
-    return fmt::format("{} in a Context of its own: {} of {} beads act in it, up to {:g} nm", fmt::join(layer.model.terms, ", "),
-                       layer.beads.size(), all.size(), reach_of(*layer.model.system));
+    return fmt::format("{} in a Context of its own: {} of {} beads act in it, up to {:g} nm",
+                       fmt::join(layer.model.terms, ", "), layer.beads.size(), all.size(),
+                       reach_of(*layer.model.system));
 }
 
 }  // namespace catena

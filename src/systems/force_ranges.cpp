@@ -19,7 +19,8 @@ namespace {
 using Parameters = std::vector<double>;
 
 bool is_zero(Lepton::ParsedExpression const& energy) {
-    auto const* constant = dynamic_cast<Lepton::Operation::Constant const*>(&energy.getRootNode().getOperation());
+    auto const* constant =
+        dynamic_cast<Lepton::Operation::Constant const*>(&energy.getRootNode().getOperation());
     return constant != nullptr && constant->getValue() == 0;
 }
 
@@ -29,14 +30,18 @@ class Acting {
     explicit Acting(OpenMM::CustomNonbondedForce const& force)
         : understood_(force.getNumTabulatedFunctions() == 0 && computed_values_of(force) == 0) {
         if (understood_) energy_ = Lepton::Parser::parse(force.getEnergyFunction());
-        for (int i = 0; i < force.getNumPerParticleParameters(); ++i) name_.push_back(force.getPerParticleParameterName(i));
+        for (int i = 0; i < force.getNumPerParticleParameters(); ++i)
+            name_.push_back(force.getPerParticleParameterName(i));
     }
     bool operator()(Parameters const& of_particle) {
         // Lepton never ends with what is not a number.
-        bool const finite = std::all_of(of_particle.begin(), of_particle.end(), [](double v) { return std::isfinite(v); });
+        bool const finite = std::all_of(of_particle.begin(), of_particle.end(),
+                                        [](double v) { return std::isfinite(v); });
         if (!understood_ || !finite || known_.size() > most_kinds) return true;
         auto const [found, is_new] = known_.try_emplace(of_particle, true);
-        if (is_new) found->second = !(is_zero(energy_.optimize(as("1", of_particle))) && is_zero(energy_.optimize(as("2", of_particle))));
+        if (is_new)
+            found->second = !(is_zero(energy_.optimize(as("1", of_particle))) &&
+                              is_zero(energy_.optimize(as("2", of_particle))));
         return found->second;
     }
 
@@ -71,45 +76,55 @@ std::vector<char> acts_in(OpenMM::NonbondedForce const& force) {
     double charge, sigma, epsilon;
     for (int p = 0; p < force.getNumParticles(); ++p) {
         force.getParticleParameters(p, charge, sigma, epsilon);
-        acts.push_back(charge != 0 || epsilon != 0 || force.getNumParticleParameterOffsets() > 0 ? 1 : 0);
+        acts.push_back(
+            charge != 0 || epsilon != 0 || force.getNumParticleParameterOffsets() > 0 ? 1 : 0);
     }
     return acts;
 }
 
 bool are_among(std::vector<char> const& some, std::vector<char> const& others) {
-    return std::equal(some.begin(), some.end(), others.begin(), [](char one, char other) { return one <= other; });
+    return std::equal(some.begin(), some.end(), others.begin(),
+                      [](char one, char other) { return one <= other; });
 }
 
 }  // namespace
 
 std::vector<char> acting_particles(OpenMM::Force const& force) {
-    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return acts_in(*pairs);
-    if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force)) return acts_in(*pairs);
+    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force))
+        return acts_in(*pairs);
+    if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
+        return acts_in(*pairs);
     return {};
 }
 
-std::vector<PairRange> pair_ranges(OpenMM::System const& system, std::vector<std::int64_t> const& bead_of_particle) {
+std::vector<PairRange> pair_ranges(OpenMM::System const& system,
+                                   std::vector<std::int64_t> const& bead_of_particle) {
     std::map<double, std::vector<char>, std::greater<>> acts_to;  // of each particle
     for (int i = 0; i < system.getNumForces(); ++i) {
         std::vector<char> const acts = acting_particles(system.getForce(i));
         if (acts.empty()) continue;
         if (acts.size() != bead_of_particle.size())
-            throw OpenMM::OpenMMException(system.getForce(i).getName() +
-                                          " must have exactly as many particles as the System it belongs to");
-        std::vector<char>& here = acts_to.try_emplace(reach_of(system.getForce(i)), acts.size(), char{0}).first->second;
+            throw OpenMM::OpenMMException(
+                system.getForce(i).getName() +
+                " must have exactly as many particles as the System it belongs to");
+        std::vector<char>& here =
+            acts_to.try_emplace(reach_of(system.getForce(i)), acts.size(), char{0}).first->second;
         for (std::size_t p = 0; p < acts.size(); ++p) here[p] = std::max(here[p], acts[p]);
     }
     std::vector<PairRange> ranges;
     for (auto const& [reach, acts] : acts_to) {
         PairRange range{reach, std::vector<char>(acts.size())};
-        for (std::size_t p = 0; p < acts.size(); ++p) range.acts[static_cast<std::size_t>(bead_of_particle[p])] = acts[p];
+        for (std::size_t p = 0; p < acts.size(); ++p)
+            range.acts[static_cast<std::size_t>(bead_of_particle[p])] = acts[p];
         bool const none = std::find(acts.begin(), acts.end(), 1) == acts.end();
-        if (!none &&
-            std::none_of(ranges.begin(), ranges.end(), [&](PairRange const& longer) { return are_among(range.acts, longer.acts); }))
+        if (!none && std::none_of(ranges.begin(), ranges.end(), [&](PairRange const& longer) {
+                return are_among(range.acts, longer.acts);
+            }))
             ranges.push_back(std::move(range));
     }
     for (PairRange& range : ranges)
-        if (std::find(range.acts.begin(), range.acts.end(), 0) == range.acts.end()) range.acts.clear();
+        if (std::find(range.acts.begin(), range.acts.end(), 0) == range.acts.end())
+            range.acts.clear();
     return ranges;
 }
 

@@ -5,52 +5,61 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "scene/node.hpp"
 #include "systems/links.hpp"
 #include "systems/model.hpp"
 #include "systems/pdb_topology.hpp"
-#include "scene/node.hpp"
 
 namespace catena {
 
 namespace {
 
 /// Adds the chain's links to `links`.
-ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system, Joinings const& joinings, StiffLinks& links,
-                           std::string const& where) {
+ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system,
+                           Joinings const& joinings, StiffLinks& links, std::string const& where) {
     ImportedChain chain{from.name, from.residue, {}, from.position, {}};
     for (int k = 0; k < static_cast<int>(from.size()); ++k) {
         int const p = first + k;
         chain.mass.push_back(system.getParticleMass(p));
         Joining const joining = k > 0 ? joinings.to_previous(p) : Joining{};
         if (k > 0 && !joining.holds())
-            joinings.refuse_gap(p, first, fmt::format("{}, chain {}, body {}", where, scene::shown(from.name), k + 1));
+            joinings.refuse_gap(
+                p, first,
+                fmt::format("{}, chain {}, body {}", where, scene::shown(from.name), k + 1));
         if (k > 0) links.add(p - 1, p, joining);
         chain.length.push_back(k > 0 ? joining.length : 0);
     }
     return chain;
 }
 
-/// Whether the ends of a chain are joined as stiffly as its first link, or as a link may be where that is a constraint.
+/// Whether the ends of a chain are joined as stiffly as its first link, or as a link may be where
+/// that is a constraint.
 bool closes(Joining const& ends, Joining const& link, double temperature) {
-    if (std::isinf(link.stiffness)) return ends.holds() && ends.spread(temperature) <= StiffLinks::softest;
+    if (std::isinf(link.stiffness))
+        return ends.holds() && ends.spread(temperature) <= StiffLinks::softest;
     return ends.holds() && ends.stiffness >= 0.5 * link.stiffness;
 }
 
 /// Chains whose ends are joined: a sentence, or none.
-std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings, double temperature) {
+std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings,
+                                    double temperature) {
     int first = 0, rings = 0;
     std::string name;
     for (PdbChain const& chain : chains) {
         int const size = static_cast<int>(chain.size()), last = first + size - 1;
-        if (size > 2 && closes(joinings.between(first, last), joinings.to_previous(first + 1), temperature) && rings++ == 0)
+        if (size > 2 &&
+            closes(joinings.between(first, last), joinings.to_previous(first + 1), temperature) &&
+            rings++ == 0)
             name = scene::shown(chain.name);
         first += size;
     }
     if (rings == 0) return {};
     return {
-        fmt::format("{} into a ring by a harmonic bond, which stays a spring (write `chains` with `tip: {{ring: {{type: link}}}}` for a "
+        fmt::format("{} into a ring by a harmonic bond, which stays a spring (write `chains` with "
+                    "`tip: {{ring: {{type: link}}}}` for a "
                     "link).",
-                    rings == 1 ? fmt::format("Chain {} is closed", name) : fmt::format("{} chains are closed", rings))};
+                    rings == 1 ? fmt::format("Chain {} is closed", name)
+                               : fmt::format("{} chains are closed", rings))};
 }
 
 }  // namespace
@@ -63,7 +72,8 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     links.periodic = system->usesPeriodicBoundaryConditions();
     Joinings const joinings(*system, where);
     links.to_previous.resize(static_cast<std::size_t>(system->getNumParticles()));
-    for (int p = 1; p < system->getNumParticles(); ++p) links.to_previous[static_cast<std::size_t>(p)] = joinings.to_previous(p);
+    for (int p = 1; p < system->getNumParticles(); ++p)
+        links.to_previous[static_cast<std::size_t>(p)] = joinings.to_previous(p);
     return links;
 }
 
@@ -72,12 +82,15 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     auto const system = read_openmm_system(spec.system, where);
     ImportedSystem imported;
     imported.notes = leave_movers_out(*system, spec.force_groups, where);
-    auto const chains = read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"), &imported.notes);
+    auto const chains =
+        read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"), &imported.notes);
     std::size_t atoms = 0;
     for (auto const& chain : chains) atoms += chain.size();
     if (static_cast<int>(atoms) != system->getNumParticles())
-        throw InputError(fmt::format("the topology has {} atoms and the System {} particles", atoms, system->getNumParticles()),
-                         openmm_key(scene_file, "topology"), "give one atom a particle, in the System's order");
+        throw InputError(fmt::format("the topology has {} atoms and the System {} particles", atoms,
+                                     system->getNumParticles()),
+                         openmm_key(scene_file, "topology"),
+                         "give one atom a particle, in the System's order");
 
     Joinings const joinings(*system, where);
     StiffLinks links(spec.temperature, where);

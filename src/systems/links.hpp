@@ -1,4 +1,5 @@
-// What a System's bonds and constraints make of neighbours in a chain. For files that see OpenMM's headers.
+// What a System's bonds and constraints make of neighbours in a chain. For files that see OpenMM's
+// headers.
 #pragma once
 
 #include <OpenMM.h>
@@ -19,7 +20,8 @@ class Joinings {
     /// Of particle p and the one before; one that does not hold where nothing does.
     Joining to_previous(int p) const { return between(p - 1, p); }
     Joining between(int a, int b) const;
-    /// Why the link between p - 1 and p in a chain that begins with particle `first` cannot be had: as an InputError with `at`.
+    /// Why the link between p - 1 and p in a chain that begins with particle `first` cannot be had:
+    /// as an InputError with `at`.
     [[noreturn]] void refuse_gap(int p, int first, std::string const& at) const;
 
   private:

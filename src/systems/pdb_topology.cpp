@@ -17,7 +17,9 @@ namespace {
 
 std::string whole_text(std::string const& file, std::string const& where) {
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where, "name a PDB file that can be read");
+    if (!in)
+        throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where,
+                         "name a PDB file that can be read");
     std::ostringstream text;
     text << in.rdbuf();
     return text.str();
@@ -42,24 +44,31 @@ class UniqueNames {
 
 }  // namespace
 
-std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where, std::vector<std::string>* notes) {
+std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where,
+                                        std::vector<std::string>* notes) {
     std::string const text = whole_text(file, where);
     std::vector<PdbChain> chains;
     scene::PdbAtom last;
-    auto const summary = scene::for_each_pdb_atom(text, scene::shown_path(file), [&](scene::PdbAtom const& atom) {
-        if (chains.empty() || !atom.same_chain(last)) chains.emplace_back().name = scene::shown(chain_of(atom));
-        last = atom;
-        chains.back().residue.push_back(atom.residue.empty() ? "UNK" : scene::shown(atom.residue));
-        chains.back().position.push_back({{atom.position[0] / 10, atom.position[1] / 10, atom.position[2] / 10}});
-    });
+    auto const summary =
+        scene::for_each_pdb_atom(text, scene::shown_path(file), [&](scene::PdbAtom const& atom) {
+            if (chains.empty() || !atom.same_chain(last))
+                chains.emplace_back().name = scene::shown(chain_of(atom));
+            last = atom;
+            chains.back().residue.push_back(atom.residue.empty() ? "UNK"
+                                                                 : scene::shown(atom.residue));
+            chains.back().position.push_back(
+                {{atom.position[0] / 10, atom.position[1] / 10, atom.position[2] / 10}});
+        });
     if (summary.atoms == 0)
         throw InputError(fmt::format("{} holds no ATOM record", scene::shown_path(file)), where,
                          "name a PDB file with one atom a particle");
     if (notes && summary.models > 1)
-        notes->push_back(fmt::format("`{}`: {} models, the first is taken", scene::shown_path(file), summary.models));
+        notes->push_back(fmt::format("`{}`: {} models, the first is taken", scene::shown_path(file),
+                                     summary.models));
     UniqueNames names;
     for (std::size_t c = 0; c < chains.size(); ++c)
-        chains[c].name = names.make(chains[c].name.empty() ? std::to_string(c + 1) : chains[c].name);
+        chains[c].name =
+            names.make(chains[c].name.empty() ? std::to_string(c + 1) : chains[c].name);
     return chains;
 }
 

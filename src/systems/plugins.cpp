@@ -19,7 +19,8 @@ std::vector<fs::path> plugin_folders() {
     std::vector<fs::path> folders;
     if (char const* named = std::getenv("OPENMM_PLUGIN_DIR")) folders.emplace_back(named);
     Dl_info library{};
-    if (dladdr(reinterpret_cast<void const*>(&OpenMM::Platform::getOpenMMVersion), &library) != 0 && library.dli_fname != nullptr) {
+    if (dladdr(reinterpret_cast<void const*>(&OpenMM::Platform::getOpenMMVersion), &library) != 0 &&
+        library.dli_fname != nullptr) {
         std::error_code ignored;
         fs::path const folder = fs::weakly_canonical(library.dli_fname, ignored).parent_path();
         folders.push_back(folder / "plugins");

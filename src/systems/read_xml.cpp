@@ -11,30 +11,34 @@
 #include <typeinfo>
 
 #include "error.hpp"
+#include "io/memory_limit.hpp"
+#include "scene/node.hpp"
 #include "systems/model.hpp"
 #include "systems/plugins.hpp"
 #include "systems/xml_scan.hpp"
-#include "io/memory_limit.hpp"
-#include "scene/node.hpp"
 
 namespace catena {
 
 namespace {
 
-/// OpenMM's reader takes 4.6 bytes for one of the text (14.7 MB of particles, bonds and exclusions), and there are two copies of it.
+/// OpenMM's reader takes 4.6 bytes for one of the text (14.7 MB of particles, bonds and
+/// exclusions), and there are two copies of it.
 double constexpr bytes_a_character = 8;
 
 std::string read_text(std::string const& file, std::string const& where) {
     std::ifstream in(file, std::ios::binary | std::ios::ate);
     std::streamoff const size = in ? static_cast<std::streamoff>(in.tellg()) : -1;
     if (size < 0)
-        throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where, "name a serialised System that can be read");
+        throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where,
+                         "name a serialised System that can be read");
     double const needed = bytes_a_character * static_cast<double>(size);
     auto const present = static_cast<double>(memory_limit());
     if (needed > present)
-        throw InputError(fmt::format("reading {} takes about {:.3g} GB of memory, and only {:.3g} GB are available",
-                                     scene::shown_path(file), needed * 1e-9, present * 1e-9),
-                         where, "take a machine with more memory");
+        throw InputError(
+            fmt::format(
+                "reading {} takes about {:.3g} GB of memory, and only {:.3g} GB are available",
+                scene::shown_path(file), needed * 1e-9, present * 1e-9),
+            where, "take a machine with more memory");
     std::string text(static_cast<std::size_t>(size), '\0');
     in.seekg(0);
     in.read(text.data(), size);
@@ -47,8 +51,10 @@ std::string difference(std::vector<std::string> const& written, OpenMM::System c
     if (std::ssize(written) != read.getNumForces())
         return fmt::format("{} forces where the file has {}", read.getNumForces(), written.size());
     for (int i = 0; i < read.getNumForces(); ++i)
-        if (std::string const& type = written[static_cast<std::size_t>(i)]; kind_of(read.getForce(i)) != type)
-            return fmt::format("a {} where the file has a {}", kind_of(read.getForce(i)), scene::shown(type));
+        if (std::string const& type = written[static_cast<std::size_t>(i)];
+            kind_of(read.getForce(i)) != type)
+            return fmt::format("a {} where the file has a {}", kind_of(read.getForce(i)),
+                               scene::shown(type));
     return "";
 }
 
@@ -63,13 +69,16 @@ std::string kind_of(OpenMM::Force const& force) {
     return colon == std::string::npos ? name : name.substr(colon + 1);
 }
 
-std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std::string const& where) {
+std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file,
+                                                   std::string const& where) {
     load_openmm_plugins();
     std::string const name = scene::shown_path(file), xml = read_text(file, where);
     char const* const remedy = "write it with OpenMM's XmlSerializer.serialize(system)";
-    if (xml.find("<System") == std::string::npos) throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
+    if (xml.find("<System") == std::string::npos)
+        throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
     XmlOutline const outline = scan_system_xml(xml, name, where);
-    if (outline.type != "System") throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
+    if (outline.type != "System")
+        throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
     std::unique_ptr<OpenMM::System> system;
     try {
         std::istringstream in(xml);
@@ -77,10 +86,14 @@ std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std:
     } catch (std::bad_alloc const&) {
         throw;
     } catch (std::exception const& e) {
-        throw InputError(
-            fmt::format("OpenMM {} cannot read {}, written by OpenMM {}: {}", OpenMM::Platform::getOpenMMVersion(), name,
-                        outline.version.empty() ? "of an unknown version" : scene::shown(outline.version), scene::shown(e.what(), 300)),
-            where, "build Catena with that OpenMM or a later one, or write the System with an earlier one");
+        throw InputError(fmt::format("OpenMM {} cannot read {}, written by OpenMM {}: {}",
+                                     OpenMM::Platform::getOpenMMVersion(), name,
+                                     outline.version.empty() ? "of an unknown version"
+                                                             : scene::shown(outline.version),
+                                     scene::shown(e.what(), 300)),
+                         where,
+                         "build Catena with that OpenMM or a later one, or write the System with "
+                         "an earlier one");
     }
     if (std::string const lost = difference(outline.forces, *system); !lost.empty())
         throw InputError(fmt::format("OpenMM reads {} from {}", lost, name), where, remedy);

@@ -18,11 +18,13 @@ using namespace OpenMM;  // this file handles nothing else
 /// Notes the partners of own particles; keeps no term.
 class PartnerCollector : public TermFilter {
   public:
-    PartnerCollector(int particle_count, std::vector<int> const& own) : own_(particle_count, false) {
+    PartnerCollector(int particle_count, std::vector<int> const& own)
+        : own_(particle_count, false) {
         for (int p : own) own_[p] = true;
     }
     bool keep(std::initializer_list<int*> particles) override {
-        bool const touches = std::any_of(particles.begin(), particles.end(), [&](int const* p) { return own_[*p]; });
+        bool const touches =
+            std::any_of(particles.begin(), particles.end(), [&](int const* p) { return own_[*p]; });
         if (touches)
             for (int const* p : particles)
                 if (!own_[*p]) partners_.insert(*p);
@@ -38,10 +40,12 @@ class PartnerCollector : public TermFilter {
 /// Marks the particles of terms that join ranks; keeps none.
 class JoinedAcrossRanks : public TermFilter {
   public:
-    explicit JoinedAcrossRanks(std::vector<int> const& rank_of_particle) : rank_(rank_of_particle), joined_(rank_.size(), 0) {}
+    explicit JoinedAcrossRanks(std::vector<int> const& rank_of_particle)
+        : rank_(rank_of_particle), joined_(rank_.size(), 0) {}
     bool keep(std::initializer_list<int*> particles) override {
         int const rank = rank_[**particles.begin()];
-        if (std::any_of(particles.begin(), particles.end(), [&](int const* p) { return rank_[*p] != rank; }))
+        if (std::any_of(particles.begin(), particles.end(),
+                        [&](int const* p) { return rank_[*p] != rank; }))
             for (int const* p : particles) joined_[*p] = 1;
         return false;
     }
@@ -57,21 +61,28 @@ class NoTerm : public TermFilter {
     bool keep(std::initializer_list<int*>) override { return false; }
 };
 
-/// Keeps the terms that touch an own particle, with the subset's numbers. Exchangeable particles have no terms.
+/// Keeps the terms that touch an own particle, with the subset's numbers. Exchangeable particles
+/// have no terms.
 class Renumbering : public TermFilter {
   public:
     Renumbering(int particle_count, Subset const& subset)
-        : particles_(subset.particles), after_(subset.after), own_count_(subset.own), index_(particle_count, -1) {
+        : particles_(subset.particles),
+          after_(subset.after),
+          own_count_(subset.own),
+          index_(particle_count, -1) {
         for (int i = 0; i < subset.fixed; ++i) index_[particles_[i]] = i;
     }
     bool keep(std::initializer_list<int*> particles) override {
-        bool const touches =
-            std::any_of(particles.begin(), particles.end(), [&](int const* p) { return index_[*p] >= 0 && index_[*p] < own_count_; });
+        bool const touches = std::any_of(particles.begin(), particles.end(), [&](int const* p) {
+            return index_[*p] >= 0 && index_[*p] < own_count_;
+        });
         return touches && keep_pair(particles);
     }
     /// Whether all are in the subset for good.
     bool keep_pair(std::initializer_list<int*> particles) const {
-        if (std::any_of(particles.begin(), particles.end(), [&](int const* p) { return index_[*p] < 0; })) return false;
+        if (std::any_of(particles.begin(), particles.end(),
+                        [&](int const* p) { return index_[*p] < 0; }))
+            return false;
         for (int* p : particles) *p = index_[*p];
         return true;
     }
@@ -87,7 +98,8 @@ class Renumbering : public TermFilter {
 template <class Source>
 void copy_globals(Source const& from, Source& to) {
     for (int i = 0; i < from.getNumGlobalParameters(); ++i)
-        to.addGlobalParameter(from.getGlobalParameterName(i), from.getGlobalParameterDefaultValue(i));
+        to.addGlobalParameter(from.getGlobalParameterName(i),
+                              from.getGlobalParameterDefaultValue(i));
 }
 
 /// The exceptions of a NonbondedForce act at any distance: they are bonded terms.
@@ -110,8 +122,10 @@ void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
 
 void collect_terms(System const& system, TermFilter& filter) {
     for (int i = 0; i < system.getNumForces(); ++i) {
-        if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i))) collect_exceptions(*pairs, filter);
-        if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i))) collect_exclusions(*pairs, filter);
+        if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i)))
+            collect_exceptions(*pairs, filter);
+        if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i)))
+            collect_exclusions(*pairs, filter);
         copy_bonded(system.getForce(i), filter);
     }
 }
@@ -127,7 +141,8 @@ void copy_computed_values(Source const& from, Source& to) {
     }
 }
 
-void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const& subset, CustomNonbondedForce& to) {
+void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const& subset,
+                             CustomNonbondedForce& to) {
     auto const renumbered = [&](std::set<int> const& all) {
         std::set<int> kept;
         for (int p : all)
@@ -148,9 +163,11 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
     to->setUseSwitchingFunction(from.getUseSwitchingFunction());
     to->setSwitchingDistance(from.getSwitchingDistance());
     copy_globals(from, *to);
-    for (int i = 0; i < from.getNumPerParticleParameters(); ++i) to->addPerParticleParameter(from.getPerParticleParameterName(i));
+    for (int i = 0; i < from.getNumPerParticleParameters(); ++i)
+        to->addPerParticleParameter(from.getPerParticleParameterName(i));
     for (int i = 0; i < from.getNumTabulatedFunctions(); ++i)
-        to->addTabulatedFunction(from.getTabulatedFunctionName(i), from.getTabulatedFunction(i).Copy());
+        to->addTabulatedFunction(from.getTabulatedFunctionName(i),
+                                 from.getTabulatedFunction(i).Copy());
     copy_computed_values(from, *to);
     std::vector<double> parameters;
     for (int p : subset.particles()) {
@@ -182,7 +199,8 @@ void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, Nonb
         int exception;
         double charge, sigma, epsilon;
         from.getExceptionParameterOffset(i, parameter, exception, charge, sigma, epsilon);
-        if (index[exception] >= 0) to.addExceptionParameterOffset(parameter, index[exception], charge, sigma, epsilon);
+        if (index[exception] >= 0)
+            to.addExceptionParameterOffset(parameter, index[exception], charge, sigma, epsilon);
     }
 }
 
@@ -193,7 +211,8 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     to->setUseSwitchingFunction(from.getUseSwitchingFunction());
     to->setSwitchingDistance(from.getSwitchingDistance());
     to->setReactionFieldDielectric(from.getReactionFieldDielectric());
-    to->setExceptionsUsePeriodicBoundaryConditions(from.getExceptionsUsePeriodicBoundaryConditions());
+    to->setExceptionsUsePeriodicBoundaryConditions(
+        from.getExceptionsUsePeriodicBoundaryConditions());
     to->setUseDispersionCorrection(false);  // it adds no force
     copy_globals(from, *to);
     double charge, sigma, epsilon;
@@ -205,19 +224,23 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     for (int i = 0; i < from.getNumParticleParameterOffsets(); ++i) {
         int p;
         from.getParticleParameterOffset(i, parameter, p, charge, sigma, epsilon);
-        if (subset.keep_pair({&p})) to->addParticleParameterOffset(parameter, p, charge, sigma, epsilon);
+        if (subset.keep_pair({&p}))
+            to->addParticleParameterOffset(parameter, p, charge, sigma, epsilon);
     }
     copy_exceptions(from, subset, *to);
     return to;
 }
 
 std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
-    if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&from)) return copy_pairs(*pairs, subset);
-    if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&from)) return copy_pairs(*pairs, subset);
+    if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&from))
+        return copy_pairs(*pairs, subset);
+    if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&from))
+        return copy_pairs(*pairs, subset);
     return copy_bonded(from, subset);
 }
 
-void exchange_parameters(Subset const& subset, CustomNonbondedForce const& from, CustomNonbondedForce& to, Context& context) {
+void exchange_parameters(Subset const& subset, CustomNonbondedForce const& from,
+                         CustomNonbondedForce& to, Context& context) {
     std::vector<double> parameters;
     for (int k = subset.fixed; k < static_cast<int>(subset.particles.size()); ++k) {
         from.getParticleParameters(subset.particles[k], parameters);
@@ -226,7 +249,8 @@ void exchange_parameters(Subset const& subset, CustomNonbondedForce const& from,
     to.updateParametersInContext(context);
 }
 
-void exchange_parameters(Subset const& subset, NonbondedForce const& from, NonbondedForce& to, Context& context) {
+void exchange_parameters(Subset const& subset, NonbondedForce const& from, NonbondedForce& to,
+                         Context& context) {
     double charge, sigma, epsilon;
     for (int k = subset.fixed; k < static_cast<int>(subset.particles.size()); ++k) {
         from.getParticleParameters(subset.particles[k], charge, sigma, epsilon);
@@ -240,11 +264,14 @@ void exchange_parameters(Subset const& subset, NonbondedForce const& from, Nonbo
 double reach_of(Force const& force) {
     double constexpr everywhere = std::numeric_limits<double>::infinity();
     if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&force))
-        return pairs->getNonbondedMethod() == CustomNonbondedForce::NoCutoff ? everywhere : pairs->getCutoffDistance();
+        return pairs->getNonbondedMethod() == CustomNonbondedForce::NoCutoff
+                   ? everywhere
+                   : pairs->getCutoffDistance();
     if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&force)) {
         auto const method = pairs->getNonbondedMethod();
         if (method == NonbondedForce::NoCutoff) return everywhere;
-        bool const cut = method == NonbondedForce::CutoffNonPeriodic || method == NonbondedForce::CutoffPeriodic;
+        bool const cut =
+            method == NonbondedForce::CutoffNonPeriodic || method == NonbondedForce::CutoffPeriodic;
         return cut ? pairs->getCutoffDistance() : -1;
     }
     NoTerm filter;
@@ -255,7 +282,8 @@ bool can_be_split(Force const& force) { return reach_of(force) >= 0; }
 
 double reach_of(System const& system) {
     double reach = 0;
-    for (int i = 0; i < system.getNumForces(); ++i) reach = std::max(reach, reach_of(system.getForce(i)));
+    for (int i = 0; i < system.getNumForces(); ++i)
+        reach = std::max(reach, reach_of(system.getForce(i)));
     return reach;
 }
 
@@ -265,7 +293,8 @@ std::vector<int> bonded_partners(System const& system, std::vector<int> const& o
     return collector.partners();
 }
 
-std::vector<char> joined_across_ranks(System const& system, std::vector<int> const& rank_of_particle) {
+std::vector<char> joined_across_ranks(System const& system,
+                                      std::vector<int> const& rank_of_particle) {
     JoinedAcrossRanks filter(rank_of_particle);
     collect_terms(system, filter);
     return filter.joined();
@@ -298,7 +327,8 @@ std::vector<int> kinds_of_particles(System const& system) {
             all.insert(all.end(), of_force.begin(), of_force.end());
             of_force.resize(3);
         }
-        kind_of_particle.push_back(kinds.try_emplace(std::move(all), static_cast<int>(kinds.size())).first->second);
+        kind_of_particle.push_back(
+            kinds.try_emplace(std::move(all), static_cast<int>(kinds.size())).first->second);
     }
     return kind_of_particle;
 }
@@ -309,7 +339,8 @@ std::unique_ptr<System> system_of(Subset const& subset, System const& whole) {
     return system_of(subset, whole, forces);
 }
 
-std::unique_ptr<System> system_of(Subset const& subset, System const& whole, std::vector<int> const& forces) {
+std::unique_ptr<System> system_of(Subset const& subset, System const& whole,
+                                  std::vector<int> const& forces) {
     auto system = std::make_unique<System>();
     Vec3 a, b, c;
     whole.getDefaultPeriodicBoxVectors(a, b, c);
@@ -326,13 +357,16 @@ std::unique_ptr<System> system_of(Subset const& subset, System const& whole, std
     return system;
 }
 
-void exchange_particles(Subset const& subset, System const& whole, System& system, Context& context) {
+void exchange_particles(Subset const& subset, System const& whole, System& system,
+                        Context& context) {
     for (int i = 0; i < whole.getNumForces(); ++i) {
         Force const& from = whole.getForce(i);
         if (auto const* custom = dynamic_cast<CustomNonbondedForce const*>(&from))
-            exchange_parameters(subset, *custom, dynamic_cast<CustomNonbondedForce&>(system.getForce(i)), context);
+            exchange_parameters(subset, *custom,
+                                dynamic_cast<CustomNonbondedForce&>(system.getForce(i)), context);
         else if (auto const* charges = dynamic_cast<NonbondedForce const*>(&from))
-            exchange_parameters(subset, *charges, dynamic_cast<NonbondedForce&>(system.getForce(i)), context);
+            exchange_parameters(subset, *charges, dynamic_cast<NonbondedForce&>(system.getForce(i)),
+                                context);
     }
 }
 

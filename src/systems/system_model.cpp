@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "error.hpp"
+#include "scene/node.hpp"
 #include "systems/charges.hpp"
 #include "systems/model.hpp"
 #include "systems/pdb_topology.hpp"
-#include "scene/node.hpp"
 
 namespace catena {
 
@@ -31,7 +31,8 @@ class LinkTable {
   public:
     LinkTable(BeadSystem const& beads, std::vector<int> const& particle_of_bead) {
         for (auto const& link : beads.links)
-            lengths_[ordered(particle_of_bead[link.inboard], particle_of_bead[link.outboard])] = link.length;
+            lengths_[ordered(particle_of_bead[link.inboard], particle_of_bead[link.outboard])] =
+                link.length;
     }
     /// nullptr where no link joins them.
     double const* length(int a, int b) const {
@@ -44,7 +45,7 @@ class LinkTable {
     std::map<std::pair<int, int>, double> lengths_;
 };
 
-struct LeftOut {
+struct Savings {
     int count = 0;
     double shortest = INFINITY, longest = 0, largest_difference = 0;
 
@@ -57,18 +58,24 @@ struct LeftOut {
     std::string note(std::string const& what) const {
         std::string text =
             longest - shortest < same_length
-                ? fmt::format("{} {} along rigid links left out (length {:.6g} nm)", count, what, longest)
-                : fmt::format("{} {} along rigid links left out (lengths {:.6g} to {:.6g} nm)", count, what, shortest, longest);
-        if (largest_difference > same_length) text += fmt::format("; their links differ from them by up to {:.3g} nm", largest_difference);
+                ? fmt::format("{} {} along rigid links left out (length {:.6g} nm)", count, what,
+                              longest)
+                : fmt::format("{} {} along rigid links left out (lengths {:.6g} to {:.6g} nm)",
+                              count, what, shortest, longest);
+        if (largest_difference > same_length)
+            text += fmt::format("; their links differ from them by up to {:.3g} nm",
+                                largest_difference);
         return text;
     }
 };
 
 void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const& beads) {
     if (system.getNumParticles() != beads.size())
-        throw InputError(fmt::format("the System has {} particles and the scene {} beads", system.getNumParticles(), beads.size()),
-                         openmm_key(beads.scene_file, "system"),
-                         fmt::format("let every particle of {} be a bead of the scene", spec.system));
+        throw InputError(
+            fmt::format("the System has {} particles and the scene {} beads",
+                        system.getNumParticles(), beads.size()),
+            openmm_key(beads.scene_file, "system"),
+            fmt::format("let every particle of {} be a bead of the scene", spec.system));
 }
 
 /// One chain after the other, without a map: the topology's chains must be the scene's.
@@ -79,30 +86,40 @@ void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::int64_t atoms = 0;
     for (auto const& chain : chains) atoms += std::ssize(chain.residue);
     if (atoms != beads.size())
-        throw InputError(fmt::format("the topology has {} atoms and the System {} particles", atoms, beads.size()), where,
-                         fmt::format("let {} hold one atom a particle, in the System's order", spec.topology));
+        throw InputError(
+            fmt::format("the topology has {} atoms and the System {} particles", atoms,
+                        beads.size()),
+            where,
+            fmt::format("let {} hold one atom a particle, in the System's order", spec.topology));
     if (!spec.map.empty()) return;
     std::size_t const count = beads.chain_name.size();
     for (std::size_t c = 0; c < std::max(count, chains.size()); ++c) {
-        std::int64_t const in_scene = c < count ? beads.chain_offset[c + 1] - beads.chain_offset[c] : 0;
+        std::int64_t const in_scene =
+            c < count ? beads.chain_offset[c + 1] - beads.chain_offset[c] : 0;
         std::int64_t const in_topology = c < chains.size() ? std::ssize(chains[c].residue) : 0;
         if (in_scene != in_topology)
-            throw InputError(fmt::format("chain {} has {} beads in the scene and {} atoms in the topology", c + 1, in_scene, in_topology),
-                             where, "give the chains in the topology's order, or say which particles are whose with forces.openmm.map");
+            throw InputError(
+                fmt::format("chain {} has {} beads in the scene and {} atoms in the topology",
+                            c + 1, in_scene, in_topology),
+                where,
+                "give the chains in the topology's order, or say which particles are whose with "
+                "forces.openmm.map");
     }
 }
 
-/// `map` names the first and last particle of each chain, counted from 0 as OpenMM does; without it particles and beads have the same
-/// order.
+/// `map` names the first and last particle of each chain, counted from 0 as OpenMM does; without it
+/// particles and beads have the same order.
 std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem const& beads) {
-    std::vector<std::int64_t> bead(static_cast<std::size_t>(beads.size()), spec.map.empty() ? 0 : -1);
+    std::vector<std::int64_t> bead(static_cast<std::size_t>(beads.size()),
+                                   spec.map.empty() ? 0 : -1);
     if (spec.map.empty()) {
         for (std::size_t p = 0; p < bead.size(); ++p) bead[p] = static_cast<std::int64_t>(p);
         return bead;
     }
     std::string const where = openmm_key(beads.scene_file, "map");
     std::vector<bool> used(spec.map.size(), false);
-    std::unordered_map<std::string_view, std::vector<std::size_t>> unused;  // entries by the chain's name, the first one last
+    std::unordered_map<std::string_view, std::vector<std::size_t>>
+        unused;  // entries by the chain's name, the first one last
     for (std::size_t i = spec.map.size(); i-- > 0;) unused[spec.map[i].first].push_back(i);
     for (std::size_t c = 0; c < beads.chain_name.size(); ++c) {
         std::string const& name = beads.chain_name[c];
@@ -117,54 +134,70 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
         std::int64_t const count = beads.chain_offset[c + 1] - beads.chain_offset[c];
         if (first < 0 || last >= beads.size() || last - first + 1 != count)
             throw InputError(
-                fmt::format("chain {} has {} beads, and its particles are {} to {} of 0 to {}", name, count, first, last, beads.size() - 1),
+                fmt::format("chain {} has {} beads, and its particles are {} to {} of 0 to {}",
+                            name, count, first, last, beads.size() - 1),
                 where, "name its first and last particle, counted from 0");
         for (std::int64_t k = 0; k < count; ++k) {
             auto& owner = bead[static_cast<std::size_t>(first + k)];
             if (owner >= 0)
-                throw InputError(fmt::format("particle {} (from 0) belongs to two chains", first + k), where, "let the ranges be disjoint");
+                throw InputError(
+                    fmt::format("particle {} (from 0) belongs to two chains", first + k), where,
+                    "let the ranges be disjoint");
             owner = beads.chain_offset[c] + k;
         }
     }
     auto const spare = std::find(used.begin(), used.end(), false);
     if (spare != used.end())
         throw InputError(
-            fmt::format("the scene has no chain of beads named {}", spec.map[static_cast<std::size_t>(spare - used.begin())].first), where,
-            fmt::format("take one of {}", fmt::join(beads.chain_name, ", ")));
+            fmt::format("the scene has no chain of beads named {}",
+                        spec.map[static_cast<std::size_t>(spare - used.begin())].first),
+            where, fmt::format("take one of {}", fmt::join(beads.chain_name, ", ")));
     return bead;
 }
 
-void check_masses(System const& system, BeadSystem const& beads, std::vector<std::int64_t> const& bead_of_particle) {
+void check_masses(System const& system, BeadSystem const& beads,
+                  std::vector<std::int64_t> const& bead_of_particle) {
     for (int p = 0; p < system.getNumParticles(); ++p) {
-        double const in_system = system.getParticleMass(p), in_scene = beads.mass[static_cast<std::size_t>(bead_of_particle[p])];
+        double const in_system = system.getParticleMass(p),
+                     in_scene = beads.mass[static_cast<std::size_t>(bead_of_particle[p])];
         if (std::abs(in_system - in_scene) > same_mass * in_system)
-            throw InputError(fmt::format("particle {} (from 0) has mass {} in the System and {} in the scene", p, in_system, in_scene),
-                             openmm_key(beads.scene_file, "system"), "masses come from the System: let the scene give the same");
+            throw InputError(
+                fmt::format("particle {} (from 0) has mass {} in the System and {} in the scene", p,
+                            in_system, in_scene),
+                openmm_key(beads.scene_file, "system"),
+                "masses come from the System: let the scene give the same");
     }
 }
 
 /// Constraints must be links; then the links take their place.
-std::vector<std::string> remove_constraints(System& system, LinkTable const& links, std::string const& where) {
-    LeftOut left_out;
+std::vector<std::string> remove_constraints(System& system, LinkTable const& links,
+                                            std::string const& where) {
+    Savings left_out;
     for (int i = system.getNumConstraints() - 1; i >= 0; --i) {
         int a, b;
         double length;
         system.getConstraintParameters(i, a, b, length);
         double const* link = links.length(a, b);
         if (link == nullptr)
-            throw InputError(fmt::format("the constraint between particles {} and {} (from 0) is no link of the scene", a, b), where,
-                             "constrain neighbours in a chain only, or make it a bond");
-        if (std::abs(*link - length) > same_length)
             throw InputError(
-                fmt::format("the constraint between particles {} and {} (from 0) has length {}, its link {}", a, b, length, *link), where,
-                "let both be the same");
+                fmt::format(
+                    "the constraint between particles {} and {} (from 0) is no link of the scene",
+                    a, b),
+                where, "constrain neighbours in a chain only, or make it a bond");
+        if (std::abs(*link - length) > same_length)
+            throw InputError(fmt::format("the constraint between particles {} and {} (from 0) has "
+                                         "length {}, its link {}",
+                                         a, b, length, *link),
+                             where, "let both be the same");
         left_out.add(length, *link);
         system.removeConstraint(i);
     }
-    return left_out.count > 0 ? std::vector{left_out.note("constraints")} : std::vector<std::string>{};
+    return left_out.count > 0 ? std::vector{left_out.note("constraints")}
+                              : std::vector<std::string>{};
 }
 
-std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds, LinkTable const& links, LeftOut& left_out) {
+std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
+                                                 LinkTable const& links, Savings& left_out) {
     auto kept = std::make_unique<HarmonicBondForce>();
     kept->setUsesPeriodicBoundaryConditions(bonds.usesPeriodicBoundaryConditions());
     kept->setName(bonds.getName());
@@ -181,12 +214,12 @@ std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
     return kept;
 }
 
-/// Forces get the names of their terms in the System's order, before those that lose bonds move to its end; `links` take others whole.
-/// Refuses more forces than OpenMM has groups.
+/// Forces get the names of their terms in the System's order, before those that lose bonds move to
+/// its end; `links` take others whole. Refuses more forces than OpenMM has groups.
 void name_in_order(System& system, LinkTable const& links, std::string const& where) {
     auto const vanishes = [&](OpenMM::Force const& force) {
         auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&force);
-        LeftOut ignored;
+        Savings ignored;
         return bonds != nullptr && without_links(*bonds, links, ignored)->getNumBonds() == 0;
     };
     std::vector<int> remaining;
@@ -194,14 +227,16 @@ void name_in_order(System& system, LinkTable const& links, std::string const& wh
         if (!vanishes(system.getForce(i))) remaining.push_back(i);
     if (remaining.size() > force_groups_of_openmm)
         throw InputError(fmt::format("the System has {} forces", remaining.size()), where,
-                         fmt::format("merge forces of one kind: OpenMM tells {} groups apart", force_groups_of_openmm));
+                         fmt::format("merge forces of one kind: OpenMM tells {} groups apart",
+                                     force_groups_of_openmm));
     std::vector<std::string> const names = term_names(system, remaining);
     for (std::size_t n = 0; n < names.size(); ++n) system.getForce(remaining[n]).setName(names[n]);
 }
 
 /// Takes the bonds along links out, and forces that are left without a term with them.
-std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links, std::string const& where) {
-    LeftOut left_out;
+std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links,
+                                             std::string const& where) {
+    Savings left_out;
     name_in_order(system, links, where);
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&system.getForce(i));
@@ -210,16 +245,20 @@ std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& li
         system.removeForce(i);
         if (kept->getNumBonds() > 0) system.addForce(kept.release());
     }
-    return left_out.count > 0 ? std::vector{left_out.note("harmonic bonds")} : std::vector<std::string>{};
+    return left_out.count > 0 ? std::vector{left_out.note("harmonic bonds")}
+                              : std::vector<std::string>{};
 }
 
-/// Beads of one rigid body do not act on each other: what nonbonded terms add there has no effect but rounding.
-std::vector<std::string> exclude_within_bodies(System& system, BeadSystem const& beads, std::vector<int> const& particle_of_bead) {
+/// Beads of one rigid body do not act on each other: what nonbonded terms add there has no effect
+/// but rounding.
+std::vector<std::string> exclude_within_bodies(System& system, BeadSystem const& beads,
+                                               std::vector<int> const& particle_of_bead) {
     if (beads.rigid.empty()) return {};
     std::set<std::pair<int, int>> pairs;
     for (auto const& [first, last] : beads.rigid)
         for (std::int64_t a = first; a < last; ++a)
-            for (std::int64_t b = a + 1; b < last; ++b) pairs.insert(std::minmax({particle_of_bead[a], particle_of_bead[b]}));
+            for (std::int64_t b = a + 1; b < last; ++b)
+                pairs.insert(std::minmax({particle_of_bead[a], particle_of_bead[b]}));
     for (int i = 0; i < system.getNumForces(); ++i) {
         std::set<std::pair<int, int>> missing = pairs;
         if (auto* custom = dynamic_cast<OpenMM::CustomNonbondedForce*>(&system.getForce(i))) {
@@ -233,7 +272,8 @@ std::vector<std::string> exclude_within_bodies(System& system, BeadSystem const&
             for (auto const& [a, b] : pairs) charges->addException(a, b, 0, 1, 0, true);
         }
     }
-    return {fmt::format("no nonbonded forces within {} rigid {}", beads.rigid.size(), beads.rigid.size() == 1 ? "body" : "bodies")};
+    return {fmt::format("no nonbonded forces within {} rigid {}", beads.rigid.size(),
+                        beads.rigid.size() == 1 ? "body" : "bodies")};
 }
 
 /// Keeps the groups that the scene asks for.
@@ -242,9 +282,11 @@ std::vector<std::string> remove_other_groups(System& system, std::vector<int> co
     if (groups.empty()) return notes;
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         auto const& force = system.getForce(i);
-        if (std::find(groups.begin(), groups.end(), force.getForceGroup()) != groups.end()) continue;
+        if (std::find(groups.begin(), groups.end(), force.getForceGroup()) != groups.end())
+            continue;
         notes.insert(notes.begin(),
-                     fmt::format("{} (group {}) left out by force_groups", scene::shown(force.getName()), force.getForceGroup()));
+                     fmt::format("{} (group {}) left out by force_groups",
+                                 scene::shown(force.getName()), force.getForceGroup()));
         system.removeForce(i);
     }
     return notes;
@@ -257,12 +299,14 @@ std::vector<std::string> name_terms(System& system) {
         auto& force = system.getForce(i);
         names.push_back(force.getName());
         force.setForceGroup(i);
-        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&force)) charges->setReciprocalSpaceForceGroup(-1);  // with the rest
+        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&force))
+            charges->setReciprocalSpaceForceGroup(-1);  // with the rest
     }
     return names;
 }
 
-/// The particles' charges where the force has any: those of a NonbondedForce, or a parameter that is called so.
+/// The particles' charges where the force has any: those of a NonbondedForce, or a parameter that
+/// is called so.
 std::vector<double> charges_of(OpenMM::Force const& force) {
     std::vector<double> charges, parameters;
     if (auto const* nonbonded = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
@@ -272,7 +316,8 @@ std::vector<double> charges_of(OpenMM::Force const& force) {
             charges.push_back(charge);
         }
     auto const* custom = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force);
-    for (int i = 0; custom != nullptr && charges.empty() && i < custom->getNumPerParticleParameters(); ++i) {
+    for (int i = 0;
+         custom != nullptr && charges.empty() && i < custom->getNumPerParticleParameters(); ++i) {
         std::string const& name = custom->getPerParticleParameterName(i);
         if (name != "q" && name != "Q" && name != "charge") continue;
         for (int p = 0; p < custom->getNumParticles(); ++p) {
@@ -283,15 +328,18 @@ std::vector<double> charges_of(OpenMM::Force const& force) {
     return charges;
 }
 
-/// What the first force with charges says of the chains' net charges; none where no particle is charged.
+/// What the first force with charges says of the chains' net charges; none where no particle is
+/// charged.
 std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const& beads) {
     for (int i = 0; i < model.system->getNumForces(); ++i) {
         std::vector<double> const charges = charges_of(model.system->getForce(i));
         if (std::ssize(charges) != beads.size()) continue;
         if (std::all_of(charges.begin(), charges.end(), [](double q) { return q == 0; })) continue;
         std::vector<double> of_bead(charges.size());
-        for (std::size_t p = 0; p < charges.size(); ++p) of_bead[static_cast<std::size_t>(model.bead_of_particle[p])] = charges[p];
-        return {fmt::format("{} ({})", charge_text(of_bead, beads), model.terms[static_cast<std::size_t>(i)])};
+        for (std::size_t p = 0; p < charges.size(); ++p)
+            of_bead[static_cast<std::size_t>(model.bead_of_particle[p])] = charges[p];
+        return {fmt::format("{} ({})", charge_text(of_bead, beads),
+                            model.terms[static_cast<std::size_t>(i)])};
     }
     return {};
 }
@@ -307,10 +355,13 @@ void settle_box(System& system, BeadSystem const& beads, std::vector<std::string
     system.getDefaultPeriodicBoxVectors(edge[0], edge[1], edge[2]);
     bool same = beads.box.has_value();
     for (int i = 0; i < 3 && same; ++i)
-        for (int j = 0; j < 3; ++j) same = same && std::abs(edge[i][j] - (i == j ? (*beads.box)[i] : 0)) <= same_length;
+        for (int j = 0; j < 3; ++j)
+            same = same && std::abs(edge[i][j] - (i == j ? (*beads.box)[i] : 0)) <= same_length;
     if (!same)
-        throw InputError("the System's forces are periodic and its box is not the scene's", beads.scene_file + ": box.periodic",
-                         fmt::format("give the System's, [{}, {}, {}]; it must be rectangular", edge[0][0], edge[1][1], edge[2][2]));
+        throw InputError("the System's forces are periodic and its box is not the scene's",
+                         beads.scene_file + ": box.periodic",
+                         fmt::format("give the System's, [{}, {}, {}]; it must be rectangular",
+                                     edge[0][0], edge[1][1], edge[2][2]));
 }
 
 }  // namespace
@@ -319,7 +370,8 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::string const where = openmm_key(beads.scene_file, "system");
     OpenMmModel model;
     model.system = read_openmm_system(spec.system, where);
-    std::vector<std::string> const movers = leave_movers_out(*model.system, spec.force_groups, where);
+    std::vector<std::string> const movers =
+        leave_movers_out(*model.system, spec.force_groups, where);
     check_counts(*model.system, spec, beads);
     check_topology(spec, beads);
     model.bead_of_particle = beads_of_particles(spec, beads);
@@ -327,7 +379,9 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
 
     std::vector<int> const particle_of_bead = particles_of_beads(model.bead_of_particle);
     LinkTable const links(beads, particle_of_bead);
-    auto const add = [&](std::vector<std::string> const& notes) { model.notes.insert(model.notes.end(), notes.begin(), notes.end()); };
+    auto const add = [&](std::vector<std::string> const& notes) {
+        model.notes.insert(model.notes.end(), notes.begin(), notes.end());
+    };
     add({fmt::format("System {}", scene::shown_path(spec.system))});
     add(movers);
     add(remove_constraints(*model.system, links, where));

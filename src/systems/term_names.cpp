@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "systems/model.hpp"
 #include "scene/node.hpp"
+#include "systems/model.hpp"
 
 namespace catena {
 
@@ -13,19 +13,27 @@ namespace {
 std::string harmless(std::string const& name) {
     std::string text = scene::shown(name);
     for (char& c : text)
-        if (c < ' ' || c > '~' || std::string_view(",;\"'`<>&\\|").find(c) != std::string_view::npos) c = '_';
+        if (c < ' ' || c > '~' ||
+            std::string_view(",;\"'`<>&\\|").find(c) != std::string_view::npos)
+            c = '_';
     auto const first = text.find_first_not_of(' ');
-    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+    return first == std::string::npos ? ""
+                                      : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-bool has(std::string const& text, std::string_view part) { return text.find(part) != std::string::npos; }
+bool has(std::string const& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+}
 
 /// exp(-kappa*r)/r, whatever kappa is written as.
 bool is_screened(std::string const& energy) {
-    for (auto at = energy.find("exp(-"); at != std::string::npos; at = energy.find("exp(-", at + 1)) {
+    for (auto at = energy.find("exp(-"); at != std::string::npos;
+         at = energy.find("exp(-", at + 1)) {
         auto const end = energy.find(')', at);
-        std::string const exponent = end == std::string::npos ? "" : energy.substr(at + 5, end - at - 5);
-        bool const distance = exponent == "r" || exponent.starts_with("r/") || exponent.starts_with("r*") || exponent.ends_with("*r");
+        std::string const exponent =
+            end == std::string::npos ? "" : energy.substr(at + 5, end - at - 5);
+        bool const distance = exponent == "r" || exponent.starts_with("r/") ||
+                              exponent.starts_with("r*") || exponent.ends_with("*r");
         if (distance && energy.compare(end + 1, 2, "/r") == 0) return true;
     }
     return false;
@@ -33,7 +41,8 @@ bool is_screened(std::string const& energy) {
 
 /// Lennard-Jones, split at its minimum and scaled by a stickiness beyond it.
 bool is_ashbaugh_hatch(std::string const& energy) {
-    return has(energy, "2^(1/6)*") && has(energy, "^12") && has(energy, "^6") && has(energy, "step(") && has(energy, "(1-l");
+    return has(energy, "2^(1/6)*") && has(energy, "^12") && has(energy, "^6") &&
+           has(energy, "step(") && has(energy, "(1-l");
 }
 
 /// A name that somebody gave, else what the expression says, else the kind of the force.
@@ -52,11 +61,13 @@ std::string own_name(OpenMM::Force const& force) {
 
 std::vector<std::string> term_names(OpenMM::System const& system, std::vector<int> const& forces) {
     std::vector<std::string> names;
-    std::vector<std::string> taken{"potential", "kinetic", "total", "gravity", "springs", "fixman"};  // columns of the run's own
+    std::vector<std::string> taken{"potential", "kinetic", "total",
+                                   "gravity",   "springs", "fixman"};  // columns of the run's own
     for (int const i : forces) {
         std::string const name = own_name(system.getForce(i));
         std::string unique = name;
-        for (int n = 2; std::find(taken.begin(), taken.end(), unique) != taken.end(); ++n) unique = name + ' ' + std::to_string(n);
+        for (int n = 2; std::find(taken.begin(), taken.end(), unique) != taken.end(); ++n)
+            unique = name + ' ' + std::to_string(n);
         taken.push_back(unique);
         names.push_back(unique);
     }

@@ -18,10 +18,14 @@ namespace {
 
 using std::string_view;
 
-std::size_t constexpr deepest = 64;  // OpenMM writes ten, and a few more for each force within a CustomCVForce
+std::size_t constexpr deepest =
+    64;  // OpenMM writes ten, and a few more for each force within a CustomCVForce
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.' || c == ':'; }
+bool is_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.' ||
+           c == ':';
+}
 
 /// Whether the whole text is a number as OpenMM writes it.
 bool is_number(string_view text) {
@@ -43,15 +47,18 @@ bool is_one_of(string_view name, std::array<string_view, N> const& names) {
 }
 
 /// Attributes that hold words.
-constexpr std::array<string_view, 9> words{"name",    "type",     "types",         "energy",  "expression",
-                                           "formula", "function", "openmmVersion", "typeName"};
+constexpr std::array<string_view, 9> words{"name",     "type",          "types",
+                                           "energy",   "expression",    "formula",
+                                           "function", "openmmVersion", "typeName"};
 /// Elements that have nothing but numbers beside these.
-constexpr std::array<string_view, 11> records{"A",        "B",     "C",         "Bond",      "Angle",     "Torsion",
-                                              "Particle", "Value", "Exclusion", "Exception", "Constraint"};
+constexpr std::array<string_view, 11> records{"A",         "B",         "C",         "Bond",
+                                              "Angle",     "Torsion",   "Particle",  "Value",
+                                              "Exclusion", "Exception", "Constraint"};
 
 class Scanner {
   public:
-    Scanner(string_view text, std::string const& file, std::string const& where) : text_(text), file_(file), where_(where) {}
+    Scanner(string_view text, std::string const& file, std::string const& where)
+        : text_(text), file_(file), where_(where) {}
 
     XmlOutline scan() {
         if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
@@ -62,7 +69,9 @@ class Scanner {
                 between();
         }
         if (!open_.empty())
-            fail(open_.back().at, fmt::format("<{}> is not closed: the file is cut short or a line was lost", shown(open_.back().name)));
+            fail(open_.back().at,
+                 fmt::format("<{}> is not closed: the file is cut short or a line was lost",
+                             shown(open_.back().name)));
         if (!rooted_) fail(0, "it has no element");
         return std::move(outline_);
     }
@@ -84,14 +93,17 @@ class Scanner {
     }
 
     [[noreturn]] void fail(std::size_t at, std::string const& what) const {
-        throw InputError(fmt::format("{} is not well-formed: {} (line {})", file_, what, 1 + lines(0, at)), where_,
-                         "write the System again with OpenMM's XmlSerializer");
+        throw InputError(
+            fmt::format("{} is not well-formed: {} (line {})", file_, what, 1 + lines(0, at)),
+            where_, "write the System again with OpenMM's XmlSerializer");
     }
 
     /// Blanks alone.
     void between() {
         for (; at_ < text_.size() && text_[at_] != '<'; ++at_)
-            if (!is_blank(text_[at_])) fail(at_, fmt::format("`{}` stands between elements", shown(text_.substr(at_, 20))));
+            if (!is_blank(text_[at_]))
+                fail(at_,
+                     fmt::format("`{}` stands between elements", shown(text_.substr(at_, 20))));
     }
 
     void markup() {
@@ -112,7 +124,8 @@ class Scanner {
     string_view name() {
         std::size_t const begin = at_;
         while (at_ < text_.size() && is_name(text_[at_])) ++at_;
-        if (at_ == begin || std::isalpha(static_cast<unsigned char>(text_[begin])) == 0) fail(begin, "a tag or attribute without a name");
+        if (at_ == begin || std::isalpha(static_cast<unsigned char>(text_[begin])) == 0)
+            fail(begin, "a tag or attribute without a name");
         return text_.substr(begin, at_ - begin);
     }
     bool blanks() {
@@ -133,17 +146,20 @@ class Scanner {
         blanks();
         if (!take(">")) fail(begin, fmt::format("</{}> has no `>`", shown(closed)));
         if (open_.empty()) fail(begin, fmt::format("</{}> closes nothing", shown(closed)));
-        if (open_.back().name != closed) fail(begin, fmt::format("</{}> closes <{}>", shown(closed), shown(open_.back().name)));
+        if (open_.back().name != closed)
+            fail(begin, fmt::format("</{}> closes <{}>", shown(closed), shown(open_.back().name)));
         open_.pop_back();
     }
 
     void start_tag() {
         std::size_t const begin = at_++;
         if (open_.empty() && rooted_) fail(begin, "a second element beside the System");
-        if (open_.size() == deepest) fail(begin, fmt::format("elements lie more than {} deep in each other", deepest));
+        if (open_.size() == deepest)
+            fail(begin, fmt::format("elements lie more than {} deep in each other", deepest));
         Element element{name(), begin};
         Attributes attributes;
-        while (blanks() && at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/') attributes.push_back(attribute());
+        while (blanks() && at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/')
+            attributes.push_back(attribute());
         refuse_twice(begin, attributes);
         bool const empty = take("/");
         if (!take(">")) fail(begin, fmt::format("<{}> has no `>`", shown(element.name)));
@@ -154,13 +170,15 @@ class Scanner {
         if (!empty) open_.push_back(std::move(element));
     }
 
-    /// In one pass over sorted names: an element may have as many attributes as the file has room for.
+    /// In one pass over sorted names: an element may have as many attributes as the file has room
+    /// for.
     void refuse_twice(std::size_t at, Attributes const& attributes) const {
         std::vector<string_view> keys;
         for (auto const& [key, value] : attributes) keys.push_back(key);
         std::sort(keys.begin(), keys.end());
         auto const twice = std::adjacent_find(keys.begin(), keys.end());
-        if (twice != keys.end()) fail(at, fmt::format("attribute {} is given twice", shown(*twice)));
+        if (twice != keys.end())
+            fail(at, fmt::format("attribute {} is given twice", shown(*twice)));
     }
 
     std::pair<string_view, string_view> attribute() {
@@ -170,7 +188,8 @@ class Scanner {
         if (!take("=")) fail(begin, fmt::format("attribute {} has no value", shown(key)));
         blanks();
         char const quote = at_ < text_.size() ? text_[at_] : ' ';
-        if (quote != '"' && quote != '\'') fail(begin, fmt::format("the value of {} has no quotes", shown(key)));
+        if (quote != '"' && quote != '\'')
+            fail(begin, fmt::format("the value of {} has no quotes", shown(key)));
         std::size_t const from = ++at_, to = text_.find(quote, from);
         string_view const value = text_.substr(from, to == string_view::npos ? to : to - from);
         if (to == string_view::npos || value.find('<') != string_view::npos)
@@ -205,11 +224,15 @@ class Scanner {
         Element& parent = open_.back();
         bool const in_forces = open_.size() == 2 && parent.name == "Forces";
         if (in_forces) outline_.forces.emplace_back(value_of(attributes, "type"));
-        if (parent.name == "Force" && parent.has_type && element.name == "Force")  // an ATMForce has its forces in <Force> without a type
-            fail(parent.at, fmt::format("a <Force> is not closed before the next begins ({} lines below)", lines(parent.at, element.at)));
+        if (parent.name == "Force" && parent.has_type &&
+            element.name == "Force")  // an ATMForce has its forces in <Force> without a type
+            fail(parent.at,
+                 fmt::format("a <Force> is not closed before the next begins ({} lines below)",
+                             lines(parent.at, element.at)));
         if (open_.size() != 1 && parent.name != "Force") return;
         if (!parent.has.insert(element.name).second)
-            fail(element.at, fmt::format("<{}> is there twice in <{}>", shown(element.name), shown(parent.name)));
+            fail(element.at, fmt::format("<{}> is there twice in <{}>", shown(element.name),
+                                         shown(parent.name)));
     }
 
     string_view text_;
@@ -223,7 +246,8 @@ class Scanner {
 
 }  // namespace
 
-XmlOutline scan_system_xml(std::string_view text, std::string const& file, std::string const& where) {
+XmlOutline scan_system_xml(std::string_view text, std::string const& file,
+                           std::string const& where) {
     return Scanner(text, file, where).scan();
 }
 

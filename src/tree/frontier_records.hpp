@@ -11,20 +11,29 @@ template <class T>
 struct RecordNumbers {
     static constexpr int width = RecordsView<T, Order::plain>::numbers;
     RecordsView<T, Order::plain> records;
-    SharedUnit const *own, *all;
-    CATENA_HD double show(std::int64_t i) const { return records.number(own[i / width].slot, static_cast<int>(i % width)); }
-    CATENA_HD void take(std::int64_t i, double value) const { records.number(all[i / width].slot, static_cast<int>(i % width)) = value; }
+    FrontierUnit const *own, *all;
+    CATENA_HD double show(std::int64_t i) const {
+        return records.number(own[i / width].slot, static_cast<int>(i % width));
+    }
+    CATENA_HD void take(std::int64_t i, double value) const {
+        records.number(all[i / width].slot, static_cast<int>(i % width)) = value;
+    }
 };
 
 /// As RecordNumbers, of two records a unit: those of the one, then those of the other.
 template <class A, class B>
 struct NumbersOfBoth {
-    static constexpr int of_first = RecordNumbers<A>::width, width = of_first + RecordNumbers<B>::width;
+    static constexpr int of_first = RecordNumbers<A>::width,
+                         width = of_first + RecordNumbers<B>::width;
     RecordsView<A, Order::plain> first;
     RecordsView<B, Order::plain> second;
-    SharedUnit const *own, *all;
-    CATENA_HD double show(std::int64_t i) const { return number(own[i / width].slot, static_cast<int>(i % width)); }
-    CATENA_HD void take(std::int64_t i, double value) const { number(all[i / width].slot, static_cast<int>(i % width)) = value; }
+    FrontierUnit const *own, *all;
+    CATENA_HD double show(std::int64_t i) const {
+        return number(own[i / width].slot, static_cast<int>(i % width));
+    }
+    CATENA_HD void take(std::int64_t i, double value) const {
+        number(all[i / width].slot, static_cast<int>(i % width)) = value;
+    }
 
   private:
     CATENA_HD double& number(std::int64_t slot, int n) const {

@@ -7,7 +7,8 @@
 namespace catena::dca {
 namespace {
 
-/// A chain is too short to be shared where so many make a rank's equal share: then ranks need not speak to solve it.
+/// A chain is too short to be shared where so many make a rank's equal share: then ranks need not
+/// speak to solve it.
 std::int64_t constexpr chains_of_share = 16;
 
 /// First bodies of all that goes to one rank as a whole, and the number of bodies.
@@ -17,29 +18,36 @@ std::vector<std::int64_t> wholes_of(Partition const& partition, int ranks) {
         ChainTree const& tree = partition.trees[static_cast<std::size_t>(chain)];
         bool const alone = tree.bodies * ranks * chains_of_share <= partition.bodies();
         for (std::int64_t unit = 0; unit < (alone ? 1 : tree.units); ++unit)
-            first.push_back(partition.first_of_chain[static_cast<std::size_t>(chain)] + tree.first_body_of_unit(unit));
+            first.push_back(partition.first_of_chain[static_cast<std::size_t>(chain)] +
+                            tree.first_body_of_unit(unit));
     }
     first.push_back(partition.bodies());
     return first;
 }
 
 /// Index of each rank's first whole; [ranks + 1].
-std::vector<std::int64_t> deal(std::vector<std::int64_t> const& wholes, std::vector<std::int64_t> const& begins) {
+std::vector<std::int64_t> deal(std::vector<std::int64_t> const& wholes,
+                               std::vector<std::int64_t> const& begins) {
     auto const count = std::ssize(wholes) - 1;
     std::vector<std::int64_t> first(begins.size(), count);
     std::size_t rank = 0;
     for (std::int64_t i = 0; i < count; ++i) {
-        std::int64_t const twice_middle = wholes[static_cast<std::size_t>(i)] + wholes[static_cast<std::size_t>(i) + 1];
-        while (rank + 1 < begins.size() && 2 * wholes.back() * begins[rank] <= twice_middle * begins.back()) first[rank++] = i;
+        std::int64_t const twice_middle =
+            wholes[static_cast<std::size_t>(i)] + wholes[static_cast<std::size_t>(i) + 1];
+        while (rank + 1 < begins.size() &&
+               2 * wholes.back() * begins[rank] <= twice_middle * begins.back())
+            first[rank++] = i;
     }
     return first;
 }
 
-/// Moves what `first` says as little as it takes for every rank that has something by `equal` to have something.
+/// Moves what `first` says as little as it takes for every rank that has something by `equal` to
+/// have something.
 void keep_some(std::vector<std::int64_t>& first, std::vector<std::int64_t> const& equal) {
     auto const least = [&](std::size_t rank) { return equal[rank] < equal[rank + 1] ? 1 : 0; };
     std::size_t const ranks = first.size() - 1;
-    for (std::size_t r = 0; r < ranks; ++r) first[r + 1] = std::max(first[r + 1], first[r] + least(r));
+    for (std::size_t r = 0; r < ranks; ++r)
+        first[r + 1] = std::max(first[r + 1], first[r] + least(r));
     first[ranks] = equal[ranks];
     for (std::size_t r = ranks; r-- > 0;) first[r] = std::min(first[r], first[r + 1] - least(r));
 }
@@ -50,7 +58,8 @@ Shares shares_of_speeds(std::span<double const> speeds) {
     auto const is_known = [](double speed) { return speed > 0 && std::isfinite(speed); };
     double largest = 0, sum = 0;
     std::int64_t known = 0;
-    for (double const speed : speeds) largest = is_known(speed) ? std::max(largest, speed) : largest;
+    for (double const speed : speeds)
+        largest = is_known(speed) ? std::max(largest, speed) : largest;
     if (largest == 0) return Shares(speeds.size(), parts_of_equal_share);
     std::vector<double> weight;  // of the largest
     for (double const speed : speeds) {
@@ -60,7 +69,9 @@ Shares shares_of_speeds(std::span<double const> speeds) {
     }
     double const mean = sum / static_cast<double>(known);
     Shares shares;
-    for (double const w : weight) shares.push_back(std::llround(static_cast<double>(parts_of_equal_share) * (w > 0 ? w : mean) / mean));
+    for (double const w : weight)
+        shares.push_back(
+            std::llround(static_cast<double>(parts_of_equal_share) * (w > 0 ? w : mean) / mean));
     return shares;
 }
 
@@ -76,10 +87,12 @@ std::vector<std::int64_t> begins_of_shares(Shares const& shares, int ranks) {
 void cut_by_shares(Partition& partition, int ranks, Shares const& shares) {
     std::vector<std::int64_t> const wholes = wholes_of(partition, ranks);
     std::vector<std::int64_t> const equal = deal(wholes, begins_of_shares({}, ranks));
-    std::vector<std::int64_t> first = shares.empty() ? equal : deal(wholes, begins_of_shares(shares, ranks));
+    std::vector<std::int64_t> first =
+        shares.empty() ? equal : deal(wholes, begins_of_shares(shares, ranks));
     keep_some(first, equal);
     partition.first_of_rank.clear();
-    for (std::int64_t const whole : first) partition.first_of_rank.push_back(wholes[static_cast<std::size_t>(whole)]);
+    for (std::int64_t const whole : first)
+        partition.first_of_rank.push_back(wholes[static_cast<std::size_t>(whole)]);
 }
 
 }  // namespace catena::dca

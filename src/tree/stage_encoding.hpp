@@ -1,4 +1,5 @@
-// What a block of a stage is told, as it lies in the block's shared memory: one copy brings all of it.
+// What a block of a stage is told, as it lies in the block's shared memory: one copy brings all of
+// it.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,8 @@ struct alignas(16) BlockMerge {
     std::uint16_t inboard = 0, outboard = 0, next = 0, restricted = 0;
     std::int64_t joint = 0;
 };
-/// Where an item's segment and its inboard joint are for everybody. ~slot: a letter brings it where stages turn together; ~joint: its force
-/// comes from above.
+/// Where an item's segment and its inboard joint are for everybody. ~slot: a letter brings it where
+/// stages turn together; ~joint: its force comes from above.
 struct alignas(16) BlockItem {
     std::int64_t slot = 0, joint = 0;
     CATENA_HD bool comes_by_letter() const { return slot < 0; }
@@ -56,17 +57,24 @@ StageLayout layout_of(Stage const&);
 std::vector<StageWord> words_of(Stage const&, StagesTogether const&);
 
 /// A block's words.
-class BlockWords {
+class BlockEncoding {
   public:
-    CATENA_HD BlockWords(StageLayout const& layout, StageWord const* words) : layout_(layout), words_(words) {}
+    CATENA_HD BlockEncoding(StageLayout const& layout, StageWord const* words)
+        : layout_(layout), words_(words) {}
     CATENA_HD BlockHead const& head() const { return at<BlockHead>(0)[0]; }
-    CATENA_HD BlockMerge const& merge(int i) const { return at<BlockMerge>(layout_.merges_at())[i]; }
+    CATENA_HD BlockMerge const& merge(int i) const {
+        return at<BlockMerge>(layout_.merges_at())[i];
+    }
     CATENA_HD BlockItem const& item(int i) const { return at<BlockItem>(layout_.items_at())[i]; }
     CATENA_HD int next_of_run(int i) const { return at<std::int32_t>(layout_.items_at())[i]; }
     CATENA_HD BlockHanded const& up(int i) const { return at<BlockHanded>(layout_.ups_at())[i]; }
-    CATENA_HD BlockHanded const& down(int i) const { return at<BlockHanded>(layout_.downs_at())[i]; }
+    CATENA_HD BlockHanded const& down(int i) const {
+        return at<BlockHanded>(layout_.downs_at())[i];
+    }
     /// Merges [begin, end) of a level.
-    CATENA_HD int end_of_level(int level) const { return level < 0 ? 0 : at<std::int32_t>(layout_.levels_at())[level]; }
+    CATENA_HD int end_of_level(int level) const {
+        return level < 0 ? 0 : at<std::int32_t>(layout_.levels_at())[level];
+    }
 
   private:
     template <class T>

@@ -14,16 +14,24 @@ constexpr std::int64_t many_runs = 16384;
 constexpr std::int64_t fewest_of_block = 32;
 
 std::int64_t bit_ceil(std::int64_t n) {
-    return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(std::max<std::int64_t>(n, 1))));
+    return static_cast<std::int64_t>(
+        std::bit_ceil(static_cast<std::uint64_t>(std::max<std::int64_t>(n, 1))));
 }
 /// Of merges above so many items.
-int levels_above(std::int64_t items) { return std::bit_width(static_cast<std::uint64_t>(items)) - 1; }
+int levels_above(std::int64_t items) {
+    return std::bit_width(static_cast<std::uint64_t>(items)) - 1;
+}
 
 class Planner {
   public:
-    Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots, std::int64_t slots,
+    Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
+            std::vector<Root> const& roots, std::int64_t slots,
             std::span<std::uint8_t const> restricted)
-        : runs_(runs), levels_(levels), roots_(roots), restricted_(restricted), node_(static_cast<std::size_t>(slots)) {
+        : runs_(runs),
+          levels_(levels),
+          roots_(roots),
+          restricted_(restricted),
+          node_(static_cast<std::size_t>(slots)) {
         for (Run const& run : runs) know(run.slot, run.body, run.next);
         for (int l = 0; l < end(); ++l)
             for (Merge const& m : levels[static_cast<std::size_t>(l)]) {
@@ -50,7 +58,8 @@ class Planner {
         for (Run const& run : runs_) slots.push_back(run.slot);
         return slots;
     }
-    /// What the merges of levels `first` to `end_level` - 1 need and do not make themselves, along the chains.
+    /// What the merges of levels `first` to `end_level` - 1 need and do not make themselves, along
+    /// the chains.
     std::vector<std::int64_t> needed(int first, int end_level) const {
         std::vector<std::uint8_t> made(node_.size(), 0);
         std::vector<std::int64_t> slots;
@@ -64,15 +73,20 @@ class Planner {
         return slots;
     }
 
-    /// All levels from `level` on, up to `most` items to a block. More than that are halved, level by level, where `together` blocks do.
-    /// The last stage takes as well what other ranks want that stages below it have made: where its one block has all of that, it can speak
-    /// to these ranks.
-    void add_upper(int level, std::int64_t most, std::int64_t together, std::vector<Stage>& stages) {
-        for (std::vector<std::int64_t> left = needed(level, end()); !left.empty(); left = needed(level, end())) {
+    /// All levels from `level` on, up to `most` items to a block. More than that are halved, level
+    /// by level, where `together` blocks do. The last stage takes as well what other ranks want
+    /// that stages below it have made: where its one block has all of that, it can speak to these
+    /// ranks.
+    void add_upper(int level, std::int64_t most, std::int64_t together,
+                   std::vector<Stage>& stages) {
+        for (std::vector<std::int64_t> left = needed(level, end()); !left.empty();
+             left = needed(level, end())) {
             std::int64_t width = most;
-            for (std::int64_t half = most / 2; half * half >= std::ssize(left) && half * together >= std::ssize(left); half /= 2)
+            for (std::int64_t half = most / 2;
+                 half * half >= std::ssize(left) && half * together >= std::ssize(left); half /= 2)
                 width = half;
-            int const end_level = std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(width));
+            int const end_level =
+                std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(width));
             std::vector<std::int64_t> items = needed(level, end_level);
             if (std::vector<std::int64_t> all = items; end_level == end()) {
                 add_units(stages, all);
@@ -92,7 +106,8 @@ class Planner {
         stages.back().gathers = true;
     }
     /// Levels `first` to `end_level` - 1 above these items, up to `width` of them to a block.
-    Stage stage(std::vector<std::int64_t> const& items, std::int64_t width, int first, int end_level) {
+    Stage stage(std::vector<std::int64_t> const& items, std::int64_t width, int first,
+                int end_level) {
         Stage s;
         s.levels = end_level - first;
         deal(items, width, end_level, s);
@@ -107,23 +122,25 @@ class Planner {
 
   private:
     struct Node {
-        std::int64_t joint = 0, next = 0;    // of storage
-        std::int64_t up = -1;                // what it becomes part of
-        int met = -1;                        // at this level; -1: never
-        std::int64_t whole = 0;              // the first joint of all that it becomes part of
-        std::int64_t leaves = 1, along = 0;  // how many it is made of, how many of the whole's come before it
+        std::int64_t joint = 0, next = 0;  // of storage
+        std::int64_t up = -1;              // what it becomes part of
+        int met = -1;                      // at this level; -1: never
+        std::int64_t whole = 0;            // the first joint of all that it becomes part of
+        std::int64_t leaves = 1,
+                     along = 0;  // how many it is made of, how many of the whole's come before it
         std::int64_t block = -1;
         std::int32_t place = 0, next_place = 0;
     };
     /// To the items, each once and along the chains: what other ranks want that these stages give.
     void add_units(std::vector<Stage> const& stages, std::vector<std::int64_t>& items) const {
         for (Stage const& s : stages)
-            for (Handed const& up : s.segments_up)
+            for (StageTransfer const& up : s.segments_up)
                 if (of(up.at).met < 0) items.push_back(up.at);
         sort(items);
         items.erase(std::unique(items.begin(), items.end()), items.end());
     }
-    /// Along the chains. Not by joints: those at the top of a chain that ranks share are stored in another order.
+    /// Along the chains. Not by joints: those at the top of a chain that ranks share are stored in
+    /// another order.
     void sort(std::vector<std::int64_t>& slots) const {
         std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) {
             return std::pair(of(a).whole, of(a).along) < std::pair(of(b).whole, of(b).along);
@@ -131,8 +148,12 @@ class Planner {
     }
     Node& of(std::int64_t slot) { return node_[static_cast<std::size_t>(slot)]; }
     Node const& of(std::int64_t slot) const { return node_[static_cast<std::size_t>(slot)]; }
-    void know(std::int64_t slot, std::int64_t joint, std::int64_t next) { of(slot).joint = joint, of(slot).next = next; }
-    bool is_top(std::int64_t slot, int end_level) const { return of(slot).met < 0 || of(slot).met >= end_level; }
+    void know(std::int64_t slot, std::int64_t joint, std::int64_t next) {
+        of(slot).joint = joint, of(slot).next = next;
+    }
+    bool is_top(std::int64_t slot, int end_level) const {
+        return of(slot).met < 0 || of(slot).met >= end_level;
+    }
     std::int64_t ancestor(std::int64_t slot, int end_level) const {
         while (!is_top(slot, end_level)) slot = of(slot).up;
         return slot;
@@ -143,7 +164,9 @@ class Planner {
         for (std::int64_t i = 0; i < std::ssize(items);) {
             std::int64_t next = i;
             std::int64_t const top = ancestor(items[static_cast<std::size_t>(i)], end_level);
-            while (next < std::ssize(items) && ancestor(items[static_cast<std::size_t>(next)], end_level) == top) ++next;
+            while (next < std::ssize(items) &&
+                   ancestor(items[static_cast<std::size_t>(next)], end_level) == top)
+                ++next;
             if (s.item.empty() || next - s.item.back().begin > width) s.item.push_back({i, i});
             s.item.back().end = next;
             i = next;
@@ -153,7 +176,7 @@ class Planner {
     /// A force after an item that is not the block's next item's comes from elsewhere.
     void place_items(Stage& s, std::size_t b) {
         Range const range = s.item[b];
-        std::vector<Handed> from_elsewhere;
+        std::vector<StageTransfer> from_elsewhere;
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             StageItem& item = s.items[static_cast<std::size_t>(i)];
             Node& node = of(item.slot);
@@ -163,9 +186,12 @@ class Planner {
                 item.next = node.place + 1;
             } else {
                 auto found =
-                    std::find_if(from_elsewhere.rbegin(), from_elsewhere.rend(), [&](Handed const& h) { return h.at == node.next; });
+                    std::find_if(from_elsewhere.rbegin(), from_elsewhere.rend(),
+                                 [&](StageTransfer const& h) { return h.at == node.next; });
                 if (found == from_elsewhere.rend()) {
-                    from_elsewhere.push_back({static_cast<std::int32_t>(range.end - range.begin + std::ssize(from_elsewhere)), node.next});
+                    from_elsewhere.push_back({static_cast<std::int32_t>(range.end - range.begin +
+                                                                        std::ssize(from_elsewhere)),
+                                              node.next});
                     found = from_elsewhere.rbegin();
                 }
                 item.next = found->place;
@@ -181,29 +207,36 @@ class Planner {
         for (Merge const& m : levels_[static_cast<std::size_t>(level)]) {
             Node const inboard = of(m.inboard), outboard = of(m.outboard);
             Node& joined = of(m.slot);
-            joined.block = inboard.block, joined.place = inboard.place, joined.next_place = outboard.next_place;
+            joined.block = inboard.block, joined.place = inboard.place,
+            joined.next_place = outboard.next_place;
             Range& range = s.merge[static_cast<std::size_t>(joined.block * s.levels + l)];
             if (range.begin == range.end) range.begin = range.end = std::ssize(s.merges);
             ++range.end;
-            s.merges.push_back({inboard.place, outboard.place, outboard.next_place, restricted_at(m.joint), m.joint});
+            s.merges.push_back({inboard.place, outboard.place, outboard.next_place,
+                                restricted_at(m.joint), m.joint});
         }
     }
-    std::int32_t restricted_at(std::int64_t joint) const { return restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(joint)]; }
+    std::int32_t restricted_at(std::int64_t joint) const {
+        return restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(joint)];
+    }
     static void sort_by_block(Stage& s) {
         std::vector<StageMerge> sorted;
         sorted.reserve(s.merges.size());
         for (Range& range : s.merge) {
             auto const begin = std::ssize(sorted);
-            sorted.insert(sorted.end(), s.merges.begin() + range.begin, s.merges.begin() + range.end);
+            sorted.insert(sorted.end(), s.merges.begin() + range.begin,
+                          s.merges.begin() + range.end);
             range = {begin, std::ssize(sorted)};
         }
         s.merges = std::move(sorted);
     }
-    /// What is complete below `end_level`: roots are closed, other segments go up, and the forces at all of their first joints come down.
+    /// What is complete below `end_level`: roots are closed, other segments go up, and the forces
+    /// at all of their first joints come down.
     void hand_over(Stage& s, std::vector<std::int64_t> const& items, int first, int end_level) {
         std::vector<std::vector<std::int64_t>> tops(s.item.size());
         auto const see = [&](std::int64_t slot) {
-            if (is_top(slot, end_level)) tops[static_cast<std::size_t>(of(slot).block)].push_back(slot);
+            if (is_top(slot, end_level))
+                tops[static_cast<std::size_t>(of(slot).block)].push_back(slot);
         };
         for (std::int64_t const slot : items) see(slot);
         for (int l = first; l < end_level; ++l)
@@ -213,16 +246,18 @@ class Planner {
             for (std::size_t i = 0; i < roots_.size(); ++i)
                 root_of_[static_cast<std::size_t>(roots_[i].slot)] = static_cast<std::int64_t>(i);
         }
-        std::vector<Handed> down;
+        std::vector<StageTransfer> down;
         for (std::size_t b = 0; b < tops.size(); ++b) {
             Range root{std::ssize(s.roots), 0}, up{std::ssize(s.segments_up), 0};
             auto const begin = std::ssize(down);
-            down.insert(down.end(), s.forces_down.begin() + s.down[b].begin, s.forces_down.begin() + s.down[b].end);
+            down.insert(down.end(), s.forces_down.begin() + s.down[b].begin,
+                        s.forces_down.begin() + s.down[b].end);
             for (std::int64_t const slot : tops[b]) {
                 Node const& top = of(slot);
                 std::int64_t const closed = root_of_[static_cast<std::size_t>(slot)];
                 if (closed >= 0)
-                    s.roots.push_back({top.place, restricted_at(top.joint), roots_[static_cast<std::size_t>(closed)]});
+                    s.roots.push_back({top.place, restricted_at(top.joint),
+                                       roots_[static_cast<std::size_t>(closed)]});
                 else
                     s.segments_up.push_back({top.place, slot});
                 down.push_back({top.place, top.joint});
@@ -246,31 +281,41 @@ class Planner {
 };
 
 /// Of a block with a thread for every part.
-std::int64_t runs_at_once(StageSizes const& sizes) { return std::max<std::int64_t>(1, sizes.threads / parts_of_run); }
+std::int64_t runs_at_once(StageSizes const& sizes) {
+    return std::max<std::int64_t>(1, sizes.threads / parts_of_run);
+}
 /// Whether trees of so many levels find place in it.
-bool are_low(int levels, StageSizes const& sizes) { return levels <= levels_above(std::min(sizes.most, runs_at_once(sizes))); }
+bool are_low(int levels, StageSizes const& sizes) {
+    return levels <= levels_above(std::min(sizes.most, runs_at_once(sizes)));
+}
 /// More than so many go before all stages.
 std::int64_t most_in_stage(int levels, StageSizes const& sizes) {
-    return sizes.together == 0 || are_low(levels, sizes) ? many_runs : std::min(many_runs, sizes.together * runs_at_once(sizes));
+    return sizes.together == 0 || are_low(levels, sizes)
+               ? many_runs
+               : std::min(many_runs, sizes.together * runs_at_once(sizes));
 }
 /// Of the first stage's blocks, under so many levels.
 std::int64_t width_of_runs(std::int64_t runs, bool apart, int levels, StageSizes const& sizes) {
     if (apart) {
-        if (sizes.at_once > 0 && runs <= sizes.most) return std::max<std::int64_t>(2, bit_ceil(runs));
-        std::int64_t width = std::min(sizes.most, 2 * (sizes.at_once > 0 ? sizes.at_once : sizes.threads));
+        if (sizes.at_once > 0 && runs <= sizes.most)
+            return std::max<std::int64_t>(2, bit_ceil(runs));
+        std::int64_t width =
+            std::min(sizes.most, 2 * (sizes.at_once > 0 ? sizes.at_once : sizes.threads));
         while (width < sizes.most && runs / width > sizes.most * sizes.together) width *= 2;
         return width;
     }
     std::int64_t const at_once = runs_at_once(sizes);
     bool const few = runs <= sizes.together * at_once && !are_low(levels, sizes);
-    std::int64_t const of_block = few ? std::max(fewest_of_block, bit_ceil((runs - 1) / sizes.together + 1)) : at_once;
+    std::int64_t const of_block =
+        few ? std::max(fewest_of_block, bit_ceil((runs - 1) / sizes.together + 1)) : at_once;
     return std::min({sizes.most, at_once, of_block});
 }
 
 ScanStage scan_stage_of(Stage const& stage) {
     ScanStage s;
     s.levels = stage.levels, s.of_runs = stage.of_runs, s.width = stage.width;
-    for (StageItem const& item : stage.items) s.slot.push_back(static_cast<std::int32_t>(item.slot));
+    for (StageItem const& item : stage.items)
+        s.slot.push_back(static_cast<std::int32_t>(item.slot));
     for (StageMerge const& m : stage.merges) s.merges.push_back({m.inboard, m.outboard});
     for (StageBlock const& block : blocks_of(stage)) {
         Range top{std::ssize(s.tops), 0};
@@ -279,7 +324,7 @@ ScanStage scan_stage_of(Stage const& stage) {
             s.tops.push_back({closed.place, static_cast<std::int32_t>(closed.root.slot)});
         }
         for (std::int64_t i = block.up.begin; i < block.up.end; ++i) {
-            Handed const& up = stage.segments_up[static_cast<std::size_t>(i)];
+            StageTransfer const& up = stage.segments_up[static_cast<std::size_t>(i)];
             s.tops.push_back({up.place, static_cast<std::int32_t>(up.at)});
         }
         top.end = std::ssize(s.tops);
@@ -295,14 +340,16 @@ PlacesAbove places_above(Stage const& lower, Stage const& upper) {
         item_of[upper.items[i].slot] = static_cast<std::int32_t>(i);
         place_of[upper.items[i].joint] = static_cast<std::int32_t>(i);
     }
-    for (Handed const& down : upper.forces_down) place_of[down.at] = down.place;
+    for (StageTransfer const& down : upper.forces_down) place_of[down.at] = down.place;
     auto const place = [](auto const& places, std::int64_t at) {
         auto const found = places.find(at);
         return found == places.end() ? -1 : found->second;
     };
     PlacesAbove above;
-    for (Handed const& up : lower.segments_up) above.segment.push_back(place(item_of, up.at));
-    for (Handed const& down : lower.forces_down) above.force.push_back(place(place_of, down.at));
+    for (StageTransfer const& up : lower.segments_up)
+        above.segment.push_back(place(item_of, up.at));
+    for (StageTransfer const& down : lower.forces_down)
+        above.force.push_back(place(place_of, down.at));
     above.comes_from_below.resize(upper.items.size());
     for (std::int32_t const item : above.segment)
         if (item >= 0) above.comes_from_below[static_cast<std::size_t>(item)] = 1;
@@ -311,15 +358,19 @@ PlacesAbove places_above(Stage const& lower, Stage const& upper) {
 
 }  // namespace
 
-StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
-                      std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes) {
+StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
+                      std::vector<Root> const& roots, std::int64_t slots,
+                      std::span<std::uint8_t const> restricted, StageSizes const& sizes) {
     Planner planner(runs, levels, roots, slots, restricted);
     StagePlan plan;
-    plan.runs_apart = !runs.empty() && (sizes.runs_apart || std::ssize(runs) > most_in_stage(planner.end(), sizes));
+    plan.runs_apart = !runs.empty() &&
+                      (sizes.runs_apart || std::ssize(runs) > most_in_stage(planner.end(), sizes));
     int level = 0;
     if (!runs.empty()) {
-        std::int64_t const width = width_of_runs(std::ssize(runs), plan.runs_apart, planner.end(), sizes);
-        level = std::ssize(runs) <= width ? planner.end() : std::min(planner.end(), levels_above(width));
+        std::int64_t const width =
+            width_of_runs(std::ssize(runs), plan.runs_apart, planner.end(), sizes);
+        level = std::ssize(runs) <= width ? planner.end()
+                                          : std::min(planner.end(), levels_above(width));
         plan.stages.push_back(planner.stage(planner.runs(), width, 0, level));
         plan.stages.back().of_runs = !plan.runs_apart;
     }
@@ -338,13 +389,16 @@ StagesTogether::StagesTogether(StagePlan const& plan, StageSizes const& sizes) {
     lower = &below, upper = &plan.stages.back();
 }
 
-std::vector<ScanStage> plan_scan(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
-                                 std::vector<Root> const& roots, std::int64_t slots, std::int64_t most) {
+std::vector<ScanStage> plan_scan(std::vector<Run> const& runs,
+                                 std::vector<std::vector<Merge>> const& levels,
+                                 std::vector<Root> const& roots, std::int64_t slots,
+                                 std::int64_t most) {
     Planner planner(runs, levels, roots, slots, {});
     std::vector<Stage> stages;
     int level = 0;
     if (!runs.empty()) {
-        level = std::ssize(runs) <= most ? planner.end() : std::min(planner.end(), levels_above(most));
+        level =
+            std::ssize(runs) <= most ? planner.end() : std::min(planner.end(), levels_above(most));
         stages.push_back(planner.stage(planner.runs(), most, 0, level));
         stages.back().of_runs = true;
     }
@@ -358,7 +412,8 @@ std::vector<StageBlock> blocks_of(Stage const& stage) {
     std::vector<StageBlock> blocks;
     for (std::size_t b = 0; b < stage.item.size(); ++b) {
         auto const* const level = stage.merge.data() + b * static_cast<std::size_t>(stage.levels);
-        Range const merge = stage.levels > 0 ? Range{level[0].begin, level[stage.levels - 1].end} : Range{};
+        Range const merge =
+            stage.levels > 0 ? Range{level[0].begin, level[stage.levels - 1].end} : Range{};
         blocks.push_back({stage.item[b], merge, stage.root[b], stage.up[b], stage.down[b]});
     }
     return blocks;
@@ -367,35 +422,49 @@ std::vector<StageBlock> blocks_of(Stage const& stage) {
 std::vector<std::int32_t> level_ends_of(Stage const& stage) {
     std::vector<std::int32_t> ends;
     for (std::size_t i = 0; i < stage.merge.size(); ++i)
-        ends.push_back(static_cast<std::int32_t>(stage.merge[i].end - stage.merge[i - i % static_cast<std::size_t>(stage.levels)].begin));
+        ends.push_back(static_cast<std::int32_t>(
+            stage.merge[i].end -
+            stage.merge[i - i % static_cast<std::size_t>(stage.levels)].begin));
     return ends;
 }
 
-StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t at_once) {
-    StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs, records.at_once};
+StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes,
+                       std::int64_t at_once) {
+    StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs,
+                     records.at_once};
     auto const bytes = [&](std::int64_t items) {
-        constexpr std::int64_t words = 10, heads = 24;  // of a merge, of an item, of what is handed over; of all
-        return 8 * (packed_numbers(records.segment, items) + 2 * packed_numbers(records.state, items) + words * items + heads);
+        constexpr std::int64_t words = 10,
+                               heads =
+                                   24;  // of a merge, of an item, of what is handed over; of all
+        return 8 * (packed_numbers(records.segment, items) +
+                    2 * packed_numbers(records.state, items) + words * items + heads);
     };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.
     auto const of_runs = [&](std::int64_t threads) {
         constexpr std::int64_t ranges = 16;
-        return bytes(threads / parts_of_run) + 8 * (packed_numbers(records.segment, threads) + ranges);
+        return bytes(threads / parts_of_run) +
+               8 * (packed_numbers(records.segment, threads) + ranges);
     };
     constexpr std::int64_t fewest_threads = 32;
-    while (sizes.threads > fewest_threads && of_runs(sizes.threads) > shared_bytes) sizes.threads /= 2;
+    while (sizes.threads > fewest_threads && of_runs(sizes.threads) > shared_bytes)
+        sizes.threads /= 2;
     return sizes;
 }
 
 std::int64_t kept_numbers(Stage const& stage, StageRecords const& records) {
-    return records.kept > 0 && !stage.of_runs ? stage.blocks() * packed_numbers(records.kept, stage.width) : 0;
+    return records.kept > 0 && !stage.of_runs
+               ? stage.blocks() * packed_numbers(records.kept, stage.width)
+               : 0;
 }
 
 int threads_for(Stage const& stage, StageSizes const& sizes) {
     constexpr std::int64_t fewest = 32;
-    if (stage.of_runs) return static_cast<int>(std::max(fewest, bit_ceil(parts_of_run * stage.width)));  // a thread a part
-    return static_cast<int>(std::clamp(bit_ceil(stage.width / 2), fewest, std::max(fewest, sizes.threads)));
+    if (stage.of_runs)
+        return static_cast<int>(
+            std::max(fewest, bit_ceil(parts_of_run * stage.width)));  // a thread a part
+    return static_cast<int>(
+        std::clamp(bit_ceil(stage.width / 2), fewest, std::max(fewest, sizes.threads)));
 }
 
 BlockPlan plan_blocks(Schedule const& schedule, std::vector<std::int64_t> const& tip) {
@@ -405,15 +474,20 @@ BlockPlan plan_blocks(Schedule const& schedule, std::vector<std::int64_t> const&
     std::vector<std::size_t> next_merge(schedule.levels.size(), 0);
     for (std::int64_t r = 0; r < std::ssize(schedule.roots); ++r) {
         std::int64_t const begin = schedule.roots[static_cast<std::size_t>(r)].first;
-        std::int64_t const end =
-            r + 1 < std::ssize(schedule.roots) ? schedule.roots[static_cast<std::size_t>(r + 1)].first : schedule.bodies;
+        std::int64_t const end = r + 1 < std::ssize(schedule.roots)
+                                     ? schedule.roots[static_cast<std::size_t>(r + 1)].first
+                                     : schedule.bodies;
         plan.body.push_back({begin, end});
-        auto const place = [&](std::int64_t body) { return std::lower_bound(tip.begin(), tip.end(), body) - tip.begin(); };
+        auto const place = [&](std::int64_t body) {
+            return std::lower_bound(tip.begin(), tip.end(), body) - tip.begin();
+        };
         plan.tip.push_back({place(begin), place(end)});
         plan.root.push_back({r, r + 1});
         plan.run.push_back({run, run});
         for (std::int64_t& last = plan.run.back().end;
-             last < std::ssize(schedule.runs) && schedule.runs[static_cast<std::size_t>(last)].body < end; ++last) {
+             last < std::ssize(schedule.runs) &&
+             schedule.runs[static_cast<std::size_t>(last)].body < end;
+             ++last) {
         }
         run = plan.run.back().end;
         std::int64_t offset = 0;

@@ -1,4 +1,5 @@
-// Accelerations to the digits that are claimed: light bodies between heavy ones, loops, and tips that restrict less than others.
+// Accelerations to the digits that are claimed: light bodies between heavy ones, loops, and tips
+// that restrict less than others.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -7,17 +8,19 @@
 #include "measure/forward_error.hpp"
 #include "measure/oracle_accelerations.hpp"
 #include "measure/solver_errors.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/random_chain.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
 
 using nlohmann::json;
 
-std::string scene_of_case(std::string const& name) { return std::string(CATENA_SOURCE_DIR) + "/tests/data/cases/" + name + "/scene.yaml"; }
+std::string scene_of_case(std::string const& name) {
+    return std::string(CATENA_SOURCE_DIR) + "/tests/data/cases/" + name + "/scene.yaml";
+}
 
 json solved(Words words) {
     words.insert(words.begin(), "solve");
@@ -34,11 +37,14 @@ double relative_error(json const& found, std::vector<double> const& right) {
     }
     return worst / largest;
 }
-std::vector<double> right_of(std::string const& file) { return oracle_accelerations<oracle::Quad>(load_scene(file), {}); }
+std::vector<double> right_of(std::string const& file) {
+    return oracle_accelerations<oracle::Quad>(load_scene(file), {});
+}
 
-/// Two planar rods, at rest, each 1 long with its centre in the middle, J = 0.2 m about it, at angles a = 0.3 and b = 0.6 below the
-/// horizontal: (J + m2 + m1 / 4) a'' + (m2 / 2) cos(b - a) b'' = g (m2 + m1 / 2) cos a and
-/// (m2 / 2) cos(b - a) a'' + (J2 + m2 / 4) b'' = g m2 / 2 cos b, m1 = 1e-6, m2 = 1e6, solved with 60 digits: a'' and b'' - a''.
+/// Two planar rods, at rest, each 1 long with its centre in the middle, J = 0.2 m about it, at
+/// angles a = 0.3 and b = 0.6 below the horizontal: (J + m2 + m1 / 4) a'' + (m2 / 2) cos(b - a) b''
+/// = g (m2 + m1 / 2) cos a and (m2 / 2) cos(b - a) a'' + (J2 + m2 / 4) b'' = g m2 / 2 cos b, m1 =
+/// 1e-6, m2 = 1e6, solved with 60 digits: a'' and b'' - a''.
 TEST(Accuracy, ArticulatedHandlesKeepTheirDigitsOnParallelAxes) {
     std::string const scene = scene_of_case("two-rods-mass-ratio");
     std::vector<double> const right{10.2942386495083, -12.2252602354844};
@@ -50,7 +56,8 @@ TEST(Accuracy, ArticulatedHandlesKeepTheirDigitsOnParallelAxes) {
     EXPECT_TRUE(found["valid"].get<bool>());
 }
 
-/// Twenty rods about y and z in turns; articulated bodies with 113 bits agree with the 120 digits of mpmath.
+/// Twenty rods about y and z in turns; articulated bodies with 113 bits agree with the 120 digits
+/// of mpmath.
 TEST(Accuracy, ArticulatedHandlesTakeTorquesBetweenLightAndHeavyRods) {
     std::string const scene = scene_of_case("articulated-torque");
     json const found = solved({scene, "--handles", "articulated"});
@@ -72,8 +79,10 @@ TEST(Accuracy, ASmallResidualWithAWrongAnswerIsInvalid) {
             EXPECT_GT(error, 1e-6);
             EXPECT_GT(estimate, error / 100);
             EXPECT_LT(estimate, error * 1000);
-            EXPECT_NE(e.err.find("estimated error of the accelerations"), std::string::npos) << e.err;
-            EXPECT_NE(e.err.find("--refine 2 or --handles articulated"), std::string::npos) << e.err;
+            EXPECT_NE(e.err.find("estimated error of the accelerations"), std::string::npos)
+                << e.err;
+            EXPECT_NE(e.err.find("--refine 2 or --handles articulated"), std::string::npos)
+                << e.err;
             std::string const text = catena({"solve", scene, "--handles", handles}).out,
                               last = text.substr(text.rfind('\n', text.size() - 2) + 1);
             EXPECT_TRUE(last.starts_with("INVALID: estimated error of the accelerations")) << last;
@@ -86,13 +95,17 @@ TEST(Accuracy, ASmallResidualWithAWrongAnswerIsInvalid) {
 TEST(Accuracy, AChainAtRestHasNoLargeError) {
     TemporaryFolder const folder;
     std::ofstream(folder / "plumb.yaml")
-        << "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains: [{name: a, base: fixed, generator: {coil: {bodies: 100, turn: 0}}}]\n";
+        << "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains: [{name: a, base: fixed, "
+           "generator: {coil: {bodies: 100, turn: 0}}}]\n";
     std::string const text = catena({"solve", folder / "plumb.yaml"}).out;
     EXPECT_NE(text.find("estimated error"), std::string::npos) << text;
-    std::string rods = "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n  - name: a\n    base: fixed\n    bodies:\n";
+    std::string rods =
+        "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n  - name: a\n    base: fixed\n    "
+        "bodies:\n";
     for (int k = 0; k < 20; ++k)
         rods +=
-            "      - {mass: 1, com: [0, 0, -0.5], inertia: [0.1, 0.1, 0.01], joint: {type: revolute, axis: [0, 1, 0], translation: [0, "
+            "      - {mass: 1, com: [0, 0, -0.5], inertia: [0.1, 0.1, 0.01], joint: {type: "
+            "revolute, axis: [0, 1, 0], translation: [0, "
             "0, -1]}}\n";
     std::ofstream(folder / "hanging.yaml") << rods;
     json const hanging = solved({folder / "hanging.yaml"});
@@ -104,36 +117,46 @@ TEST(Accuracy, ARunSaysThatItsFirstAccelerationsAreOff) {
     TemporaryFolder const folder;
     std::string const dynamics = "dynamics={integrator: rk4, step: 1e-4, steps: 2}";
     auto const run = [&](std::string const& handles, std::string const& to) {
-        return catena({"run", scene_of_case("two-rods-mass-ratio"), "--set", dynamics, "--set", "solver.handles=" + handles, "--output",
-                       folder / to});
+        return catena({"run", scene_of_case("two-rods-mass-ratio"), "--set", dynamics, "--set",
+                       "solver.handles=" + handles, "--output", folder / to});
     };
     Ended const projected = run("projected", "projected");
     EXPECT_EQ(projected.status, 0) << projected.err;
-    EXPECT_NE(projected.err.find("the first accelerations may be off by"), std::string::npos) << projected.err;
-    EXPECT_NE(projected.err.find("take solver.refine: 2 or solver.handles: articulated"), std::string::npos) << projected.err;
+    EXPECT_NE(projected.err.find("the first accelerations may be off by"), std::string::npos)
+        << projected.err;
+    EXPECT_NE(projected.err.find("take solver.refine: 2 or solver.handles: articulated"),
+              std::string::npos)
+        << projected.err;
     Ended const articulated = run("articulated", "articulated");
     EXPECT_EQ(articulated.status, 0) << articulated.err;
-    EXPECT_EQ(articulated.err.find("the first accelerations"), std::string::npos) << articulated.err;
+    EXPECT_EQ(articulated.err.find("the first accelerations"), std::string::npos)
+        << articulated.err;
 }
 
-/// The bars stand upright: no force has a moment about a hinge, and what rounding leaves of moments was said to be 136 % wrong.
+/// The bars stand upright: no force has a moment about a revolute joint, and what rounding leaves
+/// of moments was said to be 136 % wrong.
 TEST(Accuracy, InverseDynamicsSaysNothingOfLoops) {
     Ended const e = catena({"solve", scene_of_case("loop-inverse-dynamics")});
     expect_good(e);
-    EXPECT_NE(e.out.find("residual not computed (several ranks, many bodies, bodies on links or in loops"), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find(
+                  "residual not computed (several ranks, many bodies, bodies on links or in loops"),
+              std::string::npos)
+        << e.out;
     json const found = solved({scene_of_case("loop-inverse-dynamics")});
     EXPECT_TRUE(found["rnea_residual"].is_null());
     EXPECT_LT(found["estimated_error"].get<double>(), 1e-12);
 }
 
-/// I = 0.021 about a bar's centre, 0.25 from its hinge: the parallelogram of four bars turns by J t'' = -g (0.5 + 1) cos t with
-/// J = 2 (I + 0.25^2) + 2 0.5^2, from t = pi / 2 with rate 1; by Runge-Kutta's formula with a step of 1e-4, good to 1e-12.
+/// I = 0.021 about a bar's centre, 0.25 from its revolute joint: the parallelogram of four bars
+/// turns by J t'' = -g (0.5 + 1) cos t with J = 2 (I + 0.25^2) + 2 0.5^2, from t = pi / 2 with rate
+/// 1; by Runge-Kutta's formula with a step of 1e-4, good to 1e-12.
 double angle_after(double time) {
     double const inertia = 2 * (0.021 + 0.0625) + 0.5;
     auto const rate = [&](double angle) { return -9.81 * 1.5 * std::cos(angle) / inertia; };
     double angle = std::acos(0.0), speed = 1, h = 1e-4;
     for (int n = 0; n < static_cast<int>(std::lround(time / h)); ++n) {
-        double const a1 = rate(angle), v2 = speed + h / 2 * a1, a2 = rate(angle + h / 2 * speed), v3 = speed + h / 2 * a2;
+        double const a1 = rate(angle), v2 = speed + h / 2 * a1, a2 = rate(angle + h / 2 * speed),
+                     v3 = speed + h / 2 * a2;
         double const a3 = rate(angle + h / 2 * v2), v4 = speed + h * a3, a4 = rate(angle + h * v3);
         angle += h / 6 * (speed + 2 * v2 + 2 * v3 + v4);
         speed += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
@@ -143,7 +166,8 @@ double angle_after(double time) {
 
 TEST(Accuracy, AUniversalTipMovesAsARevoluteOne) {
     TemporaryFolder const folder;
-    Ended const e = catena({"run", scene_of_case("universal-tip"), "--set", "dynamics.steps=1000", "--output", folder / "run", "--quiet"});
+    Ended const e = catena({"run", scene_of_case("universal-tip"), "--set", "dynamics.steps=1000",
+                            "--output", folder / "run", "--quiet"});
     expect_good(e);
     std::ifstream table(folder / "run/observables.csv");
     std::string header, line, last;
@@ -161,7 +185,8 @@ TEST(Accuracy, AUniversalTipMovesAsARevoluteOne) {
     EXPECT_EQ(solved({scene_of_case("universal-tip")})["dof"], 1);
 }
 
-/// In the plane a tip restricts two directions or three, whatever it is; what restricts less is not refused where a weld is taken.
+/// In the plane a tip restricts two directions or three, whatever it is; what restricts less is not
+/// refused where a weld is taken.
 TEST(Accuracy, TipsOfPlanarChainsRestrictWhatThePlaneLeaves) {
     std::string const scene = scene_of_case("universal-tip"), tip = "chains[0].tip.joint=";
     auto const dof = [&](std::string const& joint) {
@@ -177,7 +202,8 @@ TEST(Accuracy, TipsOfPlanarChainsRestrictWhatThePlaneLeaves) {
     EXPECT_EQ(dof("{type: weld" + at), 0);
 }
 
-/// Rods on revolute joints, parallel, in turns about two axes or about any, with masses over many powers of ten.
+/// Rods on revolute joints, parallel, in turns about two axes or about any, with masses over many
+/// powers of ten.
 ChainSpec extreme_chain(std::uint64_t seed) {
     Random random(seed);
     ChainSpec chain;
@@ -189,7 +215,9 @@ ChainSpec extreme_chain(std::uint64_t seed) {
     int const axes = static_cast<int>(seed % 3), masses = static_cast<int>(seed / 3 % 2);
     bool const loaded = random.chance(0.5);
     for (std::size_t k = 0; k < bodies; ++k) {
-        double const m = std::pow(10, masses == 0 ? random.uniform(-spread, spread) : k % 2 == 0 ? -spread : spread);
+        double const m = std::pow(10, masses == 0  ? random.uniform(-spread, spread)
+                                      : k % 2 == 0 ? -spread
+                                                   : spread);
         b.mass.push_back(m);
         b.com.push_back({{0.5, 0, 0}});
         Sym3 inertia = Sym3::zero();
@@ -198,7 +226,9 @@ ChainSpec extreme_chain(std::uint64_t seed) {
         b.joint.push_back(JointType::revolute);
         b.rotation.push_back(Mat3::identity());
         b.translation.push_back({{1, 0, 0}});
-        b.axis.push_back(axes == 0 ? Vec3{{0, 1, 0}} : axes == 1 ? (k % 2 == 0 ? Vec3{{0, 1, 0}} : Vec3{{0, 0, 1}}) : random.direction());
+        b.axis.push_back(axes == 0   ? Vec3{{0, 1, 0}}
+                         : axes == 1 ? (k % 2 == 0 ? Vec3{{0, 1, 0}} : Vec3{{0, 0, 1}})
+                                     : random.direction());
         b.q.push_back({random.uniform(-3, 3), 0, 0, 0});
         b.qd.push_back(Vec3::zero());
         b.torque.push_back({{loaded ? random.uniform(-1, 1) : 0, 0, 0}});
@@ -206,14 +236,17 @@ ChainSpec extreme_chain(std::uint64_t seed) {
     return chain;
 }
 
-/// Within a factor of 100 below and 1000 above, where roundings are worth a figure at all; beyond one in ten no digit is right either way.
+/// Within a factor of 100 below and 1000 above, where roundings are worth a figure at all; beyond
+/// one in ten no digit is right either way.
 void expect_honest(Scene const& scene) {
     auto const alone = serial_communicator();
     ChainSystem system(scene, Axes::joint, *alone);
     system.evaluate();
     Solution found;
     ForwardError const error = forward_error(system, [&] { found = solution_of(system); });
-    double const right = largest_difference(scene, found, oracle_accelerations<oracle::Quad>(scene, {})), estimate = *error.estimate;
+    double const right = largest_difference(scene, found,
+                                            oracle_accelerations<oracle::Quad>(scene, {})),
+                 estimate = *error.estimate;
     EXPECT_GE(estimate, std::min(right, 0.1) / 100 - 1e-15) << right;
     EXPECT_LE(estimate, 1000 * std::max(right, 1e-15)) << right;
     EXPECT_FALSE(right > 1e-4 && error.is_small()) << right << " " << estimate;

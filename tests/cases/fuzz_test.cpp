@@ -1,4 +1,5 @@
-// What fuzzing and kill campaigns found: libraries that break on damaged files, and limits that were judged in parts.
+// What fuzzing and kill campaigns found: libraries that break on damaged files, and limits that
+// were judged in parts.
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -16,7 +17,9 @@ std::string bytes_of(std::string const& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void write(std::string const& file, std::string const& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+void write(std::string const& file, std::string const& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+}
 
 TrialLimits const small{100'000'000, 1};
 
@@ -46,7 +49,8 @@ TEST(Trials, MayTakeWhatACompressedFileOfTheSizeCanNeed) {
     EXPECT_LE(limits_for_file(folder / "missing").bytes, 1'000'000'000);
 }
 
-Words const run{"run", CATENA_TEST_DATA "/cases/running-folder/scene.yaml", "--output", "o", "--quiet"};
+Words const run{"run", CATENA_TEST_DATA "/cases/running-folder/scene.yaml", "--output", "o",
+                "--quiet"};
 
 Ended run_with(TemporaryFolder const& folder, Words const& more) {
     Words words = run;
@@ -54,7 +58,8 @@ Ended run_with(TemporaryFolder const& folder, Words const& more) {
     return catena(words, folder.path());
 }
 
-// The texts of `unit` attributes lie in the file's global heap, whose damage lets HDF5 1.10 crash, or go on for ever, where it reads one.
+// The texts of `unit` attributes lie in the file's global heap, whose damage lets HDF5 1.10 crash,
+// or go on for ever, where it reads one.
 TEST(Restarts, GoOnWithTrajectoriesWhoseTextsAreDamaged) {
     TemporaryFolder const folder;
     expect_good(run_with(folder, {"--steps", "2"}));
@@ -81,15 +86,18 @@ TEST(Restarts, RefuseATrajectoryInOtherUnits) {
     ASSERT_LT(at, name + 100);
     bytes[at] = 'A';
     write(folder / "o/trajectory.h5md", bytes);
-    expect_refused(run_with(folder, {"--restart", "o/checkpoint.h5", "--steps", "4"}), 2, "is in Am, unlike the scene");
+    expect_refused(run_with(folder, {"--restart", "o/checkpoint.h5", "--steps", "4"}), 2,
+                   "is in Am, unlike the scene");
 }
 
-// U+202E turns around what a terminal shows after it: a message could then name another file or value than it means.
+// U+202E turns around what a terminal shows after it: a message could then name another file or
+// value than it means.
 TEST(Messages, HaveNoMarksThatTurnLinesAround) {
     TemporaryFolder const folder;
     write(folder / "s.yaml", "chains: \"a\xE2\x80\xAE!b\xE2\x81\xA6\xE2\x80\xA9\xE2\x82\xAC\"\n");
     Ended const e = catena({"check", "s.yaml"}, folder.path());
-    expect_refused(e, 2, "`a?!b??\xE2\x82\xAC` in quotes is not a list");  // a sign of a currency stays
+    expect_refused(e, 2,
+                   "`a?!b??\xE2\x82\xAC` in quotes is not a list");  // a sign of a currency stays
 }
 
 // 900,000 chains need at least 2.7 GB, each entry of 300,000 fits into 2 GB.
@@ -98,9 +106,11 @@ TEST(Memory, IsJudgedForAllChainsTogether) {
     GTEST_SKIP() << "the address sanitizer needs more address space than the limit";
 #endif
     TemporaryFolder const folder;
-    std::string const entry = "  - {count: 300000, generator: {freely_jointed: {beads: 3, length: 0.38}}}\n";
+    std::string const entry =
+        "  - {count: 300000, generator: {freely_jointed: {beads: 3, length: 0.38}}}\n";
     write(folder / "s.yaml", "chains:\n" + entry + entry + entry);
-    Ended const e = run_program({"sh", "-c", "ulimit -v 2000000; exec \"$0\" check s.yaml", program()}, folder.path());
+    Ended const e = run_program(
+        {"sh", "-c", "ulimit -v 2000000; exec \"$0\" check s.yaml", program()}, folder.path());
     expect_refused(e, 2, "chains[1]");
     EXPECT_NE(e.err.find("the chains up to this one need about"), std::string::npos) << e.err;
 }

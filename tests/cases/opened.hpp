@@ -16,8 +16,9 @@ struct Opened {
     Scene scene;
 
     bool notes(std::string const& part) const {
-        return std::any_of(scene.notes.begin(), scene.notes.end(),
-                           [&](std::string const& note) { return note.find(part) != std::string::npos; });
+        return std::any_of(scene.notes.begin(), scene.notes.end(), [&](std::string const& note) {
+            return note.find(part) != std::string::npos;
+        });
     }
 };
 

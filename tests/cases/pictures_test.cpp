@@ -1,4 +1,5 @@
-// Pictures, plans, what `auto` takes, and what a process does with signals, descriptors and text that are not as usual.
+// Pictures, plans, what `auto` takes, and what a process does with signals, descriptors and text
+// that are not as usual.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +16,9 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string case_file(std::string const& path) { return std::string(CATENA_TEST_DATA) + "/cases/" + path; }
+std::string case_file(std::string const& path) {
+    return std::string(CATENA_TEST_DATA) + "/cases/" + path;
+}
 std::string const plain = case_file("closed-descriptors/scene.yaml");
 
 Ended shell(std::string const& line, std::string const& folder) {
@@ -28,30 +31,37 @@ std::string contents(std::string const& file) {
     return text.str();
 }
 
-// An HDF5 file begins with the signature of its format's specification, a table of observables with its first column: where a descriptor
-// from 0 to 2 is closed at the start, a file of the run got its number, and progress lines were written over its head.
+// An HDF5 file begins with the signature of its format's specification, a table of observables with
+// its first column: where a descriptor from 0 to 2 is closed at the start, a file of the run got
+// its number, and progress lines were written over its head.
 TEST(Process, ClosedDescriptorsAreNotGivenToFilesOfTheRun) {
     for (std::string const closed : {"0<&- 2>&-", "1>&- 2>&-", "0<&- 1>&- 2>&-"}) {
         TemporaryFolder const folder;
-        Ended const e = shell("$catena run " + plain + " --steps 100 --output m " + closed, folder / "");
+        Ended const e =
+            shell("$catena run " + plain + " --steps 100 --output m " + closed, folder / "");
         EXPECT_EQ(e.status, 0) << closed << e.err;
-        EXPECT_TRUE(contents(folder / "m/trajectory.h5md").starts_with("\x89HDF\r\n\x1a\n")) << closed;
+        EXPECT_TRUE(contents(folder / "m/trajectory.h5md").starts_with("\x89HDF\r\n\x1a\n"))
+            << closed;
         EXPECT_TRUE(contents(folder / "m/observables.csv").starts_with("step,")) << closed;
     }
 }
 
 TEST(Process, ARunGoesOnWhereNobodyReadsItsProgress) {
     TemporaryFolder const folder;
-    Ended const e = shell("{ $catena run " + plain + " --steps 100 --output m; echo $? > status; } 2>&1 | true; sleep 0.1", folder / "");
+    Ended const e = shell("{ $catena run " + plain +
+                              " --steps 100 --output m; echo $? > status; } 2>&1 | true; sleep 0.1",
+                          folder / "");
     EXPECT_EQ(e.err, "");
-    for (int tries = 0; tries < 200 && contents(folder / "status").empty(); ++tries) run_program({"sleep", "0.1"});
+    for (int tries = 0; tries < 200 && contents(folder / "status").empty(); ++tries)
+        run_program({"sleep", "0.1"});
     EXPECT_EQ(contents(folder / "status"), "0\n");
     EXPECT_EQ(Json::parse(contents(folder / "m/summary.json")).at("run").at("last_step"), 100);
 }
 
 TEST(Process, AReaderThatStopsReadingIsNoError) {
     TemporaryFolder const folder;
-    Ended const e = shell("{ $catena check " + plain + "; echo $? > status; } | head -c 1", folder / "");
+    Ended const e =
+        shell("{ $catena check " + plain + "; echo $? > status; } | head -c 1", folder / "");
     EXPECT_EQ(e.err, "");
     EXPECT_EQ(contents(folder / "status"), "0\n");
 }
@@ -59,7 +69,9 @@ TEST(Process, AReaderThatStopsReadingIsNoError) {
 // setrlimit(2): a process that ignores SIGXFSZ gets EFBIG ("File too large") from write().
 TEST(Process, ALimitOfFileSizesEndsARunWithOneLine) {
     TemporaryFolder const folder;
-    Ended const e = shell("ulimit -f 2000; $catena run " + case_file("file-size-limit/scene.yaml") + " --quiet --output m", folder / "");
+    Ended const e = shell("ulimit -f 2000; $catena run " + case_file("file-size-limit/scene.yaml") +
+                              " --quiet --output m",
+                          folder / "");
     expect_refused(e, 1, "cannot write the trajectory (m/trajectory.h5md): File too large");
     EXPECT_TRUE(fs::exists(folder / "m/checkpoint.h5"));
 }
@@ -67,23 +79,24 @@ TEST(Process, ALimitOfFileSizesEndsARunWithOneLine) {
 TEST(Process, SignalsOfTerminalsAndBatchSystemsStopARunWithACheckpoint) {
     for (std::string const name : {"HUP", "XCPU"}) {
         TemporaryFolder const folder;
-        Ended const e =
-            shell("$catena run " + plain +
-                      " --quiet --steps 1000000 --output m & run=$!; while [ ! -e m/checkpoint.h5 ]; do sleep 0.02; done; kill -" + name +
-                      " $run; wait $run",
-                  folder / "");
+        Ended const e = shell("$catena run " + plain +
+                                  " --quiet --steps 1000000 --output m & run=$!; while [ ! -e "
+                                  "m/checkpoint.h5 ]; do sleep 0.02; done; kill -" +
+                                  name + " $run; wait $run",
+                              folder / "");
         EXPECT_EQ(e.status, 3) << e.err;
-        EXPECT_NE(e.err.find("catena: stopped by SIG" + name + " at step"), std::string::npos) << e.err;
+        EXPECT_NE(e.err.find("catena: stopped by SIG" + name + " at step"), std::string::npos)
+            << e.err;
         EXPECT_EQ(count(e.err, "\n"), 1U) << e.err;
     }
 }
 
 TEST(Process, AnIgnoredHangUpStaysIgnored) {
     TemporaryFolder const folder;
-    Ended const e = shell(
-        "trap '' HUP; $catena run " + plain +
-            " --quiet --steps 300 --output m & run=$!; while [ ! -e m/checkpoint.h5 ]; do sleep 0.02; done; kill -HUP $run; wait $run",
-        folder / "");
+    Ended const e = shell("trap '' HUP; $catena run " + plain +
+                              " --quiet --steps 300 --output m & run=$!; while [ ! -e "
+                              "m/checkpoint.h5 ]; do sleep 0.02; done; kill -HUP $run; wait $run",
+                          folder / "");
     EXPECT_EQ(e.status, 0) << e.err;
 }
 
@@ -111,21 +124,24 @@ TEST(Text, ATitleThatIsNotUtf8IsSaidAndReplaced) {
               "mol\xEF\xBF\xBD"
               "cule");
     EXPECT_TRUE(fs::exists(folder / "m/report.html"));
-    EXPECT_NE(catena({"check", scene}).out.find("bytes that are not UTF-8 stand as U+FFFD"), std::string::npos);
+    EXPECT_NE(catena({"check", scene}).out.find("bytes that are not UTF-8 stand as U+FFFD"),
+              std::string::npos);
 }
 
 TEST(Text, FoldersThatAreNotUtf8DoNotEndARun) {
     TemporaryFolder const folder;
-    Ended const e = catena({"run", plain, "--quiet", "--steps", "10", "--output", folder / "m\xE9"});
+    Ended const e =
+        catena({"run", plain, "--quiet", "--steps", "10", "--output", folder / "m\xE9"});
     EXPECT_EQ(e.status, 0) << e.err;
     EXPECT_TRUE(fs::exists(folder / "m\xE9/summary.json"));
 }
 
 TEST(Text, ControlCharactersOfFilesDoNotReachATerminal) {
     TemporaryFolder const folder;
-    std::ofstream(folder / "title.yaml")
-        << "title: \"\\e[31mred\\u009b2J\"\nchains: [{name: a, generator: {pendulum: {links: 2}}}]\nunits: si\n";
-    std::ofstream(folder / "name.yaml") << "chains: [{name: \"\\e[2J\", generator: {pendulum: {links: 2}}}]\nunits: si\n";
+    std::ofstream(folder / "title.yaml") << "title: \"\\e[31mred\\u009b2J\"\nchains: [{name: a, "
+                                            "generator: {pendulum: {links: 2}}}]\nunits: si\n";
+    std::ofstream(folder / "name.yaml")
+        << "chains: [{name: \"\\e[2J\", generator: {pendulum: {links: 2}}}]\nunits: si\n";
     Ended const e = catena({"check", folder / "title.yaml"});
     EXPECT_EQ(e.status, 0) << e.err;
     EXPECT_EQ(e.out.find('\x1b'), std::string::npos);
@@ -136,7 +152,8 @@ TEST(Text, ControlCharactersOfFilesDoNotReachATerminal) {
     EXPECT_EQ(missing.err.find('\x1b'), std::string::npos);
 }
 
-// The file's "far" link is null: it was measured on one host. 1e7 beads take 13 s to make, which nobody waits for to be told so.
+// The file's "far" link is null: it was measured on one host. 1e7 beads take 13 s to make, which
+// nobody waits for to be told so.
 TEST(Plan, ANetworkOfOneHostIsRefusedBeforeBodiesAreMade) {
     Words const words{"plan",      case_file("plan-one-host/scene.yaml"),
                       "--set",     "chains[0].generator.freely_jointed.beads=1e9",
@@ -175,12 +192,17 @@ TEST(Plan, LinksThatCannotBeAreRefused) {
         return catena(words);
     };
     expect_refused(plan({"--latency", "1us"}), 2, "--latency and --bandwidth go together");
-    expect_refused(plan({"--latency", "1 week", "--bandwidth", "1GB/s"}), 2, "`1 week` is not a positive number with a unit");
-    expect_refused(plan({"--latency", "-1us", "--bandwidth", "1GB/s"}), 2, "`-1us` is not a positive number");
-    expect_refused(plan({"--latency", "1us", "--bandwidth", "12.5"}), 2, "write a number and one of these units: B/s");
-    std::ofstream(folder / "n.json") << R"({"network": {"near": {"latency": -1, "bandwidth": 1e9}}})";
+    expect_refused(plan({"--latency", "1 week", "--bandwidth", "1GB/s"}), 2,
+                   "`1 week` is not a positive number with a unit");
+    expect_refused(plan({"--latency", "-1us", "--bandwidth", "1GB/s"}), 2,
+                   "`-1us` is not a positive number");
+    expect_refused(plan({"--latency", "1us", "--bandwidth", "12.5"}), 2,
+                   "write a number and one of these units: B/s");
+    std::ofstream(folder / "n.json")
+        << R"({"network": {"near": {"latency": -1, "bandwidth": 1e9}}})";
     expect_refused(plan({"--network", folder / "n.json"}), 2, "latency is -1");
-    std::ofstream(folder / "n.json") << R"({"network": {"near": {"latency": 1e-6, "bandwidth": 1e9}}})";
+    std::ofstream(folder / "n.json")
+        << R"({"network": {"near": {"latency": 1e-6, "bandwidth": 1e9}}})";
     EXPECT_EQ(plan({"--network", folder / "n.json"}).status, 0);
 }
 
@@ -192,10 +214,12 @@ void expect_no_negative(Json const& value) {
         for (Json const& each : value) expect_no_negative(each);
 }
 
-// Times of levels are differences of two timings. Where noise is larger there is none (null), and the verdict counts them.
+// Times of levels are differences of two timings. Where noise is larger there is none (null), and
+// the verdict counts them.
 TEST(Figures, NoTimeIsBelowZeroAndNothingIsDrawnThatWasNotMeasured) {
     TemporaryFolder const folder;
-    Ended const e = catena({"bench", "figures", "--sizes", "2,16,64", "--repeat", "3", "--output", folder / "figures"});
+    Ended const e = catena({"bench", "figures", "--sizes", "2,16,64", "--repeat", "3", "--output",
+                            folder / "figures"});
     EXPECT_EQ(e.status, 0) << e.err;
     Json const json = Json::parse(contents(folder / "figures/figures.json"));
     std::int64_t missing = 0;
@@ -208,22 +232,27 @@ TEST(Figures, NoTimeIsBelowZeroAndNothingIsDrawnThatWasNotMeasured) {
             }
     EXPECT_EQ(json.at("not_resolved"), missing);
     EXPECT_EQ(e.out.find("times not resolved") != std::string::npos, missing > 0) << e.out;
-    bool const timed = e.out.find("Figure 2.7: transfers of one solve, full handles: left out") == std::string::npos;
+    bool const timed = e.out.find("Figure 2.7: transfers of one solve, full handles: left out") ==
+                       std::string::npos;
     EXPECT_EQ(fs::exists(folder / "figures/figure-2.7-full.svg"), timed);
 }
 
-// No machine has 4000 threads' worth of processors for such a run, and thread libraries end the process where the system refuses one.
+// No machine has 4000 threads' worth of processors for such a run, and thread libraries end the
+// process where the system refuses one.
 TEST(Threads, NumbersFarBeyondTheProcessorsAreRefused) {
-    expect_refused(catena({"solve", plain, "--backend", "openmp", "--threads", "4000"}), 2, "4000 threads on ");
-    expect_refused(
-        catena({"solve", input("alpha-synuclein.yaml"), "--set", "forces.openmm.threads=4000", "--set", "forces.openmm.platform=CPU"}), 2,
-        "openmm.threads");
+    expect_refused(catena({"solve", plain, "--backend", "openmp", "--threads", "4000"}), 2,
+                   "4000 threads on ");
+    expect_refused(catena({"solve", input("alpha-synuclein.yaml"), "--set",
+                           "forces.openmm.threads=4000", "--set", "forces.openmm.platform=CPU"}),
+                   2, "openmm.threads");
 }
 
-// What path inline computes before the matrix sweep are the forces: the handing over of 140 positions takes microseconds.
+// What path inline computes before the matrix sweep are the forces: the handing over of 140
+// positions takes microseconds.
 TEST(Timeline, ForcesOfPathInlineAreNoHandingOver) {
     TemporaryFolder const folder;
-    Ended const e = catena({"run", input("alpha-synuclein.yaml"), "--quiet", "--steps", "20", "--set", "forces.openmm.path=inline", "--set",
+    Ended const e = catena({"run", input("alpha-synuclein.yaml"), "--quiet", "--steps", "20",
+                            "--set", "forces.openmm.path=inline", "--set",
                             "forces.openmm.platform=Reference", "--output", folder / "m"});
     EXPECT_EQ(e.status, 0) << e.err;
     double handing = 0, forces = 0;

@@ -49,7 +49,8 @@ inline std::string table_of(Start const& start, std::size_t chain) {
 inline std::vector<std::string> lines_of(Start const& start) {
     std::vector<std::string> lines;
     std::string const text = table_of(start, 0);
-    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) lines.push_back(text.substr(at, text.find('\n', at) - at));
+    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1)
+        lines.push_back(text.substr(at, text.find('\n', at) - at));
     return lines;
 }
 
@@ -60,7 +61,9 @@ inline double nearest_of(Start const& start) {
         for (std::size_t k = 0; k < start.chains[c].size(); ++k)
             for (std::size_t d = c; d < start.chains.size(); ++d)
                 for (std::size_t l = d == c ? k + 2 : 0; l < start.chains[d].size(); ++l)
-                    nearest = std::min(nearest, norm(nearest_image(start.chains[c][k] - start.chains[d][l], start.edge)));
+                    nearest = std::min(
+                        nearest,
+                        norm(nearest_image(start.chains[c][k] - start.chains[d][l], start.edge)));
     return nearest;
 }
 
@@ -68,8 +71,8 @@ class StartGenerator : public Generator {
   public:
     using Generator::Generator;
 
-    /// 2 or 3 chains of different sizes that are apart from each other: random walks, straight or bent at each link, or as a run with
-    /// springs in the links' place leaves them.
+    /// 2 or 3 chains of different sizes that are apart from each other: random walks, straight or
+    /// bent at each link, or as a run with springs in the links' place leaves them.
     Start start() {
         Start made;
         int const kind = whole(0, 3);
@@ -77,7 +80,9 @@ class StartGenerator : public Generator {
         for (std::size_t c = 0; c < chains; ++c) {
             std::size_t const beads = index(8, 12) + 4 * c;
             Vec3 const corner{{3 + 0.1 * uniform(0, 1), 3 + 2.5 * static_cast<double>(c), 4}};
-            made.chains.push_back(kind == 0 ? straight(beads, corner) : kind == 1 ? zigzag(beads, corner) : walk(beads, corner));
+            made.chains.push_back(kind == 0   ? straight(beads, corner)
+                                  : kind == 1 ? zigzag(beads, corner)
+                                              : walk(beads, corner));
             if (kind == 3) loosen(made.chains.back());
         }
         return made;
@@ -86,14 +91,16 @@ class StartGenerator : public Generator {
   private:
     static std::vector<Vec3> straight(std::size_t beads, Vec3 const& corner) {
         std::vector<Vec3> at;
-        for (std::size_t k = 0; k < beads; ++k) at.push_back(corner + Vec3{{model_link * static_cast<double>(k), 0, 0}});
+        for (std::size_t k = 0; k < beads; ++k)
+            at.push_back(corner + Vec3{{model_link * static_cast<double>(k), 0, 0}});
         return at;
     }
     static std::vector<Vec3> zigzag(std::size_t beads, Vec3 const& corner) {
         double const step = model_link / std::sqrt(2.0);
         std::vector<Vec3> at;
         for (std::size_t k = 0; k < beads; ++k)
-            at.push_back(corner + Vec3{{step * static_cast<double>(k), step * static_cast<double>(k % 2), 0}});
+            at.push_back(corner + Vec3{{step * static_cast<double>(k),
+                                        step * static_cast<double>(k % 2), 0}});
         return at;
     }
     /// Turned by up to 60 degrees at each bead, within 1 nm of a line, so that chains keep apart.
@@ -104,7 +111,9 @@ class StartGenerator : public Generator {
             Vec3 const next = along + 0.8 * direction();
             Vec3 const step = (model_link / norm(next)) * next;
             Vec3 const there = at.back() + step;
-            if (step[0] < 0.5 * model_link || std::abs(there[1] - corner[1]) > 0.9 || std::abs(there[2] - corner[2]) > 0.9) continue;
+            if (step[0] < 0.5 * model_link || std::abs(there[1] - corner[1]) > 0.9 ||
+                std::abs(there[2] - corner[2]) > 0.9)
+                continue;
             at.push_back(there);
             along = (1 / model_link) * step;
         }
@@ -120,7 +129,8 @@ class StartGenerator : public Generator {
     }
 };
 
-/// What must become of a start. open: as it is, with a note or without. relaxed: opens, and its forces are absurd until they are relaxed.
+/// What must become of a start. open: as it is, with a note or without. relaxed: opens, and its
+/// forces are absurd until they are relaxed.
 enum class Becomes { open, open_with_note, refused, absurd };
 
 struct StartDamage {
@@ -160,7 +170,8 @@ inline void fold_chain(Start& s, StartGenerator& g) {
     std::vector<Vec3> const given = chain;
     for (std::size_t k = turn + 1; k < chain.size(); ++k) {
         std::size_t const back = 2 * turn >= k ? 2 * turn - k : 0;
-        chain[k] = 2 * turn >= k ? given[back] + aside : chain[k - 1] + (given[k - turn] - given[k - turn - 1]);
+        chain[k] = 2 * turn >= k ? given[back] + aside
+                                 : chain[k - 1] + (given[k - turn] - given[k - turn - 1]);
     }
     double const length = norm(chain[turn + 1] - chain[turn]);  // as long as it was
     for (std::size_t k = turn + 1; k < chain.size(); ++k)
@@ -178,7 +189,8 @@ inline void change_link(Start& s, StartGenerator& g, double least, double most) 
 
 inline void add_noise_to(Start& s, StartGenerator& g, double deviation) {
     for (auto& chain : s.chains)
-        for (Vec3& x : chain) x = x + Vec3{{g.normal(deviation), g.normal(deviation), g.normal(deviation)}};
+        for (Vec3& x : chain)
+            x = x + Vec3{{g.normal(deviation), g.normal(deviation), g.normal(deviation)}};
 }
 
 inline void damage_line(Start& s, StartGenerator& g, char const* cell) {
@@ -195,7 +207,8 @@ inline void lose_line(Start& s, StartGenerator& g) {
 inline void repeat_line(Start& s, StartGenerator& g) {
     s.lines = lines_of(s);
     std::size_t const k = g.index(0, s.lines.size());
-    s.lines.insert(s.lines.begin() + static_cast<std::ptrdiff_t>(g.index(0, s.lines.size())), s.lines[k]);
+    s.lines.insert(s.lines.begin() + static_cast<std::ptrdiff_t>(g.index(0, s.lines.size())),
+                   s.lines[k]);
 }
 
 inline void stand_on(Start& s, StartGenerator& g) {
@@ -218,13 +231,18 @@ inline std::vector<StartDamage> const start_damages = {
     {"moved by edges", Becomes::open, move_chains_by_edges},
     {"wrapped", Becomes::open, wrap_start},
     {"little noise", Becomes::open, [](Start& s, StartGenerator& g) { add_noise_to(s, g, 0.001); }},
-    {"longer link", Becomes::open_with_note, [](Start& s, StartGenerator& g) { change_link(s, g, 1.06, 1.28); }},
-    {"shorter link", Becomes::open_with_note, [](Start& s, StartGenerator& g) { change_link(s, g, 0.72, 0.94); }},
-    {"stretched link", Becomes::refused, [](Start& s, StartGenerator& g) { change_link(s, g, 1.32, 4); }},
-    {"compressed link", Becomes::refused, [](Start& s, StartGenerator& g) { change_link(s, g, 0.02, 0.68); }},
+    {"longer link", Becomes::open_with_note,
+     [](Start& s, StartGenerator& g) { change_link(s, g, 1.06, 1.28); }},
+    {"shorter link", Becomes::open_with_note,
+     [](Start& s, StartGenerator& g) { change_link(s, g, 0.72, 0.94); }},
+    {"stretched link", Becomes::refused,
+     [](Start& s, StartGenerator& g) { change_link(s, g, 1.32, 4); }},
+    {"compressed link", Becomes::refused,
+     [](Start& s, StartGenerator& g) { change_link(s, g, 0.02, 0.68); }},
     {"overlap", Becomes::absurd, overlap_chains},
     {"fold", Becomes::absurd, fold_chain},
-    {"not a number", Becomes::refused, [](Start& s, StartGenerator& g) { damage_line(s, g, "nan"); }},
+    {"not a number", Becomes::refused,
+     [](Start& s, StartGenerator& g) { damage_line(s, g, "nan"); }},
     {"infinite", Becomes::refused, [](Start& s, StartGenerator& g) { damage_line(s, g, "-inf"); }},
     {"a word", Becomes::refused, [](Start& s, StartGenerator& g) { damage_line(s, g, "1.0.3"); }},
     {"a bead too few", Becomes::refused, lose_line},

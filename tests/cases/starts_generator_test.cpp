@@ -1,4 +1,5 @@
-// Starts made at random, with random damage: each opens with the connectivity that is meant, or is refused; overlaps are found by forces.
+// Starts made at random, with random damage: each opens with the connectivity that is meant, or is
+// refused; overlaps are found by forces.
 #include "tests/cases/starts_generator.hpp"
 
 #include <gtest/gtest.h>
@@ -6,12 +7,12 @@
 #include <fstream>
 
 #include "integrate/scene_beads.hpp"
+#include "mpi/communicator.hpp"
+#include "reader/load_scene.hpp"
 #include "start/lone_forces.hpp"
 #include "start/start_relaxation.hpp"
-#include "mpi/communicator.hpp"
 #include "tests/cases/opened.hpp"
 #include "tests/io/temporary_folder.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -20,12 +21,14 @@ namespace {
 std::string scene_of(Start const& truth, Start const& given, TemporaryFolder const& folder) {
     std::string const edge = std::to_string(truth.edge);
     std::string text = "box: {periodic: [" + edge + ", " + edge + ", " + edge +
-                       "]}\nforces: {openmm: {builder: calvados2, temperature: 293, platform: Reference}}\nchains:\n";
+                       "]}\nforces: {openmm: {builder: calvados2, temperature: 293, platform: "
+                       "Reference}}\nchains:\n";
     char const* const sequence = "GSKEELRKALEDAGQYFKPSTWNHGMIVCD";
     for (std::size_t c = 0; c < truth.chains.size(); ++c) {
         std::string const name = "c" + std::to_string(c + 1);
         std::ofstream(folder / (name + ".csv")) << table_of(given, c);
-        text += "  - {name: " + name + ", model: calvados2, positions: " + name + ".csv, sequence: ";
+        text +=
+            "  - {name: " + name + ", model: calvados2, positions: " + name + ".csv, sequence: ";
         text.append(sequence, truth.chains[c].size()).append("}\n");
     }
     return text;
@@ -39,7 +42,8 @@ Opened open(Start const& truth, Start const& given) {
 double largest_change(std::vector<Vec3> const& given, double edge) {
     double largest = 0;
     for (std::size_t k = 1; k < given.size(); ++k)
-        largest = std::max(largest, std::abs(norm(nearest_image(given[k] - given[k - 1], edge)) - model_link));
+        largest = std::max(
+            largest, std::abs(norm(nearest_image(given[k] - given[k - 1], edge)) - model_link));
     return largest;
 }
 
@@ -50,8 +54,8 @@ bool is_cut(Start const& start) {
     return false;
 }
 
-/// Independent of the reader: links have their lengths, neighbours are who they were, and no bead has moved by more than is said, but for
-/// whole edges.
+/// Independent of the reader: links have their lengths, neighbours are who they were, and no bead
+/// has moved by more than is said, but for whole edges.
 void expect_faithful(Scene const& scene, Start const& given) {
     double constexpr rounding = 1e-9;
     double moved = 0, change = 0;
@@ -75,7 +79,8 @@ void expect_faithful(Scene const& scene, Start const& given) {
 /// The largest noted change and everything that is cut has a note; what is sound has none.
 void expect_notes(Opened const& opened, Start const& given) {
     double change = 0;
-    for (auto const& chain : given.chains) change = std::max(change, largest_change(chain, given.edge));
+    for (auto const& chain : given.chains)
+        change = std::max(change, largest_change(chain, given.edge));
     if (std::abs(change - 0.03 * model_link) > 1e-5) {
         EXPECT_EQ(opened.notes("positions were moved"), change > 0.03 * model_link) << change;
     }
@@ -85,7 +90,7 @@ void expect_notes(Opened const& opened, Start const& given) {
 StartForces look(Scene const& scene) {
     LoneForces forces(scene);
     std::vector<Vec3> const at = bead_positions_of(scene);
-    LoneForces::Evaluation const found = forces.at(at);
+    LoneForces::FusedSweep const found = forces.at(at);
     return start_forces_of(scene, forces.beads(), at, found.forces, found.energy);
 }
 
@@ -93,7 +98,8 @@ struct Relaxations {
     int mended = 0, refused = 0;
 };
 
-/// Absurd as it is; after relaxation links have their lengths, nothing overlaps, and beads have moved as far as is said; or it is refused.
+/// Absurd as it is; after relaxation links have their lengths, nothing overlaps, and beads have
+/// moved as far as is said; or it is refused.
 void expect_mended_by_relaxation(Scene scene, Relaxations& relaxations) {
     scene.relax = true;
     std::unique_ptr<Communicator> const alone = serial_communicator();
@@ -101,7 +107,8 @@ void expect_mended_by_relaxation(Scene scene, Relaxations& relaxations) {
     try {
         relaxed = relax_start(scene, *alone);
     } catch (InputError const& error) {
-        EXPECT_NE(std::string(error.what()).find("after relaxation ("), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("after relaxation ("), std::string::npos)
+            << error.what();
         ++relaxations.refused;
         return;
     }
@@ -120,7 +127,8 @@ void expect_mended_by_relaxation(Scene scene, Relaxations& relaxations) {
     EXPECT_FALSE(look(relaxed.scene).is_absurd());
 }
 
-void expect_outcome(Start const& truth, Start const& given, Becomes must, Relaxations* relaxations) {
+void expect_outcome(Start const& truth, Start const& given, Becomes must,
+                    Relaxations* relaxations) {
     Opened const opened = open(truth, given);
     if (must == Becomes::refused) {
         EXPECT_TRUE(opened.refused);
@@ -133,7 +141,8 @@ void expect_outcome(Start const& truth, Start const& given, Becomes must, Relaxa
         EXPECT_TRUE(opened.notes("positions were moved"));
     }
     StartForces const found = look(opened.scene);
-    // What is nearer than 0.3 nm is absurd, whoever planted it; what is further apart than 0.45 nm is not.
+    // What is nearer than 0.3 nm is absurd, whoever planted it; what is further apart than 0.45 nm
+    // is not.
     double const nearest = nearest_of(given);
     if (nearest < 0.3) {
         EXPECT_TRUE(found.is_absurd()) << nearest << ", " << found.text();
@@ -153,7 +162,8 @@ unsigned seeds(unsigned usual) {
     return wanted ? static_cast<unsigned>(std::stoul(wanted)) : usual;
 }
 
-/// action(truth, damaged, damage, seed, generator) for every damage and each of the seeds from `first` on.
+/// action(truth, damaged, damage, seed, generator) for every damage and each of the seeds from
+/// `first` on.
 template <class Action>
 void for_each_damage(unsigned first, Action const& action) {
     for (unsigned seed = first; seed < first + seeds(8); ++seed)
@@ -169,7 +179,8 @@ void for_each_damage(unsigned first, Action const& action) {
 
 TEST(StartsAtRandom, EachDamageAlone) {
     Relaxations relaxations;
-    for_each_damage(0, [&](Start const& truth, Start const& given, StartDamage const& damage, unsigned seed, StartGenerator&) {
+    for_each_damage(0, [&](Start const& truth, Start const& given, StartDamage const& damage,
+                           unsigned seed, StartGenerator&) {
         expect_outcome(truth, given, damage.must, seed < seeds(8) / 4 ? &relaxations : nullptr);
     });
     EXPECT_GT(relaxations.mended, 9 * relaxations.refused);
@@ -177,7 +188,8 @@ TEST(StartsAtRandom, EachDamageAlone) {
 
 /// Wrapped afterwards: what is mended or refused stays so.
 TEST(StartsAtRandom, EachDamageWrapped) {
-    for_each_damage(100, [](Start const& truth, Start& given, StartDamage const& damage, unsigned, StartGenerator& generator) {
+    for_each_damage(100, [](Start const& truth, Start& given, StartDamage const& damage, unsigned,
+                            StartGenerator& generator) {
         if (!given.lines.empty() || given.units_of_angstrom) return;
         move_chains_by_edges(given, generator);
         wrap_start(given, generator);
@@ -185,7 +197,8 @@ TEST(StartsAtRandom, EachDamageWrapped) {
     });
 }
 
-/// However large the noise: what opens has its beads where the table has them, as nearly as it says, or it is refused.
+/// However large the noise: what opens has its beads where the table has them, as nearly as it
+/// says, or it is refused.
 TEST(StartsAtRandom, NoiseIsFollowedOrRefused) {
     int opened = 0, refused = 0;
     for (unsigned seed = 0; seed < seeds(60); ++seed) {
@@ -215,7 +228,8 @@ TEST(StartsAtRandom, WrappedChainsAreRefusedWithoutTheirBox) {
         ++cut;
         TemporaryFolder const folder;
         std::string const text = scene_of(given, given, folder);
-        EXPECT_THROW(parse_scene(text.substr(text.find('\n') + 1), folder / "s.yaml"), InputError) << seed;
+        EXPECT_THROW(parse_scene(text.substr(text.find('\n') + 1), folder / "s.yaml"), InputError)
+            << seed;
     }
     EXPECT_GT(cut, 5);
 }

@@ -42,9 +42,15 @@ class Generator {
   public:
     explicit Generator(unsigned seed) : random_(seed) {}
 
-    double uniform(double least, double most) { return std::uniform_real_distribution<double>(least, most)(random_); }
-    int whole(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
-    double normal(double deviation) { return std::normal_distribution<double>(0, deviation)(random_); }
+    double uniform(double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random_);
+    }
+    int whole(int least, int most) {
+        return std::uniform_int_distribution<int>(least, most)(random_);
+    }
+    double normal(double deviation) {
+        return std::normal_distribution<double>(0, deviation)(random_);
+    }
     bool coin() { return whole(0, 1) == 1; }
     std::size_t index(std::size_t least, std::size_t end) {
         return static_cast<std::size_t>(whole(static_cast<int>(least), static_cast<int>(end) - 1));
@@ -54,16 +60,22 @@ class Generator {
         return (1 / norm(v)) * v;
     }
 
-    /// Alpha carbons 0.38 nm apart, next neighbours 0.5 to 0.73 nm, others 0.4 nm or more; with backbone atoms every other time.
+    /// Alpha carbons 0.38 nm apart, next neighbours 0.5 to 0.73 nm, others 0.4 nm or more; with
+    /// backbone atoms every other time.
     Structure structure() {
-        char const* const twenty[] = {"ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE",
-                                      "LEU", "LYS", "MET", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL"};
+        char const* const twenty[] = {"ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU",
+                                      "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE",
+                                      "PRO", "SER", "THR", "TRP", "TYR", "VAL"};
         Structure made;
         made.positions = walk(index(14, 40));
         bool const backbone = coin();
         for (std::size_t k = 0; k < made.positions.size(); ++k) {
             made.names.emplace_back(twenty[whole(0, 19)]);
-            made.residues.push_back({made.names.back(), static_cast<int>(k) + 1, ' ', false, {{"CA", made.positions[k]}}});
+            made.residues.push_back({made.names.back(),
+                                     static_cast<int>(k) + 1,
+                                     ' ',
+                                     false,
+                                     {{"CA", made.positions[k]}}});
             if (backbone) add_backbone(made, k);
         }
         return made;
@@ -77,7 +89,8 @@ class Generator {
             bool fits = true;
             for (std::size_t k = 0; k + 1 < at.size(); ++k) {
                 double const apart = norm(next - at[k]);
-                fits = fits && apart > (k + 2 == at.size() ? 0.5 : 0.4) && (k + 2 != at.size() || apart < 0.73);
+                fits = fits && apart > (k + 2 == at.size() ? 0.5 : 0.4) &&
+                       (k + 2 != at.size() || apart < 0.73);
             }
             if (fits)
                 at.push_back(next);
@@ -102,12 +115,15 @@ class Generator {
     int stuck_ = 0;
 };
 
-inline std::string line_of(Atom const& atom, Residue const& residue, Structure const& of, int serial) {
+inline std::string line_of(Atom const& atom, Residue const& residue, Structure const& of,
+                           int serial) {
     char line[120];
-    std::snprintf(line, sizeof line, "%-6s%5d  %-3s%c%3s %c%4d%c   %8.3f%8.3f%8.3f%6.2f%6.2f      %-4s%2s", residue.het ? "HETATM" : "ATOM",
-                  serial % 100000, atom.name.c_str(), atom.alternate, residue.name.c_str(), of.chain, residue.number, residue.insertion,
-                  10 * atom.position[0], 10 * atom.position[1], 10 * atom.position[2], atom.occupancy, 0.0, of.segment.c_str(),
-                  atom.name.substr(0, 1).c_str());
+    std::snprintf(line, sizeof line,
+                  "%-6s%5d  %-3s%c%3s %c%4d%c   %8.3f%8.3f%8.3f%6.2f%6.2f      %-4s%2s",
+                  residue.het ? "HETATM" : "ATOM", serial % 100000, atom.name.c_str(),
+                  atom.alternate, residue.name.c_str(), of.chain, residue.number, residue.insertion,
+                  10 * atom.position[0], 10 * atom.position[1], 10 * atom.position[2],
+                  atom.occupancy, 0.0, of.segment.c_str(), atom.name.substr(0, 1).c_str());
     return line + of.line_end;
 }
 
@@ -144,7 +160,8 @@ inline void renumber(Structure& s, Generator& g) {
 }
 
 inline void skip_numbers(Structure& s, Generator& g) {
-    for (std::size_t k = g.index(1, s.residues.size()); k < s.residues.size(); ++k) s.residues[k].number += 12;
+    for (std::size_t k = g.index(1, s.residues.size()); k < s.residues.size(); ++k)
+        s.residues[k].number += 12;
 }
 
 inline void drop_residues(Structure& s, Generator& g) {
@@ -154,7 +171,8 @@ inline void drop_residues(Structure& s, Generator& g) {
 
 inline void drop_and_renumber(Structure& s, Generator& g) {
     drop_residues(s, g);
-    for (std::size_t k = 1; k < s.residues.size(); ++k) s.residues[k].number = s.residues[0].number + static_cast<int>(k);
+    for (std::size_t k = 1; k < s.residues.size(); ++k)
+        s.residues[k].number = s.residues[0].number + static_cast<int>(k);
 }
 
 /// The right place has the largest occupancy, or is the first of equals.
@@ -203,8 +221,9 @@ inline void add_noise(Structure& s, Generator& g, double deviation = 0.004) {
 }
 
 inline void rename(Structure& s, Generator& g) {
-    std::pair<char const*, char const*> const names[] = {{"MSE", "MET"}, {"HIE", "HIS"}, {"HSP", "HIS"}, {"CYX", "CYS"}, {"ASH", "ASP"},
-                                                         {"GLH", "GLU"}, {"LYN", "LYS"}, {"HYP", "PRO"}, {"MLY", "LYS"}, {"SEC", "CYS"}};
+    std::pair<char const*, char const*> const names[] = {
+        {"MSE", "MET"}, {"HIE", "HIS"}, {"HSP", "HIS"}, {"CYX", "CYS"}, {"ASH", "ASP"},
+        {"GLH", "GLU"}, {"LYN", "LYS"}, {"HYP", "PRO"}, {"MLY", "LYS"}, {"SEC", "CYS"}};
     std::size_t const k = g.index(0, s.residues.size());
     auto const& [other, parent] = names[g.whole(0, 9)];
     s.residues[k].name = other;
@@ -212,7 +231,9 @@ inline void rename(Structure& s, Generator& g) {
     s.names[k] = parent;
 }
 
-inline void rename_to(Structure& s, Generator& g, char const* name) { s.residues[g.index(0, s.residues.size())].name = name; }
+inline void rename_to(Structure& s, Generator& g, char const* name) {
+    s.residues[g.index(0, s.residues.size())].name = name;
+}
 
 inline std::string foreign_atoms(Structure const& s, Generator& g) {
     Structure others = s;
@@ -226,7 +247,9 @@ inline std::string foreign_atoms(Structure const& s, Generator& g) {
     if (g.coin()) put("GOL", "C1", 1902);
     others.head = others.tail = "";
     std::string text = text_of(others);
-    if (g.coin()) text += "HETATM 9999 CA    CA A1903      10.000  10.000  10.000  1.00  0.00          CA" + s.line_end;
+    if (g.coin())
+        text += "HETATM 9999 CA    CA A1903      10.000  10.000  10.000  1.00  0.00          CA" +
+                s.line_end;
     return text;
 }
 
@@ -255,15 +278,18 @@ inline void insert_codes(Structure& s, Generator& g) {
     std::size_t const k = g.index(1, s.residues.size() - 3);
     for (int n = 0; n < 3; ++n) {
         s.residues[k + static_cast<std::size_t>(n)].number = s.residues[k].number;
-        s.residues[k + static_cast<std::size_t>(n)].insertion = n == 0 ? ' ' : static_cast<char>('A' + n - 1);
+        s.residues[k + static_cast<std::size_t>(n)].insertion =
+            n == 0 ? ' ' : static_cast<char>('A' + n - 1);
     }
-    for (std::size_t after = k + 3; after < s.residues.size(); ++after) s.residues[after].number -= 2;
+    for (std::size_t after = k + 3; after < s.residues.size(); ++after)
+        s.residues[after].number -= 2;
 }
 
 inline void wrap(Structure& s, Generator&) {
     for (Residue& residue : s.residues)
         for (Atom& atom : residue.atoms)
-            for (int i = 0; i < 3; ++i) atom.position[i] -= 5.2 * std::floor(atom.position[i] / 5.2);
+            for (int i = 0; i < 3; ++i)
+                atom.position[i] -= 5.2 * std::floor(atom.position[i] / 5.2);
 }
 
 inline bool is_wrapped(Structure const& s) {
@@ -279,12 +305,15 @@ inline void lose_alpha_carbon(Structure& s, Generator& g) {
         if (atom.name == "CA") atom.name = "CX";
 }
 
-inline void reverse(Structure& s, Generator&) { std::reverse(s.residues.begin(), s.residues.end()); }
+inline void reverse(Structure& s, Generator&) {
+    std::reverse(s.residues.begin(), s.residues.end());
+}
 
 inline std::vector<Damage> const damages = {
     {"none", Must::open, [](Structure&, Generator&) {}},
     {"other line ends", Must::open, [](Structure& s, Generator&) { s.line_end = "\r\n"; }},
-    {"byte order mark", Must::open, [](Structure& s, Generator&) { s.head = "\xEF\xBB\xBF" + s.head; }},
+    {"byte order mark", Must::open,
+     [](Structure& s, Generator&) { s.head = "\xEF\xBB\xBF" + s.head; }},
     {"numbers from elsewhere", Must::open, renumber},
     {"skipped numbers", Must::open_with_note, skip_numbers},
     {"insertion codes", Must::open, insert_codes},
@@ -300,7 +329,8 @@ inline std::vector<Damage> const damages = {
     {"swap with new numbers", Must::be_refused, swap_and_renumber},
     {"duplicate", Must::be_refused, duplicate},
     {"phosphate", Must::be_refused, [](Structure& s, Generator& g) { rename_to(s, g, "TPO"); }},
-    {"unknown residue", Must::be_refused, [](Structure& s, Generator& g) { rename_to(s, g, "XYZ"); }},
+    {"unknown residue", Must::be_refused,
+     [](Structure& s, Generator& g) { rename_to(s, g, "XYZ"); }},
     {"second chain", Must::be_refused, add_chain},
     {"no alpha carbon", Must::be_refused, lose_alpha_carbon},
     {"reversed", Must::be_refused, reverse},

@@ -12,7 +12,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string folder_of(std::string const& name) { return std::string(CATENA_SOURCE_DIR) + "/tests/data/cases/" + name; }
+std::string folder_of(std::string const& name) {
+    return std::string(CATENA_SOURCE_DIR) + "/tests/data/cases/" + name;
+}
 
 /// What `check` says of a scene that it takes.
 Json checked(std::string const& folder, std::string const& scene) {
@@ -36,7 +38,8 @@ std::vector<std::string> cells(std::string const& line) {
 /// A column of the first frame of a run.
 double first_frame(std::string const& folder, std::string const& scene, std::string const& column) {
     TemporaryFolder const output;
-    Ended const e = catena({"run", scene + ".yaml", "--output", output / "out", "--quiet"}, folder_of(folder));
+    Ended const e =
+        catena({"run", scene + ".yaml", "--output", output / "out", "--quiet"}, folder_of(folder));
     EXPECT_EQ(e.status, 0) << e.err;
     std::ifstream table(output / "out/observables.csv");
     std::string names, values;
@@ -49,18 +52,20 @@ double first_frame(std::string const& folder, std::string const& scene, std::str
     return 0;
 }
 
-/// 30 chains of three beads, letters A to Z and A to D, each ended by TER. OpenMM's Reference platform gives -5.112086 kJ/mol for the pairs
-/// where links (0.3798 nm in the file) get 0.38 nm from bead 1 outwards, -5.114377 where by the least change of positions.
+/// 30 chains of three beads, letters A to Z and A to D, each ended by TER. OpenMM's Reference
+/// platform gives -5.112086 kJ/mol for the pairs where links (0.3798 nm in the file) get 0.38 nm
+/// from bead 1 outwards, -5.114377 where by the least change of positions.
 TEST(Structures, ChainsOfATopologyAreToldApartByTer) {
     Json const check = checked("01-many-chains-one-letter", "scene");
     EXPECT_EQ(check.at("chains").size(), 30u);
     EXPECT_EQ(check.at("chains").at(25).at("name"), "Z");
     EXPECT_EQ(check.at("chains").at(26).at("name"), "A-2");
-    EXPECT_NEAR(first_frame("01-many-chains-one-letter", "scene", "potential_energy"), -5.114377, 3e-3);
+    EXPECT_NEAR(first_frame("01-many-chains-one-letter", "scene", "potential_energy"), -5.114377,
+                3e-3);
 }
 
-/// Ten dumb-bells on one letter; the backbone's bonds stay springs. OpenMM's energies at the file's positions: the side bonds have their
-/// length, so that no position changes.
+/// Ten dumb-bells on one letter; the backbone's bonds stay springs. OpenMM's energies at the file's
+/// positions: the side bonds have their length, so that no position changes.
 TEST(Structures, DumbBellsEndedByTer) {
     EXPECT_EQ(checked("13-two-beads-a-unit", "ter").at("chains").size(), 10u);
     EXPECT_NEAR(first_frame("13-two-beads-a-unit", "ter", "HarmonicBondForce"), 0.143043, 1e-6);
@@ -69,9 +74,12 @@ TEST(Structures, DumbBellsEndedByTer) {
 
 /// Residues 21 to 27 are missing; the alpha carbons of 20 and 28 are 2.633 nm apart.
 TEST(Structures, AGapIsNotClosed) {
-    expect_refused(catena({"check", "scene.yaml"}, folder_of("03-missing-residues")), 2,
-                   "residues ILE 20 and LEU 28 of `gap.pdb` stand 2.633 nm apart: the chain has a gap");
-    Ended const e = catena({"check", "scene.yaml", "--set", "chains[0].links=as_given", "--json", "-"}, folder_of("03-missing-residues"));
+    expect_refused(
+        catena({"check", "scene.yaml"}, folder_of("03-missing-residues")), 2,
+        "residues ILE 20 and LEU 28 of `gap.pdb` stand 2.633 nm apart: the chain has a gap");
+    Ended const e =
+        catena({"check", "scene.yaml", "--set", "chains[0].links=as_given", "--json", "-"},
+               folder_of("03-missing-residues"));
     ASSERT_EQ(e.status, 0) << e.err;
     expect_note(e.json(), "(first: 20 and 28, 2.633 nm)");
 }
@@ -80,13 +88,15 @@ TEST(Structures, AGapIsNotClosed) {
 TEST(Structures, TheRecordThatBearsTheChainsName) {
     EXPECT_EQ(checked("05-fasta-library", "scene").at("bodies"), 20);
     Words const check = {"check", "scene.yaml", "--set", "chains[0].name=p"};
-    expect_refused(catena(check, folder_of("05-fasta-library")), 2, "holds 3 records: `first`, `second`, `third`");
+    expect_refused(catena(check, folder_of("05-fasta-library")), 2,
+                   "holds 3 records: `first`, `second`, `third`");
     Json const lower = checked("05-fasta-library", "lower");
     EXPECT_EQ(lower.at("bodies"), 10);
     expect_note(lower, "10 of 10 letters are lower case");
 }
 
-/// Eight residues each; the calcium ion's name begins in column 13, that of an alpha carbon in column 14.
+/// Eight residues each; the calcium ion's name begins in column 13, that of an alpha carbon in
+/// column 14.
 TEST(Structures, IonsAndOtherNamesInPdbFiles) {
     for (char const* const scene : {"calcium", "calcium_own_chain", "mse", "hie", "cyx"})
         EXPECT_EQ(checked("07-hetatm-and-names", scene).at("bodies"), 8) << scene;
@@ -99,12 +109,14 @@ TEST(Structures, IonsAndOtherNamesInPdbFiles) {
 
 TEST(Structures, MmcifIsNamed) {
     Words const check = {"check", "cif.yaml"};
-    expect_refused(catena(check, folder_of("07-hetatm-and-names")), 2, "mmCIF is not read yet (structure.cif): write a PDB file");
+    expect_refused(catena(check, folder_of("07-hetatm-and-names")), 2,
+                   "mmCIF is not read yet (structure.cif): write a PDB file");
     for (char const* const key : {"positions=structure.cif", "conformation={pdb: structure.cif}"})
-        expect_refused(catena({"check", "mse.yaml", "--set", "chains[0].pdb=null", "--set", "chains[0].sequence=GGGGGGGG", "--set",
-                               std::string("chains[0].") + key},
-                              folder_of("07-hetatm-and-names")),
-                       2, "mmCIF is not read yet");
+        expect_refused(
+            catena({"check", "mse.yaml", "--set", "chains[0].pdb=null", "--set",
+                    "chains[0].sequence=GGGGGGGG", "--set", std::string("chains[0].") + key},
+                   folder_of("07-hetatm-and-names")),
+            2, "mmCIF is not read yet");
 }
 
 /// Read as nine one-letter codes, which is what is written, and said.

@@ -31,21 +31,28 @@ std::string notes_of(std::string const& name, Words extra = {}) {
     return e.status == 0 ? e.json().at("notes").dump() : "";
 }
 
-bool holds(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+bool holds(std::string const& text, std::string const& part) {
+    return text.find(part) != std::string::npos;
+}
 
 /// A run of a few steps, and the table that it left.
 class Finished {
   public:
     explicit Finished(std::string const& name, Words extra = {}) {
-        extra.insert(extra.begin(), {"run", case_file(name), "--output", folder_ / "o", "--set", "output.every=1"});
+        extra.insert(extra.begin(), {"run", case_file(name), "--output", folder_ / "o", "--set",
+                                     "output.every=1"});
         ended = catena(extra);
-        if (std::filesystem::exists(folder_ / "o/observables.csv")) table_ = read_observables(folder_ / "o/observables.csv");
+        if (std::filesystem::exists(folder_ / "o/observables.csv"))
+            table_ = read_observables(folder_ / "o/observables.csv");
     }
     /// In the first frame.
     double energy(std::string const& term) const {
-        auto const found = std::find(table_.names.begin(), table_.names.end(), term + "_energy [kJ/mol]");
+        auto const found =
+            std::find(table_.names.begin(), table_.names.end(), term + "_energy [kJ/mol]");
         EXPECT_NE(found, table_.names.end()) << term;
-        return found == table_.names.end() ? NAN : table_.columns[static_cast<std::size_t>(found - table_.names.begin())].at(0);
+        return found == table_.names.end()
+                   ? NAN
+                   : table_.columns[static_cast<std::size_t>(found - table_.names.begin())].at(0);
     }
     std::string file(std::string const& name) const {
         std::ostringstream text;
@@ -59,15 +66,20 @@ class Finished {
     ObservablesTable table_;
 };
 
-// OpenABC and ForceField.createSystem add a CMMotionRemover. Energies by an independent OpenMM script on the same start.
+// OpenABC and ForceField.createSystem add a CMMotionRemover. Energies by an independent OpenMM
+// script on the same start.
 TEST(MotionRemover, IsLeftOutWithANoteAndTheRunGoesOn) {
-    EXPECT_TRUE(holds(notes_of("11-cm-motion-remover/scene.yaml"), "The System's CMMotionRemover, which has no energy"));
+    EXPECT_TRUE(holds(notes_of("11-cm-motion-remover/scene.yaml"),
+                      "The System's CMMotionRemover, which has no energy"));
     Finished const run("11-cm-motion-remover/scene.yaml");
     EXPECT_EQ(run.ended.status, 0) << run.ended.err;
-    EXPECT_TRUE(holds(run.ended.err, "catena: warning: The System's CMMotionRemover")) << run.ended.err;
+    EXPECT_TRUE(holds(run.ended.err, "catena: warning: The System's CMMotionRemover"))
+        << run.ended.err;
     EXPECT_NEAR(run.energy("WCA"), 0, 1e-6);
-    EXPECT_NEAR(run.energy("stiffness"), 16.308472, 1e-3);  // at the digits of the topology, as the cage
-    EXPECT_NEAR(run.energy("cage"), 634.878132, 0.02);      // 0.009 less at the digits of the topology, before links have their length
+    EXPECT_NEAR(run.energy("stiffness"), 16.308472,
+                1e-3);  // at the digits of the topology, as the cage
+    EXPECT_NEAR(run.energy("cage"), 634.878132,
+                0.02);  // 0.009 less at the digits of the topology, before links have their length
 }
 
 TEST(MotionRemover, IsLeftOutWithANoteInAGroupThatIsNotAskedForToo) {
@@ -77,11 +89,14 @@ TEST(MotionRemover, IsLeftOutWithANoteInAGroupThatIsNotAskedForToo) {
 // Particle 2i is bonded to 2i + 1, a side bead, and to 2i + 2.
 TEST(BranchedMolecules, AreCalledSoWithTheParticleAndTheWaysOut) {
     Ended const e = check("13-two-beads-a-unit/scene.yaml");
-    expect_refused(e, 2, "particle 2 (from 0) is joined to particle 0 and not to particle 1 before it: the molecule is branched");
+    expect_refused(e, 2,
+                   "particle 2 (from 0) is joined to particle 0 and not to particle 1 before it: "
+                   "the molecule is branched");
     EXPECT_TRUE(holds(e.err, "TER")) << e.err;
 }
 
-// As the message advises: ten dumb-bells. Energies by an independent OpenMM script on the same start.
+// As the message advises: ten dumb-bells. Energies by an independent OpenMM script on the same
+// start.
 TEST(BranchedMolecules, RunAsPiecesWhoseOtherBondsStaySprings) {
     Finished const run("13-two-beads-a-unit/ter.yaml");
     EXPECT_EQ(run.ended.status, 0) << run.ended.err;
@@ -92,12 +107,13 @@ TEST(BranchedMolecules, RunAsPiecesWhoseOtherBondsStaySprings) {
 // sqrt(kT/k) = sqrt(2.436 / 20) nm = 0.349 nm, 92 % of 0.38 nm.
 TEST(Springs, ThatAreSoftAreNoLinks) {
     expect_refused(check("20-springs-that-are-no-links/soft.yaml"), 2,
-                   "the bond between particles 0 and 1 (from 0) is too soft for a rigid link: with 20 kJ/mol/nm2 its thermal spread "
+                   "the bond between particles 0 and 1 (from 0) is too soft for a rigid link: with "
+                   "20 kJ/mol/nm2 its thermal spread "
                    "sqrt(kT/k) at 293 K is 0.349 nm, 91.8 % of its length of 0.38 nm");
 }
 
-// Link 5 to 6 of the topology is 0.525 nm long, 38 % too long: 3 thermal spreads of a spring of 1022 kJ/mol/nm2, as MOFF's, and 8 of
-// CALVADOS's.
+// Link 5 to 6 of the topology is 0.525 nm long, 38 % too long: 3 thermal spreads of a spring of
+// 1022 kJ/mol/nm2, as MOFF's, and 8 of CALVADOS's.
 TEST(Springs, ThatAreSoftMayBeStretchedByThermalMotion) {
     TemporaryFolder const folder;
     std::string const from = case_file("20-springs-that-are-no-links/");
@@ -113,14 +129,16 @@ TEST(Springs, ThatAreSoftMayBeStretchedByThermalMotion) {
     std::ostringstream system;
     system << std::ifstream(from + "soft.xml").rdbuf();
     auto const check_with = [&](std::string const& stiffness) {
-        std::ofstream(folder / "soft.xml") << std::regex_replace(system.str(), std::regex("k=\"20\""), "k=\"" + stiffness + "\"");
+        std::ofstream(folder / "soft.xml")
+            << std::regex_replace(system.str(), std::regex("k=\"20\""), "k=\"" + stiffness + "\"");
         return catena({"check", folder / "soft.yaml"});
     };
     Ended const soft = check_with("1022");
     EXPECT_EQ(soft.status, 0) << soft.err;
     EXPECT_TRUE(holds(soft.out, "9 links of fixed length stand for soft bonds")) << soft.out;
     EXPECT_TRUE(holds(soft.out, "the largest change of a link is 38 %")) << soft.out;
-    expect_refused(check_with("8033"), 2, "beads 5 and 6 of chain `A` are 0.5246 nm apart, their link is 0.38 nm long");
+    expect_refused(check_with("8033"), 2,
+                   "beads 5 and 6 of chain `A` are 0.5246 nm apart, their link is 0.38 nm long");
 }
 
 TEST(Springs, WithoutStiffnessJoinNothing) {
@@ -128,18 +146,20 @@ TEST(Springs, WithoutStiffnessJoinNothing) {
                    "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint");
 }
 
-// 8033 kJ/mol/nm2 at 0.38 nm and 700 at 0.60: together they rest at (8033 0.38 + 700 0.60) / 8733 nm = 0.397634 nm.
+// 8033 kJ/mol/nm2 at 0.38 nm and 700 at 0.60: together they rest at (8033 0.38 + 700 0.60) / 8733
+// nm = 0.397634 nm.
 TEST(Springs, OnOnePairRestTogether) {
-    EXPECT_TRUE(
-        holds(notes_of("20-springs-that-are-no-links/twice.yaml"),
-              "1 link stands for several harmonic bonds of different lengths, at the length at which these rest together (particles 3 "
-              "and 4 from 0: 2 bonds, 0.397634 nm)"));
+    EXPECT_TRUE(holds(notes_of("20-springs-that-are-no-links/twice.yaml"),
+                      "1 link stands for several harmonic bonds of different lengths, at the "
+                      "length at which these rest together (particles 3 "
+                      "and 4 from 0: 2 bonds, 0.397634 nm)"));
     Ended const e = check("20-springs-that-are-no-links/twice.yaml");
     EXPECT_TRUE(holds(e.out, "their links differ from them by up to 0.202 nm")) << e.out;
 }
 
-// Published constants, an independent OpenMM script: charged ends add 0.72 kJ/mol. That script gave links their lengths from bead 1
-// outwards; the least change of positions differs from it by the digits of the file, times forces of some kJ/mol/nm.
+// Published constants, an independent OpenMM script: charged ends add 0.72 kJ/mol. That script gave
+// links their lengths from bead 1 outwards; the least change of positions differs from it by the
+// digits of the file, times forces of some kJ/mol/nm.
 TEST(ChargeTermini, AreTheChainsOwn) {
     double const digits = 1e-3;
     Finished const without("15-uncapped-ends/scene.yaml");
@@ -151,10 +171,12 @@ TEST(ChargeTermini, AreTheChainsOwn) {
     EXPECT_NEAR(with.energy("ashbaugh-hatch"), -2.251378, digits);
 }
 
-// KEELRKALEDAG: K, R, K against E, E, E, D is -1 e; an N-terminus has one more, a C-terminus one less.
+// KEELRKALEDAG: K, R, K against E, E, E, D is -1 e; an N-terminus has one more, a C-terminus one
+// less.
 TEST(ChargeTermini, AreInTheNetChargeThatCheckSays) {
     auto const charge = [](std::string const& termini, std::string const& expected) {
-        Ended const e = check("15-uncapped-ends/scene.yaml", {"--set", "chains[0].charge_termini=" + termini});
+        Ended const e =
+            check("15-uncapped-ends/scene.yaml", {"--set", "chains[0].charge_termini=" + termini});
         expect_good(e);
         EXPECT_TRUE(holds(e.out, "net charge: fragment " + expected)) << e.out;
     };
@@ -162,48 +184,64 @@ TEST(ChargeTermini, AreInTheNetChargeThatCheckSays) {
     charge("both", "-1.000 e");
     charge("N", "0.000 e");
     charge("C", "-2.000 e");
-    expect_refused(check("15-uncapped-ends/scene.yaml", {"--set", "chains[0].charge_termini=left"}), 2, "both");
+    expect_refused(check("15-uncapped-ends/scene.yaml", {"--set", "chains[0].charge_termini=left"}),
+                   2, "both");
 }
 
 TEST(ChargeTermini, OfAllChainsStandInTheForceField) {
-    Ended const e = check("22-slips-of-the-pen/temperatures.yaml", {"--set", "forces.openmm.charge_termini=N"});
-    EXPECT_TRUE(holds(e.out, "net charge: p 0.091 e")) << e.out;  // four K and R, five D and E, a histidine of 1/11 e at pH 7
+    Ended const e =
+        check("22-slips-of-the-pen/temperatures.yaml", {"--set", "forces.openmm.charge_termini=N"});
+    EXPECT_TRUE(holds(e.out, "net charge: p 0.091 e"))
+        << e.out;  // four K and R, five D and E, a histidine of 1/11 e at pH 7
 }
 
 TEST(Slips, TwoTemperaturesAreNoted) {
     EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml"),
-                      "forces.openmm.temperature is 293 K and dynamics.temperature 320 K: water's permittivity and the Debye length are "
+                      "forces.openmm.temperature is 293 K and dynamics.temperature 320 K: water's "
+                      "permittivity and the Debye length are "
                       "those at 293 K."));
-    EXPECT_EQ(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.temperature=293"}), "[]");
+    EXPECT_EQ(
+        notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.temperature=293"}),
+        "[]");
 }
 
 TEST(Slips, MillimolarIsNoted) {
     EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/millimolar.yaml"),
-                      "forces.openmm.ionic_strength is 150 mol/l, more than the solubility of any salt: did you mean 0.15"));
+                      "forces.openmm.ionic_strength is 150 mol/l, more than the solubility of any "
+                      "salt: did you mean 0.15"));
 }
 
 TEST(Slips, StepsInFemtosecondsAndImpossiblePhAreNoted) {
-    EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.step=10"}),
-                      "dynamics.step is 10 ps, that is 10000 fs: steps of such chains are 0.01 to 0.06 ps. Did you mean 0.01?"));
-    EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "forces.openmm.ph=70"}), "ph is 70, outside 0 to 14"));
+    EXPECT_TRUE(
+        holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.step=10"}),
+              "dynamics.step is 10 ps, that is 10000 fs: steps of such chains are 0.01 to 0.06 ps. "
+              "Did you mean 0.01?"));
+    EXPECT_TRUE(
+        holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "forces.openmm.ph=70"}),
+              "ph is 70, outside 0 to 14"));
 }
 
 TEST(Slips, FrozenWaterIsNoted) {
     EXPECT_TRUE(holds(
-        notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.temperature=200", "--set", "forces.openmm.temperature=200"}),
+        notes_of("22-slips-of-the-pen/temperatures.yaml",
+                 {"--set", "dynamics.temperature=200", "--set", "forces.openmm.temperature=200"}),
         "water is frozen at 200 K"));
 }
 
-TEST(Residues, OfAFileAreRefusedByName) { expect_refused(check("16-residue-table/scene.yaml"), 2, "residues"); }
+TEST(Residues, OfAFileAreRefusedByName) {
+    expect_refused(check("16-residue-table/scene.yaml"), 2, "residues");
+}
 
-// A line was lost, `</Force>` of the first of five forces; OpenMM's reader then takes the others for its children.
+// A line was lost, `</Force>` of the first of five forces; OpenMM's reader then takes the others
+// for its children.
 TEST(DamagedXml, WithALostTagIsRefused) {
     expect_refused(check("xml-lost-closing-tag/scene.yaml"), 2,
                    "s.xml is not well-formed: a <Force> is not closed before the next begins (");
 }
 
 TEST(DamagedXml, WithAnOpenCommentIsRefused) {
-    expect_refused(check("xml-open-comment/scene.yaml"), 2, "x.xml is not well-formed: a comment that is not closed (line 25)");
+    expect_refused(check("xml-open-comment/scene.yaml"), 2,
+                   "x.xml is not well-formed: a comment that is not closed (line 25)");
 }
 
 // The second of five forces bears the name `Bonds, soft`.
@@ -213,7 +251,8 @@ TEST(ForceNames, AreMadeHarmlessInTables) {
     EXPECT_TRUE(std::isfinite(run.energy("Bonds_ soft")));
     std::string const table = run.file("observables.csv");
     std::string const head = table.substr(0, table.find('\n'));
-    std::string const row = table.substr(head.size() + 1, table.find('\n', head.size() + 1) - head.size() - 1);
+    std::string const row =
+        table.substr(head.size() + 1, table.find('\n', head.size() + 1) - head.size() - 1);
     EXPECT_EQ(count(head, ","), count(row, ","));
 }
 
@@ -221,7 +260,9 @@ TEST(ControlCharacters, OfATopologyDoNotReachTheTerminal) {
     Ended const e = check("pdb-control/scene.yaml");
     EXPECT_EQ(e.status, 2);
     EXPECT_EQ(count(e.err, "\n"), 1U) << e.err;
-    EXPECT_TRUE(std::none_of(e.err.begin(), e.err.end() - 1, [](unsigned char c) { return c < 0x20 || c == 0x7f; })) << e.err;
+    EXPECT_TRUE(std::none_of(e.err.begin(), e.err.end() - 1, [](unsigned char c) {
+        return c < 0x20 || c == 0x7f;
+    })) << e.err;
 }
 
 }  // namespace

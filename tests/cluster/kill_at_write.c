@@ -1,5 +1,5 @@
-/* Preloaded into the program: kills it before its n-th write to a file below a folder, n = CATENA_KILL_AT_WRITE, the folder's path ends
-   with CATENA_KILL_FOLDER. */
+/* Preloaded into the program: kills it before its n-th write to a file below a folder, n =
+   CATENA_KILL_AT_WRITE, the folder's path ends with CATENA_KILL_FOLDER. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <signal.h>
@@ -24,13 +24,15 @@ static void count(int descriptor) {
     if (is_watched(descriptor) && left-- == 0) raise(SIGKILL);
 }
 
-#define COUNTED(name, parameters, arguments)                     \
-    ssize_t name parameters {                                    \
-        static ssize_t(*real) parameters;                        \
+#define COUNTED(name, parameters, arguments)                        \
+    ssize_t name parameters {                                       \
+        static ssize_t(*real) parameters;                           \
         if (real == NULL) *(void**)&real = dlsym(RTLD_NEXT, #name); \
-        count(descriptor);                                       \
-        return real arguments;                                   \
+        count(descriptor);                                          \
+        return real arguments;                                      \
     }
 COUNTED(write, (int descriptor, void const* data, size_t size), (descriptor, data, size))
-COUNTED(pwrite, (int descriptor, void const* data, size_t size, off_t offset), (descriptor, data, size, offset))
-COUNTED(pwrite64, (int descriptor, void const* data, size_t size, off_t offset), (descriptor, data, size, offset))
+COUNTED(pwrite, (int descriptor, void const* data, size_t size, off_t offset),
+        (descriptor, data, size, offset))
+COUNTED(pwrite64, (int descriptor, void const* data, size_t size, off_t offset),
+        (descriptor, data, size, offset))

@@ -20,8 +20,10 @@ std::vector<T> dataset(std::string const& path, char const* name) {
     hid_t const data = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(data);
     hid_t const type = std::is_same_v<T, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
     EXPECT_GE(space, 0) << path << ", " << name;
-    std::vector<T> values(static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0)));
-    EXPECT_GE(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << path << ", " << name;
+    std::vector<T> values(
+        static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0)));
+    EXPECT_GE(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0)
+        << path << ", " << name;
     H5Sclose(space);
     H5Dclose(data);
     H5Fclose(file);
@@ -40,24 +42,30 @@ void flatten(Json const& value, std::vector<double>& list) {
 
 TEST(Accelerations, HoldTheNumbersOfTheJson) {
     TemporaryFolder const folder;
-    std::ofstream(folder / "mixed.yaml") << "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n"
-                                            "  - {base: free, generator: {random: {bodies: 5, joint: spherical}}}\n"
-                                            "  - {base: fixed, generator: {random: {bodies: 4, joint: link}}}\n"
-                                            "  - {base: fixed, generator: {random: {bodies: 3, joint: revolute}}}\n";
-    Ended const e = catena({"solve", "mixed.yaml", "--accelerations", "a.h5", "--json", "-", "--repeat", "1"}, folder.path());
+    std::ofstream(folder / "mixed.yaml")
+        << "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n"
+           "  - {base: free, generator: {random: {bodies: 5, joint: spherical}}}\n"
+           "  - {base: fixed, generator: {random: {bodies: 4, joint: link}}}\n"
+           "  - {base: fixed, generator: {random: {bodies: 3, joint: revolute}}}\n";
+    Ended const e =
+        catena({"solve", "mixed.yaml", "--accelerations", "a.h5", "--json", "-", "--repeat", "1"},
+               folder.path());
     expect_good(e);
     Json const json = e.json();
     std::string const file = folder / "a.h5";
-    auto const accelerations = dataset<double>(file, "accelerations"), forces = dataset<double>(file, "joint_forces");
+    auto const accelerations = dataset<double>(file, "accelerations"),
+               forces = dataset<double>(file, "joint_forces");
     auto const offsets = dataset<std::int64_t>(file, "offsets");
     std::vector<double> expected_accelerations, expected_forces;
     std::vector<std::int64_t> expected_offsets;
     for (std::size_t body = 0; body < 12; ++body) {
-        expected_offsets.insert(expected_offsets.end(), {std::ssize(expected_accelerations), std::ssize(expected_forces)});
+        expected_offsets.insert(expected_offsets.end(),
+                                {std::ssize(expected_accelerations), std::ssize(expected_forces)});
         flatten(json["joint_accelerations"][body], expected_accelerations);
         flatten(json["joint_forces"][body], expected_forces);
     }
-    expected_offsets.insert(expected_offsets.end(), {std::ssize(expected_accelerations), std::ssize(expected_forces)});
+    expected_offsets.insert(expected_offsets.end(),
+                            {std::ssize(expected_accelerations), std::ssize(expected_forces)});
     EXPECT_EQ(accelerations, expected_accelerations);
     EXPECT_EQ(forces, expected_forces);
     EXPECT_EQ(offsets, expected_offsets);
@@ -67,7 +75,9 @@ TEST(Accelerations, HoldTheNumbersOfTheJson) {
 
 TEST(Accelerations, HoldTheForcesOfTips) {
     TemporaryFolder const folder;
-    Ended const e = catena({"solve", input("four-bar.yaml"), "--accelerations", "a.h5", "--json", "-", "--repeat", "1"}, folder.path());
+    Ended const e = catena({"solve", input("four-bar.yaml"), "--accelerations", "a.h5", "--json",
+                            "-", "--repeat", "1"},
+                           folder.path());
     expect_good(e);
     std::string const file = folder / "a.h5";
     auto const forces = dataset<double>(file, "tip_forces");
@@ -85,12 +95,17 @@ TEST(Accelerations, TheTrajectoryHoldsTheForcesOfTips) {
     std::ofstream(folder / "two.yaml")
         << "units: si\nforces: {gravity: [0, -9.81, 0]}\nchains:\n"
            "  - {name: first, base: fixed, generator: {random: {bodies: 5, joint: spherical}}}\n"
-           "  - {name: held, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 6, joint: universal}}}\n"
-           "dynamics: {integrator: rk4, step: 1e-4, steps: 2}\noutput: {every: 1, joint_forces: true}\n";
+           "  - {name: held, base: fixed, tip: {joint: {type: spherical}}, generator: {random: "
+           "{bodies: 6, joint: universal}}}\n"
+           "dynamics: {integrator: rk4, step: 1e-4, steps: 2}\noutput: {every: 1, joint_forces: "
+           "true}\n";
     expect_good(catena({"run", "two.yaml", "--output", "r", "--quiet"}, folder.path()));
-    Json const tip = catena({"solve", "two.yaml", "--repeat", "1", "--json", "-"}, folder.path()).json()["tip_forces"].at(0);
+    Json const tip = catena({"solve", "two.yaml", "--repeat", "1", "--json", "-"}, folder.path())
+                         .json()["tip_forces"]
+                         .at(0);
     std::string const file = folder / "r/trajectory.h5md";
-    auto const force = dataset<double>(file, "catena/tip_force/value"), torque = dataset<double>(file, "catena/tip_torque/value");
+    auto const force = dataset<double>(file, "catena/tip_force/value"),
+               torque = dataset<double>(file, "catena/tip_torque/value");
     auto const chain = dataset<std::int64_t>(file, "catena/tip_force/chain");
     ASSERT_EQ(force.size(), 9U);  // frames of steps 0, 1, 2
     ASSERT_EQ(torque.size(), 9U);
@@ -102,7 +117,8 @@ TEST(Accelerations, TheTrajectoryHoldsTheForcesOfTips) {
 }
 
 TEST(Accelerations, FilesThatCannotBeAreRefusedBeforeAnythingIsComputed) {
-    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}), 2, "no such folder");
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}),
+                   2, "no such folder");
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2,
                    "not a regular file (--accelerations /dev/null)");
 }

@@ -10,7 +10,8 @@ TEST(Check, SaysWhatTheSceneIs) {
     Ended const e = catena({"check", input("arm.yaml")});
     expect_good(e);
     for (std::string const part :
-         {"degrees of freedom   6", "springs on 2 joints, dampers on 1 joint", "rk4, 2000 steps of 0.001 s", "The scene is valid."})
+         {"degrees of freedom   6", "springs on 2 joints, dampers on 1 joint",
+          "rk4, 2000 steps of 0.001 s", "The scene is valid."})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 
@@ -23,8 +24,9 @@ TEST(Check, JsonHoldsTheSame) {
     EXPECT_EQ(json.at("dynamics").at("integrator"), "rattle");
     EXPECT_GT(json.at("memory_bytes_per_rank").at("state").get<double>(), 100 * 100 * 8);
     EXPECT_EQ(json.at("valid"), true);
-    auto const links =
-        catena({"check", input("random-link.yaml"), "--set", "chains[0].base=fixed", "--handles", "full", "--json", "-"}).json();
+    auto const links = catena({"check", input("random-link.yaml"), "--set", "chains[0].base=fixed",
+                               "--handles", "full", "--json", "-"})
+                           .json();
     EXPECT_EQ(links.at("dof"), 2000);
     EXPECT_EQ(links.at("handles").at("beads"), 3);
 }
@@ -44,15 +46,19 @@ TEST(Check, TheLogGoesToStandardError) {
 }
 
 TEST(Plan, SaysWhatRunsAndWhatIsLeftOut) {
-    Ended const e = catena({"plan", input("random-revolute.yaml"), "--backend", "serial", "--handles", "full"});
+    Ended const e =
+        catena({"plan", input("random-revolute.yaml"), "--backend", "serial", "--handles", "full"});
     expect_good(e);
-    for (std::string const part : {"serial (asked for)", "6x6, every direction", "runs of 1, 1000 of them, then 10 levels",
-                                   "left out\n  - ", "predicted times of one evaluation", "serial *", "memory, each rank"})
+    for (std::string const part :
+         {"serial (asked for)", "6x6, every direction", "runs of 1, 1000 of them, then 10 levels",
+          "left out\n  - ", "predicted times of one evaluation", "serial *", "memory, each rank"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 
 TEST(Plan, JsonNamesTreeAndSweeps) {
-    auto const json = catena({"plan", input("spherical-chain.yaml"), "--json", "-", "--backend", "segments"}).json();
+    auto const json =
+        catena({"plan", input("spherical-chain.yaml"), "--json", "-", "--backend", "segments"})
+            .json();
     auto const& group = json.at("groups").at(0);
     EXPECT_EQ(group.at("directions"), 3);
     EXPECT_EQ(group.at("collectives").at("matrices"), 0);
@@ -62,21 +68,25 @@ TEST(Plan, JsonNamesTreeAndSweeps) {
     for (char const* const arrangement : {"segments", "serial"})
         EXPECT_GT(json.at("predicted_seconds").at(arrangement).at("evaluation").get<double>(), 0);
     EXPECT_GT(json.at("memory_bytes_per_rank").at("gpu").get<double>(), 0);
-    auto const langevin = catena({"plan", input("freely-jointed-trimer.yaml"), "--json", "-"}).json();
+    auto const langevin =
+        catena({"plan", input("freely-jointed-trimer.yaml"), "--json", "-"}).json();
     EXPECT_EQ(langevin.at("dynamics").at("matrix_sweeps_a_step"), 2);
 }
 
 TEST(Plan, ImplicitJointsInAbsoluteCoordinatesAreNotMeasured) {
-    expect_refused(catena({"plan", input("dna-rod.yaml"), "--measure"}), 2, "no evaluation outside a step");
+    expect_refused(catena({"plan", input("dna-rod.yaml"), "--measure"}), 2,
+                   "no evaluation outside a step");
 }
 
 TEST(Plan, ExplainsWhatIsSavedAndMeasuresWhatWasPredicted) {
-    auto const json = catena({"plan", input("random-revolute.yaml"), "--backend", "segments", "--set",
-                              "chains[0].generator.random.bodies=200", "--explain", "--measure", "--json", "-"})
-                          .json();
+    auto const json =
+        catena({"plan", input("random-revolute.yaml"), "--backend", "segments", "--set",
+                "chains[0].generator.random.bodies=200", "--explain", "--measure", "--json", "-"})
+            .json();
     EXPECT_GE(json.at("savings").size(), 4U);
     for (auto const& each : json.at("savings")) {
-        bool const projection = each.at("left_out").get<std::string>().find("of 6 directions") != std::string::npos;
+        bool const projection =
+            each.at("left_out").get<std::string>().find("of 6 directions") != std::string::npos;
         if (!projection) continue;
         EXPECT_GT(each.at("seconds").get<double>(), 0);
     }
@@ -90,13 +100,18 @@ TEST(Plan, AutoIsSaidOnceWithItsReason) {
         expect_good(e);
         EXPECT_EQ(count(e.out, "auto: "), 1U) << e.out;
     }
-    EXPECT_EQ(catena({"solve", input("arm.yaml"), "--backend", "segments", "--json", "-"}).json().at("backend_reason"), "asked for");
+    EXPECT_EQ(catena({"solve", input("arm.yaml"), "--backend", "segments", "--json", "-"})
+                  .json()
+                  .at("backend_reason"),
+              "asked for");
 }
 
 /// Between 1 us a message and 1 GB/s, whatever the machine.
 std::string told_network(TemporaryFolder const& folder) {
-    std::string const file = folder / "network.json", link = R"({"latency": 1e-6, "seconds_a_byte": 1e-9})";
-    std::ofstream(file) << R"({"network": {"near": )" << link << R"(, "far": )" << link << R"(, "gather_overhead": 1}})";
+    std::string const file = folder / "network.json",
+                      link = R"({"latency": 1e-6, "seconds_a_byte": 1e-9})";
+    std::ofstream(file) << R"({"network": {"near": )" << link << R"(, "far": )" << link
+                        << R"(, "gather_overhead": 1}})";
     return file;
 }
 
@@ -114,7 +129,8 @@ TEST(Plan, PredictsStepsOnMoreRanks) {
     std::vector<int> ranks;
     for (auto const& row : rows) {
         ranks.push_back(row.at("ranks"));
-        double const computing = row.at("computing_seconds"), messages = row.at("message_seconds"), step = row.at("step_seconds");
+        double const computing = row.at("computing_seconds"), messages = row.at("message_seconds"),
+                     step = row.at("step_seconds");
         EXPECT_GT(computing, 0);
         EXPECT_EQ(messages > 0, ranks.back() > 1);
         EXPECT_DOUBLE_EQ(step, computing + messages);
@@ -129,8 +145,8 @@ TEST(Plan, PredictsStepsOnMoreRanks) {
     EXPECT_EQ(rows.back().at("hosts"), 12);
     Ended const e = catena(words);
     expect_good(e);
-    for (std::string const part :
-         {"times one rank", "efficiency", "predicted messages of a step", "every rank is taken to be like this one"})
+    for (std::string const part : {"times one rank", "efficiency", "predicted messages of a step",
+                                   "every rank is taken to be like this one"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 

@@ -12,16 +12,23 @@ namespace {
 TEST(Errors, TheCommandLine) {
     expect_refused(catena({}), 2, "no command is named");
     expect_refused(catena({"slove", "x.yaml"}), 2, "did you mean `solve`?");
-    expect_refused(catena({"solve", input("arm.yaml"), "--bakend", "serial"}), 2, "did you mean `--backend`?");
-    expect_refused(catena({"plan", input("arm.yaml"), "--ranks", "4"}), 2, "--ranks without --network");
+    expect_refused(catena({"solve", input("arm.yaml"), "--bakend", "serial"}), 2,
+                   "did you mean `--backend`?");
+    expect_refused(catena({"plan", input("arm.yaml"), "--ranks", "4"}), 2,
+                   "--ranks without --network");
     expect_refused(catena({"bench", "sweeps"}), 2, "not in this version: catena bench sweeps");
-    expect_refused(catena({"bench", "peers", "--joints", "helical"}), 2, "use link, spherical, revolute or planar");
+    expect_refused(catena({"bench", "peers", "--joints", "helical"}), 2,
+                   "use link, spherical, revolute or planar");
     expect_refused(catena({"bench", "peers", "--sizes", "2e6"}), 2, "take 1e6 at most");
-    expect_refused(catena({"bench", "solve", "--figure", "2.5"}), 2, "--figure is nothing to catena bench solve");
-    expect_refused(catena({"bench", "openmm", "--joints", "link"}), 2, "--joints is nothing to catena bench openmm");
-    expect_refused(catena({"bench", "network", "--loads", "none"}), 2, "--loads is nothing to catena bench network");
+    expect_refused(catena({"bench", "solve", "--figure", "2.5"}), 2,
+                   "--figure is nothing to catena bench solve");
+    expect_refused(catena({"bench", "openmm", "--joints", "link"}), 2,
+                   "--joints is nothing to catena bench openmm");
+    expect_refused(catena({"bench", "network", "--loads", "none"}), 2,
+                   "--loads is nothing to catena bench network");
     expect_refused(catena({"run", input("arm.yaml"), "--output", ""}), 2, "--output is empty");
-    expect_refused(catena({"run", input("arm.yaml"), "--steps", "1e30"}), 2, "1e30 is above 9000000000000000");
+    expect_refused(catena({"run", input("arm.yaml"), "--steps", "1e30"}), 2,
+                   "1e30 is above 9000000000000000");
 }
 
 TEST(Errors, AGpuThatIsNotThere) {
@@ -35,9 +42,11 @@ TEST(Errors, AGpuThatIsNotThere) {
 /// On one rank and without a GPU too, where they change nothing.
 TEST(Errors, TheEnvironment) {
     Words const check = {program(), "check", input("arm.yaml")};
-    expect_refused(run_program(check, "", {"CATENA_GATHER=two-stages"}), 2, "`two-stages` is no way to gather (CATENA_GATHER)");
+    expect_refused(run_program(check, "", {"CATENA_GATHER=two-stages"}), 2,
+                   "`two-stages` is no way to gather (CATENA_GATHER)");
     expect_refused(run_program(check, "", {"CATENA_GPU_EXCHANGE=hots"}), 2,
-                   "`hots` is no way for GPUs to exchange numbers (CATENA_GPU_EXCHANGE): use auto, direct or host");
+                   "`hots` is no way for GPUs to exchange numbers (CATENA_GPU_EXCHANGE): use auto, "
+                   "direct or host");
     expect_good(run_program({program(), "--version"}, "", {"CATENA_GPU_EXCHANGE=hots"}));
     expect_good(run_program(check, "", {"CATENA_GATHER=two-stage:2", "CATENA_GPU_EXCHANGE=host"}));
 }
@@ -45,8 +54,10 @@ TEST(Errors, TheEnvironment) {
 TEST(Errors, TheScene) {
     expect_refused(catena({"check", "missing.yaml"}), 2, "missing.yaml");
     expect_refused(catena({"check", "."}), 2, "(.)");
-    expect_refused(catena({"check", input("arm.yaml"), "--set", "chains[0].bass=fixed"}), 2, "did you mean `base`?");
-    expect_refused(catena({"check", input("arm.yaml"), "--set", "chains[0].bodies[1].mass=-1"}), 2, "body 2");
+    expect_refused(catena({"check", input("arm.yaml"), "--set", "chains[0].bass=fixed"}), 2,
+                   "did you mean `base`?");
+    expect_refused(catena({"check", input("arm.yaml"), "--set", "chains[0].bodies[1].mass=-1"}), 2,
+                   "body 2");
     expect_refused(catena({"check", input("arm.yaml"), "--set", "nonsense"}), 2, "--set nonsense");
     expect_refused(catena({"run", input("random-link.yaml")}), 2, "no dynamics section");
     TemporaryFolder const folder;
@@ -55,9 +66,11 @@ TEST(Errors, TheScene) {
 }
 
 TEST(Errors, FilesThatCannotBe) {
-    expect_refused(catena({"check", input("arm.yaml"), "--json", "/no/such/folder/x.json"}), 2, "no such folder: /no/such/folder (--json");
+    expect_refused(catena({"check", input("arm.yaml"), "--json", "/no/such/folder/x.json"}), 2,
+                   "no such folder: /no/such/folder (--json");
     expect_refused(catena({"check", input("arm.yaml"), "--json", "/"}), 2, "--json /");
-    expect_refused(catena({"report", input("arm.yaml"), "--output", "/dev/null/x"}), 2, "--output /dev/null/x");
+    expect_refused(catena({"report", input("arm.yaml"), "--output", "/dev/null/x"}), 2,
+                   "--output /dev/null/x");
 }
 
 /// What was there stays: the scene, another output, a run's page.
@@ -66,24 +79,33 @@ TEST(Errors, NothingIsWrittenOverBesides) {
     std::string const scene = folder / "arm.yaml";
     std::filesystem::copy_file(input("arm.yaml"), scene);
     auto const size = std::filesystem::file_size(scene);
-    expect_refused(catena({"check", scene, "--json", folder / "./arm.yaml"}), 2, "the scene would be written over");
-    expect_refused(catena({"solve", scene, "--accelerations", scene}), 2, "the scene would be written over");
-    expect_refused(catena({"solve", scene, "--json", folder / "a", "--accelerations", folder / "a"}), 2, "name one file");
+    expect_refused(catena({"check", scene, "--json", folder / "./arm.yaml"}), 2,
+                   "the scene would be written over");
+    expect_refused(catena({"solve", scene, "--accelerations", scene}), 2,
+                   "the scene would be written over");
+    expect_refused(
+        catena({"solve", scene, "--json", folder / "a", "--accelerations", folder / "a"}), 2,
+        "name one file");
     std::ofstream(folder / "observables.csv") << "step\n";
-    expect_refused(catena({"report", scene, "--quick", "--output", folder.path()}), 2, "the folder holds a run");
+    expect_refused(catena({"report", scene, "--quick", "--output", folder.path()}), 2,
+                   "the folder holds a run");
     EXPECT_EQ(std::filesystem::file_size(scene), size);
     EXPECT_FALSE(std::filesystem::exists(folder / "report.html"));
 }
 
 TEST(Errors, AFullDiskIsAFailedComputation) {
-    expect_refused(catena({"check", input("arm.yaml"), "--quiet", "--json", "/dev/full"}), 1, "/dev/full");
-    expect_refused(run_program({"sh", "-c", program() + " check " + input("arm.yaml") + " > /dev/full"}), 1,
-                   "cannot write to standard output");
+    expect_refused(catena({"check", input("arm.yaml"), "--quiet", "--json", "/dev/full"}), 1,
+                   "/dev/full");
+    expect_refused(
+        run_program({"sh", "-c", program() + " check " + input("arm.yaml") + " > /dev/full"}), 1,
+        "cannot write to standard output");
 }
 
 TEST(Errors, AComputationThatFailsIsStatusOne) {
     TemporaryFolder const folder;
-    Ended const e = catena({"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50", "--steps", "2", "--quiet"}, folder.path());
+    Ended const e = catena({"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50",
+                            "--steps", "2", "--quiet"},
+                           folder.path());
     expect_refused(e, 1, "dynamics.step");
 }
 

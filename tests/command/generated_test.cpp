@@ -10,10 +10,13 @@ namespace {
 
 TEST(GeneratedScenes, AlikeBodiesAreAlikeAndOfTheSameKind) {
     auto const alone = serial_communicator();
-    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld"}) {
+    for (char const* const joint :
+         {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld"}) {
         SCOPED_TRACE(joint);
         Scene scene = random_scene(joint, 20, {});
-        auto const group_of = [&](ChainSystem const& system) -> ChainGroup const& { return *system.groups().front(); };
+        auto const group_of = [&](ChainSystem const& system) -> ChainGroup const& {
+            return *system.groups().front();
+        };
         ChainSystem const random(scene, Axes::joint, *alone);
         EXPECT_FALSE(group_of(random).inverse_mass.alike());
         make_alike(scene);
@@ -21,8 +24,10 @@ TEST(GeneratedScenes, AlikeBodiesAreAlikeAndOfTheSameKind) {
         ChainGroup const& group = group_of(alike);
         EXPECT_EQ(group.directions, group_of(random).directions);
         EXPECT_EQ(group.planar, group_of(random).planar);
-        EXPECT_TRUE(group.inverse_mass.alike() && group.inverse_inertia.alike() && group.screw.alike());
-        EXPECT_TRUE(group.r1.alike() && group.r2.alike() && group.axes1.alike() && group.axes2.alike());
+        EXPECT_TRUE(group.inverse_mass.alike() && group.inverse_inertia.alike() &&
+                    group.screw.alike());
+        EXPECT_TRUE(group.r1.alike() && group.r2.alike() && group.axes1.alike() &&
+                    group.axes2.alike());
         alike.evaluate();
         EXPECT_LE(alike.residual(), alike.residual_bound());
     }
@@ -31,9 +36,12 @@ TEST(GeneratedScenes, AlikeBodiesAreAlikeAndOfTheSameKind) {
 TEST(GeneratedScenes, OneBodyIsAlikeAnyway) {
     for (char const* const joint : {"link", "spherical"}) {
         Scene scene = random_scene(joint, 1, {});
-        auto const mass = joint == std::string("link") ? scene.chains.front().beads.mass : scene.chains.front().bodies.mass;
+        auto const mass = joint == std::string("link") ? scene.chains.front().beads.mass
+                                                       : scene.chains.front().bodies.mass;
         make_alike(scene);
-        EXPECT_EQ(joint == std::string("link") ? scene.chains.front().beads.mass : scene.chains.front().bodies.mass, mass);
+        EXPECT_EQ(joint == std::string("link") ? scene.chains.front().beads.mass
+                                               : scene.chains.front().bodies.mass,
+                  mass);
     }
 }
 

@@ -14,7 +14,8 @@ TEST(Help, EveryCommandExplainsItselfWithExamples) {
         EXPECT_NE(one.out.find("Usage: catena " + command), std::string::npos) << one.out;
         EXPECT_NE(one.out.find("Examples:\n  "), std::string::npos) << one.out;
         for (std::string const option :
-             {"--backend", "--handles", "--threads", "--simd", "--gpu-levels", "--set", "--json", "--quiet", "--log-level"})
+             {"--backend", "--handles", "--threads", "--simd", "--gpu-levels", "--set", "--json",
+              "--quiet", "--log-level"})
             EXPECT_NE(one.out.find(option), std::string::npos) << command << " " << option;
     }
 }
@@ -24,7 +25,8 @@ TEST(Help, VersionSaysWhatIsInTheBuild) {
     expect_good(e);
     EXPECT_TRUE(e.out.starts_with("catena ")) << e.out;
     for (std::string const& part :
-         {std::string("MPI"), std::string("OpenMP"), std::string("OpenMM"), std::string("HDF5"), "CUDA    " + cuda::version()})
+         {std::string("MPI"), std::string("OpenMP"), std::string("OpenMM"), std::string("HDF5"),
+          "CUDA    " + cuda::version()})
         EXPECT_NE(e.out.find("  " + part), std::string::npos) << e.out;
 }
 

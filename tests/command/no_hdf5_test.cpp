@@ -6,9 +6,10 @@ namespace {
 
 TEST(NoHdf5, SaysSo) {
     TemporaryFolder const folder;
-    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "a.h5"}, folder.path()), 2,
-                   "built without HDF5 (--accelerations a.h5)");
-    expect_refused(catena({"run", input("arm.yaml"), "--steps", "1", "--quiet"}, folder.path()), 2, "built without HDF5");
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "a.h5"}, folder.path()),
+                   2, "built without HDF5 (--accelerations a.h5)");
+    expect_refused(catena({"run", input("arm.yaml"), "--steps", "1", "--quiet"}, folder.path()), 2,
+                   "built without HDF5");
     EXPECT_NE(catena({"--version"}).out.find("HDF5    none"), std::string::npos);
 }
 

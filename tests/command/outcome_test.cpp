@@ -5,19 +5,25 @@
 #include <cmath>
 #include <limits>
 
-#include "plan/describe.hpp"
 #include "command/session.hpp"
 #include "console/text.hpp"
 #include "integrate/chain_system.hpp"
 #include "mpi/first_rank.hpp"
+#include "plan/describe.hpp"
 #include "reader/load_scene.hpp"
 
 namespace catena::command {
 namespace {
 
 TEST(JsonText, NumbersReadBackToTheSameDoubles) {
-    std::vector<double> const values{
-        0.1, -1.0 / 3, 1e-310, 1.7976931348623157e308, 5e-324, -0.0, 123456789.123456789, std::nextafter(1.0, 2.0)};
+    std::vector<double> const values{0.1,
+                                     -1.0 / 3,
+                                     1e-310,
+                                     1.7976931348623157e308,
+                                     5e-324,
+                                     -0.0,
+                                     123456789.123456789,
+                                     std::nextafter(1.0, 2.0)};
     Json const json{{"values", values}};
     auto const back = Json::parse(json_text(json)).at("values").get<std::vector<double>>();
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -27,8 +33,10 @@ TEST(JsonText, NumbersReadBackToTheSameDoubles) {
 }
 
 TEST(JsonText, RowsStandOnLinesOfTheirOwn) {
-    EXPECT_EQ(json_text({{"a", {1, 2}}, {"b", {{1, 2}, {3}}}, {"c", Json::object()}, {"d", nullptr}}),
-              "{\n  \"a\": [1,2],\n  \"b\": [\n    [1,2],\n    [3]\n  ],\n  \"c\": {},\n  \"d\": null\n}\n");
+    EXPECT_EQ(
+        json_text({{"a", {1, 2}}, {"b", {{1, 2}, {3}}}, {"c", Json::object()}, {"d", nullptr}}),
+        "{\n  \"a\": [1,2],\n  \"b\": [\n    [1,2],\n    [3]\n  ],\n  \"c\": {},\n  \"d\": "
+        "null\n}\n");
 }
 
 TEST(JsonText, WhatJsonCannotHoldBecomesNullOrAMark) {
@@ -83,8 +91,10 @@ TEST(Describe, EqualNeighboursAreOneRow) {
 TEST(Describe, MemoryFollowsTheSolversOwnCount) {
     for (char const* const joint : {"link", "spherical", "revolute"})
         for (int const bodies : {1000, 40000}) {
-            std::string const random = "{random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + "}}";
-            Scene const scene = parse_scene("units: si\nchains: [{generator: " + random + "}]", "test");
+            std::string const random =
+                "{random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + "}}";
+            Scene const scene =
+                parse_scene("units: si\nchains: [{generator: " + random + "}]", "test");
             auto const alone = serial_communicator();
             ChainSystem const system(scene, Axes::joint, *alone);
             auto const counted = static_cast<double>(system.solver_reports().front().memory_bytes);

@@ -1,4 +1,5 @@
-// Other programs on the stability suite's chains: those that are here agree with articulated bodies in 113 bits, and made-up ones stop.
+// Other programs on the stability suite's chains: those that are here agree with articulated bodies
+// in 113 bits, and made-up ones stop.
 #include "bench/peer_answers.hpp"
 
 #include <gtest/gtest.h>
@@ -25,8 +26,10 @@ StabilityCase case_of(std::string const& family, std::string const& name) {
 
 /// Five bodies: among more on ball joints Pinocchio loses every digit.
 Scene random_chain(std::string const& joint, std::string const& base) {
-    std::string const chain = "{name: a, base: " + base + ", generator: {random: {bodies: 5, joint: " + joint + ", seed: 7}}}";
-    return parse_scene("units: si\nchains: [" + chain + "]\nforces: {gravity: [1, -3, -5]}\n", "random", {});
+    std::string const chain = "{name: a, base: " + base +
+                              ", generator: {random: {bodies: 5, joint: " + joint + ", seed: 7}}}";
+    return parse_scene("units: si\nchains: [" + chain + "]\nforces: {gravity: [1, -3, -5]}\n",
+                       "random", {});
 }
 
 Scene with_springs_and_dampers(Scene scene) {
@@ -39,29 +42,37 @@ Scene with_springs_and_dampers(Scene scene) {
     return scene;
 }
 
-/// Free bodies, beads, springs, dampers, wrenches and torques go through the table and back, in a process that takes them all.
+/// Free bodies, beads, springs, dampers, wrenches and torques go through the table and back, in a
+/// process that takes them all.
 TEST(PeerAnswers, ThoseThatAreHereAgree) {
     Peer::Limits limits = limits_of_suite();
-    limits.memory_bytes = std::numeric_limits<std::int64_t>::max();  // a sanitizer takes what addresses there are
+    limits.memory_bytes =
+        std::numeric_limits<std::int64_t>::max();  // a sanitizer takes what addresses there are
     PeerAnswers peers(peers_of_suite(), limits);
     for (std::string const& line : peers.not_run()) std::puts(line.c_str());
     if (peers.not_run().size() == peers.json().size()) GTEST_SKIP() << "NOT RUN: no peer is here";
-    double const allowed = std::sqrt(0x1p-53);  // a mistake in the table changes more; roundings are a peer's own affair
+    double const allowed = std::sqrt(
+        0x1p-53);  // a mistake in the table changes more; roundings are a peer's own affair
     std::vector<Scene> scenes{random_chain("link", "free")};
     for (char const* const joint : {"revolute", "spherical"})
         for (char const* const base : {"fixed", "free"})
-            scenes.insert(scenes.end(), {random_chain(joint, base), with_springs_and_dampers(random_chain(joint, base))});
-    scenes.push_back(case_of("units", "molecule in SI, hinges").scene(1));
+            scenes.insert(scenes.end(), {random_chain(joint, base),
+                                         with_springs_and_dampers(random_chain(joint, base))});
+    scenes.push_back(case_of("units", "molecule in SI, revolute joints").scene(1));
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         Solution found = layout_of(scenes[i]);
         ExactSolution const exact = exact_solution(scenes[i], found, 100, 1);
-        for (PeerAnswer const& answer : peers({"any", std::to_string(i), scenes[i].bodies(), {}}, scenes[i])) {
-            ASSERT_EQ(answer.acceleration.size(), exact.acceleration.size()) << answer.name << ", " << i << ": " << answer.why_not;
+        for (PeerAnswer const& answer :
+             peers({"any", std::to_string(i), scenes[i].bodies(), {}}, scenes[i])) {
+            ASSERT_EQ(answer.acceleration.size(), exact.acceleration.size())
+                << answer.name << ", " << i << ": " << answer.why_not;
             found.acceleration = answer.acceleration;
-            EXPECT_LE(largest_difference(scenes[i], found, exact.acceleration), allowed) << answer.name << ", " << i;
+            EXPECT_LE(largest_difference(scenes[i], found, exact.acceleration), allowed)
+                << answer.name << ", " << i;
         }
     }
-    for (Json const& peer : peers.json()) EXPECT_NE(peer.contains("not_run"), peer.contains("version")) << peer;
+    for (Json const& peer : peers.json())
+        EXPECT_NE(peer.contains("not_run"), peer.contains("version")) << peer;
 }
 
 TEST(PeerAnswers, ChainsThatTheTableCannotHoldAreNotAskedAbout) {
@@ -77,13 +88,18 @@ TEST(PeerAnswers, ChainsThatTheTableCannotHoldAreNotAskedAbout) {
     EXPECT_EQ(not_for_peers(scene), "not one chain alone without drag and OpenMM");
 }
 
-PeerProgram made_up(std::string const& name, std::string const& script) { return {name, {"/bin/sh", "-c", script, "sh"}, {}, ""}; }
+PeerProgram made_up(std::string const& name, std::string const& script) {
+    return {name, {"/bin/sh", "-c", script, "sh"}, {}, ""};
+}
 
 TEST(PeerAnswers, OneThatStopsIsAskedAboutNoLongerChainOfThatFamily) {
-    PeerAnswers peers({made_up("full", R"(echo '{"stops": "no memory left"}')"),
-                       made_up("empty", R"(: > "$2"; echo '{"version": "0"}'; while read line; do echo '{"version": "0"}'; done)"),
-                       {"absent", {}, {}, "it is not here"}},
-                      limits_of_suite());
+    PeerAnswers peers(
+        {made_up("full", R"(echo '{"stops": "no memory left"}')"),
+         made_up(
+             "empty",
+             R"(: > "$2"; echo '{"version": "0"}'; while read line; do echo '{"version": "0"}'; done)"),
+         {"absent", {}, {}, "it is not here"}},
+        limits_of_suite());
     auto const ask = [&](std::string const& family, std::string const& name) {
         StabilityCase const which = case_of(family, name);
         std::vector<PeerAnswer> const answers = peers(which, which.scene(1));
@@ -95,16 +111,20 @@ TEST(PeerAnswers, OneThatStopsIsAskedAboutNoLongerChainOfThatFamily) {
     EXPECT_EQ(ask("coil", "16 bodies"), "no memory left");
     EXPECT_EQ(ask("coil", "64 bodies"), "at 16 bodies: no memory left");
     EXPECT_EQ(ask("dill", "16 bodies"), "no memory left");
-    EXPECT_EQ(ask("springs", "1e2, each hinge"), "no memory left");
-    EXPECT_EQ(ask("springs", "1e6, each hinge"), "no memory left");  // as long as the one before
+    EXPECT_EQ(ask("springs", "1e2, each revolute joint"), "no memory left");
+    EXPECT_EQ(ask("springs", "1e6, each revolute joint"),
+              "no memory left");  // as long as the one before
     EXPECT_EQ(peers.not_run(), std::vector<std::string>{"NOT RUN: absent: it is not here"});
 }
 
 TEST(PeerAnswers, OneThatIsTooSlowIsNotAskedAgain) {
-    PeerAnswers peers({made_up("slow", "exec sleep 60")},
-                      {std::chrono::milliseconds(300), std::chrono::seconds(1), limits_of_suite().memory_bytes});
+    PeerAnswers peers(
+        {made_up("slow", "exec sleep 60")},
+        {std::chrono::milliseconds(300), std::chrono::seconds(1), limits_of_suite().memory_bytes});
     StabilityCase const which = case_of("coil", "16 bodies");
-    for (char const* const begins : {"building the chain and evaluating it once takes more than 300", "at 16 bodies: building"}) {
+    for (char const* const begins :
+         {"building the chain and evaluating it once takes more than 300",
+          "at 16 bodies: building"}) {
         std::string const why_not = peers(which, which.scene(1)).at(0).why_not;
         EXPECT_TRUE(why_not.starts_with(begins)) << why_not;
     }
@@ -114,18 +134,23 @@ TEST(PeerAnswers, OneThatIsTooSlowIsNotAskedAgain) {
 TEST(PeerAnswers, NonsenseIsWhyThereIsNoAnswer) {
     // The first one has said too much long before the second question: the deaf one takes a second.
     PeerAnswers peers(
-        {made_up("hasty", R"(: > "$2"; echo '{"version": "0"}'; echo '{"version": "0"}'; exec sleep 60)"),
-         made_up("number", R"(echo '{"stops": 3}'; sleep 60)"), made_up("version", R"(echo '{"version": 4}'; sleep 60)"),
-         made_up("words", "echo hello; sleep 60"), made_up("deaf", "exec >&- <&-; sleep 60"), made_up("endless", "exec cat /dev/zero")},
+        {made_up("hasty",
+                 R"(: > "$2"; echo '{"version": "0"}'; echo '{"version": "0"}'; exec sleep 60)"),
+         made_up("number", R"(echo '{"stops": 3}'; sleep 60)"),
+         made_up("version", R"(echo '{"version": 4}'; sleep 60)"),
+         made_up("words", "echo hello; sleep 60"), made_up("deaf", "exec >&- <&-; sleep 60"),
+         made_up("endless", "exec cat /dev/zero")},
         limits_of_suite());
     StabilityCase const first = case_of("coil", "16 bodies"), second = case_of("coil", "64 bodies");
     std::vector<PeerAnswer> const answers = peers(first, first.scene(1));
     ASSERT_EQ(answers.size(), 6U);
     EXPECT_EQ(answers[0].why_not, "");
-    char const* const begins[] = {"it said what cannot be read", "it said what cannot be read", "it said what cannot be read",
-                                  "it closed its output", "it does not end its line"};
+    char const* const begins[] = {"it said what cannot be read", "it said what cannot be read",
+                                  "it said what cannot be read", "it closed its output",
+                                  "it does not end its line"};
     for (std::size_t i = 0; i < 5; ++i)
-        EXPECT_TRUE(answers[i + 1].why_not.starts_with(begins[i])) << answers[i + 1].name << ": " << answers[i + 1].why_not;
+        EXPECT_TRUE(answers[i + 1].why_not.starts_with(begins[i]))
+            << answers[i + 1].name << ": " << answers[i + 1].why_not;
     std::string const why_not = peers(second, second.scene(1)).at(0).why_not;
     EXPECT_TRUE(why_not.starts_with("it said what nobody asked for")) << why_not;
 }

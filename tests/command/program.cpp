@@ -47,11 +47,13 @@ Ended run_program(Words const& words, std::string const& folder, Words const& en
     ::posix_spawn_file_actions_init(&actions);
     if (!folder.empty()) ::posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
-    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
+    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT,
+                                       0600);
+    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT,
+                                       0600);
     pid_t child = -1;
-    int const failed =
-        ::posix_spawnp(&child, all_words.front().c_str(), &actions, nullptr, pointers(all_words).data(), pointers(all_environment).data());
+    int const failed = ::posix_spawnp(&child, all_words.front().c_str(), &actions, nullptr,
+                                      pointers(all_words).data(), pointers(all_environment).data());
     ::posix_spawn_file_actions_destroy(&actions);
     int status = 0;
     if (failed != 0 || ::waitpid(child, &status, 0) != child) return {};
@@ -69,9 +71,10 @@ Ended catena_on(int ranks, Words const& words, std::string const& folder) {
     all.insert(all.end(), {"-n", std::to_string(ranks), program()});
     all.insert(all.end(), words.begin(), words.end());
     // Open MPI's own leaks are none of Catena's.
-    return run_program(all, folder,
-                       {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_btl_vader_single_copy_mechanism=none",
-                        "ASAN_OPTIONS=detect_leaks=0"});
+    return run_program(
+        all, folder,
+        {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+         "OMPI_MCA_btl_vader_single_copy_mechanism=none", "ASAN_OPTIONS=detect_leaks=0"});
 }
 
 std::string program() { return CATENA_PROGRAM; }

@@ -22,7 +22,8 @@ Ended catena(Words const& words, std::string const& folder = "");
 /// The same by mpirun.
 Ended catena_on(int ranks, Words const& words, std::string const& folder = "");
 /// Any program; `environment` adds to this one's.
-Ended run_program(Words const& words, std::string const& folder = "", Words const& environment = {});
+Ended run_program(Words const& words, std::string const& folder = "",
+                  Words const& environment = {});
 
 std::string program();
 /// A scene of inputs/.
@@ -30,7 +31,8 @@ std::string input(std::string const& name);
 
 inline std::size_t count(std::string const& text, std::string const& part) {
     std::size_t found = 0;
-    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++found;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size()))
+        ++found;
     return found;
 }
 

@@ -18,11 +18,13 @@ SamplingCopies copies_of(std::int64_t count, char const* platform) {
 
 std::vector<Vec3> positions_of(Scene const& scene) {
     std::vector<Vec3> x;
-    for (ChainSpec const& chain : scene.chains) x.insert(x.end(), chain.beads.position.begin(), chain.beads.position.end());
+    for (ChainSpec const& chain : scene.chains)
+        x.insert(x.end(), chain.beads.position.begin(), chain.beads.position.end());
     return x;
 }
 
-double largest_difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b, std::size_t from) {
+double largest_difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b,
+                          std::size_t from) {
     double worst = 0;
     for (std::size_t k = 0; k < a.size(); ++k) worst = larger(worst, norm(a[k] - b[from + k]));
     return worst;
@@ -30,7 +32,8 @@ double largest_difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b
 
 TEST(SamplingCopies, EachHasTheForcesThatItHasAlone) {
     double constexpr nanoseconds = 15e3;  // a thousand nanometres from end to end
-    SamplingCopies many = copies_of(9, "CPU"), one = copies_of(1, "CPU"), exact = copies_of(1, "Reference");
+    SamplingCopies many = copies_of(9, "CPU"), one = copies_of(1, "CPU"),
+                   exact = copies_of(1, "Reference");
     std::vector<Vec3> const x = positions_of(many.scene(0.01, nanoseconds));
     EXPECT_GT(many.extent(nanoseconds), 200);
     std::vector<Vec3> const force = many.forces(x);
@@ -58,14 +61,16 @@ TEST(SamplingCopies, TheyStandApartAndAMeetingIsSeen) {
 
 TEST(SamplingCopies, TheyStartFromConformationsOfTheirOwn) {
     SamplingCopies copies = copies_of(3, "Reference");
-    std::vector<ChainSample> const samples = copies.sample(positions_of(copies.scene(0.01, 1)), BondMeasure::rigid);
+    std::vector<ChainSample> const samples =
+        copies.sample(positions_of(copies.scene(0.01, 1)), BondMeasure::rigid);
     EXPECT_NE(samples[0].radius_of_gyration, samples[1].radius_of_gyration);
     EXPECT_NE(samples[1].radius_of_gyration, samples[2].radius_of_gyration);
     std::vector<Vec3> moved = positions_of(copies.scene(0.01, 1));
     for (Vec3& each : moved) each = 0.9 * each;
     copies.start_from(moved);
     EXPECT_NE(copies.scene(0.01, 1).dynamics.seed, copies.scene(0.01, 1).dynamics.seed);
-    EXPECT_NEAR(copies.sample(positions_of(copies.scene(0.01, 1)), BondMeasure::rigid)[2].radius_of_gyration,
+    EXPECT_NEAR(copies.sample(positions_of(copies.scene(0.01, 1)), BondMeasure::rigid)[2]
+                    .radius_of_gyration,
                 0.9 * samples[2].radius_of_gyration, 1e-12);
 }
 

@@ -15,7 +15,8 @@ std::string write_scene(TemporaryFolder const& folder) {
     std::string const file = folder / "ten.yaml";
     std::ofstream(file)
         << "title: ten residues\n"
-           "chains: [{name: ten, sequence: MDVFMKGLSK, model: calvados2, conformation: self_avoiding, velocities: thermal}]\n"
+           "chains: [{name: ten, sequence: MDVFMKGLSK, model: calvados2, conformation: "
+           "self_avoiding, velocities: thermal}]\n"
            "forces: {openmm: {builder: calvados2, platform: Reference, path: inline}}\n"
            "dynamics: {integrator: g-baoab, step: 0.01, temperature: 300, friction: 1}\n";
     return file;
@@ -30,10 +31,12 @@ Words sampling(std::string const& scene, Words const& more) {
 TEST(Sampling, AlphaSynucleinIsSampledByEveryMethod) {
     TemporaryFolder const folder;
     std::string const file = folder / "sampling.json";
-    Ended const e = catena({"bench", "sampling", "--copies", "2", "--duration", "2", "--discard", "0.5", "--backend", "segments",
-                            "--methods", "rigid,rigid-fixman,bonds,constraints", "--json", file});
+    Ended const e = catena({"bench", "sampling", "--copies", "2", "--duration", "2", "--discard",
+                            "0.5", "--backend", "segments", "--methods",
+                            "rigid,rigid-fixman,bonds,constraints", "--json", file});
     EXPECT_EQ(e.status, 0) << e.err;
-    for (char const* const part : {"2 copies of asyn (140 beads)", "rigid (10 fs) minus bonds (10 fs): Rg ", "  reference  "})
+    for (char const* const part : {"2 copies of asyn (140 beads)",
+                                   "rigid (10 fs) minus bonds (10 fs): Rg ", "  reference  "})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << e.out;
     EXPECT_NE(e.err.find("steps/s"), std::string::npos);
     Json const json = Json::parse(std::ifstream(file));
@@ -56,15 +59,19 @@ TEST(Sampling, AlphaSynucleinIsSampledByEveryMethod) {
 
 TEST(Sampling, TheTemperaturesAreTheThermostats) {
     TemporaryFolder const folder;
-    Ended const e = catena(sampling(write_scene(folder), {"--copies", "12", "--duration", "60", "--discard", "4", "--every", "0.2",
-                                                          "--steps", "0.02", "--methods", "rigid,rigid-fixman,bonds", "--json", "-"}));
+    Ended const e =
+        catena(sampling(write_scene(folder), {"--copies", "12", "--duration", "60", "--discard",
+                                              "4", "--every", "0.2", "--steps", "0.02", "--methods",
+                                              "rigid,rigid-fixman,bonds", "--json", "-"}));
     expect_good(e);
     Json const json = e.json();
     for (Json const& row : json.at("results"))
         for (char const* const kind : {"configurational_temperature", "kinetic_temperature"}) {
-            // Five standard deviations of what other seeds give: any seed, and other processors have other trajectories, keeps to them.
+            // Five standard deviations of what other seeds give: any seed, and other processors
+            // have other trajectories, keeps to them.
             double const largest = std::string(kind) == "kinetic_temperature" ? 25 : 65;
-            EXPECT_LT(std::abs(row.at(kind).at("mean").get<double>() - 300), largest) << row.at("method") << kind;
+            EXPECT_LT(std::abs(row.at(kind).at("mean").get<double>() - 300), largest)
+                << row.at("method") << kind;
             double const error = row.at(kind).at("error");
             EXPECT_GT(error, largest / 25) << row.at("method") << kind;
             EXPECT_LT(error, largest / 2) << row.at("method") << kind;
@@ -73,8 +80,9 @@ TEST(Sampling, TheTemperaturesAreTheThermostats) {
 
 TEST(Sampling, AStepThatIsTooLongIsAFindingNoFailure) {
     TemporaryFolder const folder;
-    Ended const e = catena(sampling(write_scene(folder), {"--copies", "2", "--duration", "20", "--discard", "0", "--methods",
-                                                          "rigid,bonds,constraints", "--steps", "0.5,0.01", "--json", "-"}));
+    Ended const e = catena(sampling(
+        write_scene(folder), {"--copies", "2", "--duration", "20", "--discard", "0", "--methods",
+                              "rigid,bonds,constraints", "--steps", "0.5,0.01", "--json", "-"}));
     expect_good(e);
     Json const json = e.json();
     ASSERT_EQ(json.at("results").size(), 6U);
@@ -83,15 +91,17 @@ TEST(Sampling, AStepThatIsTooLongIsAFindingNoFailure) {
         EXPECT_EQ(row.at("state"), i < 3 ? "unstable" : "VALID") << row;
         EXPECT_EQ(row.at("why").get<std::string>().empty(), i >= 3) << row;
     }
-    for (Json const& verdict : json.at("verdicts")) EXPECT_EQ(verdict.at("biases")[1].at("usable"), "unstable");
+    for (Json const& verdict : json.at("verdicts"))
+        EXPECT_EQ(verdict.at("biases")[1].at("usable"), "unstable");
 }
 
 TEST(Sampling, ARowEndsWithItsSeconds) {
     TemporaryFolder const folder;
     std::string const scene = write_scene(folder);
     auto const run = [&scene](std::string const& discard) {
-        return catena(sampling(scene, {"--copies", "2", "--duration", "1e6", "--discard", discard, "--equilibrate", "0", "--seconds", "0.5",
-                                       "--methods", "bonds", "--json", "-"}));
+        return catena(sampling(
+            scene, {"--copies", "2", "--duration", "1e6", "--discard", discard, "--equilibrate",
+                    "0", "--seconds", "0.5", "--methods", "bonds", "--json", "-"}));
     };
     Ended const e = run("0");
     expect_good(e);
@@ -106,20 +116,31 @@ TEST(Sampling, ARowEndsWithItsSeconds) {
 }
 
 TEST(Sampling, WhatCannotBeSampledIsRefused) {
-    expect_refused(catena({"bench", "sampling", "--methods", "rigid,bond"}), 2, "did you mean `bonds`?");
-    expect_refused(catena({"bench", "sampling", "--steps", "0.01,fast"}), 2, "`fast` is not a number (--steps)");
+    expect_refused(catena({"bench", "sampling", "--methods", "rigid,bond"}), 2,
+                   "did you mean `bonds`?");
+    expect_refused(catena({"bench", "sampling", "--steps", "0.01,fast"}), 2,
+                   "`fast` is not a number (--steps)");
     expect_refused(catena({"bench", "sampling", "--copies", "0"}), 2, "--copies");
-    expect_refused(catena({"bench", "sampling", "--duration", "1", "--every", "50"}), 2, "50 ps between samples are more than the 1 ps");
-    expect_refused(catena({"bench", "sampling", "--every", "0.001"}), 2, "are 0.1 steps of 0.01 ps (--every)");
-    expect_refused(catena({"bench", "sampling", "--every", "4e7", "--duration", "4e7"}), 2, "--every");
-    expect_refused(catena({"bench", "sampling", "--sizes", "140"}), 2, "--sizes is nothing to catena bench sampling");
-    expect_refused(catena({"bench", "openmm", "--copies", "2"}), 2, "--copies is nothing to catena bench openmm");
-    expect_refused(catena({"bench", "openmm", "scene.yaml"}), 2, "`scene.yaml` is nothing to catena bench openmm");
-    expect_refused(catena({"bench", "sampling", input("several-chains.yaml")}), 2, "leave the others out");
+    expect_refused(catena({"bench", "sampling", "--duration", "1", "--every", "50"}), 2,
+                   "50 ps between samples are more than the 1 ps");
+    expect_refused(catena({"bench", "sampling", "--every", "0.001"}), 2,
+                   "are 0.1 steps of 0.01 ps (--every)");
+    expect_refused(catena({"bench", "sampling", "--every", "4e7", "--duration", "4e7"}), 2,
+                   "--every");
+    expect_refused(catena({"bench", "sampling", "--sizes", "140"}), 2,
+                   "--sizes is nothing to catena bench sampling");
+    expect_refused(catena({"bench", "openmm", "--copies", "2"}), 2,
+                   "--copies is nothing to catena bench openmm");
+    expect_refused(catena({"bench", "openmm", "scene.yaml"}), 2,
+                   "`scene.yaml` is nothing to catena bench openmm");
+    expect_refused(catena({"bench", "sampling", input("several-chains.yaml")}), 2,
+                   "leave the others out");
     expect_refused(catena({"bench", "sampling", input("arm.yaml")}), 2, "takes a free chain");
     std::string const scene = input("alpha-synuclein.yaml");
-    expect_refused(catena({"bench", "sampling", scene, "--set", "forces.gravity=[0, 0, -1]"}), 2, "gravity");
-    expect_refused(catena({"bench", "sampling", scene, "--json", scene}), 2, "the scene would be written over");
+    expect_refused(catena({"bench", "sampling", scene, "--set", "forces.gravity=[0, 0, -1]"}), 2,
+                   "gravity");
+    expect_refused(catena({"bench", "sampling", scene, "--json", scene}), 2,
+                   "the scene would be written over");
 }
 
 }  // namespace

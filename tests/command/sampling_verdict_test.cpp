@@ -5,7 +5,8 @@
 namespace catena::command {
 namespace {
 
-SamplingRow row(SamplingMethod method, double step, double gyration, double temperature, double error = 0.001) {
+SamplingRow row(SamplingMethod method, double step, double gyration, double temperature,
+                double error = 0.001) {
     SamplingRow r;
     r.method = method;
     r.step = step;
@@ -20,8 +21,8 @@ SamplingRow row(SamplingMethod method, double step, double gyration, double temp
 constexpr auto rigid = SamplingMethod::rigid, bonds = SamplingMethod::bonds;
 
 TEST(SamplingVerdict, TheLargestUsableStepHasNoWorseOneBelowIt) {
-    std::vector<SamplingRow> const rows{row(rigid, 0.04, 3.0, 300), row(rigid, 0.01, 3.0, 300), row(rigid, 0.02, 3.006, 301.5),
-                                        row(rigid, 0.03, 3.0, 306)};
+    std::vector<SamplingRow> const rows{row(rigid, 0.04, 3.0, 300), row(rigid, 0.01, 3.0, 300),
+                                        row(rigid, 0.02, 3.006, 301.5), row(rigid, 0.03, 3.0, 306)};
     auto const all = verdicts_of(rows, 300);
     ASSERT_EQ(all.size(), 1U);
     ASSERT_NE(all[0].allowed, nullptr);
@@ -35,7 +36,9 @@ TEST(SamplingVerdict, TheLargestUsableStepHasNoWorseOneBelowIt) {
 }
 
 TEST(SamplingVerdict, ErrorsDecideWhatIsShown) {
-    std::vector<SamplingRow> const rows{row(bonds, 0.01, 3, 300), row(bonds, 0.02, 3.01, 300, 0.005), row(bonds, 0.03, 3.04, 300, 0.01)};
+    std::vector<SamplingRow> const rows{row(bonds, 0.01, 3, 300),
+                                        row(bonds, 0.02, 3.01, 300, 0.005),
+                                        row(bonds, 0.03, 3.04, 300, 0.01)};
     SamplingMethodVerdict const v = verdicts_of(rows, 300).front();
     EXPECT_EQ(v.shown, nullptr);
     EXPECT_EQ(v.allowed->step, 0.02);
@@ -45,7 +48,8 @@ TEST(SamplingVerdict, ErrorsDecideWhatIsShown) {
 }
 
 TEST(SamplingVerdict, WithoutAPlateauNothingIsShownOrRefuted) {
-    std::vector<SamplingRow> rows{row(rigid, 0.01, 3, 300), row(rigid, 0.02, 3, 300), row(rigid, 0.03, 3, 350)};
+    std::vector<SamplingRow> rows{row(rigid, 0.01, 3, 300), row(rigid, 0.02, 3, 300),
+                                  row(rigid, 0.03, 3, 350)};
     rows[1].gyration.plateau = rows[2].temperature.plateau = false;
     SamplingMethodVerdict const v = verdicts_of(rows, 300).front();
     EXPECT_EQ(v.shown, nullptr);
@@ -68,7 +72,8 @@ TEST(SamplingVerdict, RigidLinksAreWeighedAsSuch) {
 }
 
 TEST(SamplingVerdict, WhatIsUnstableIsNotUsable) {
-    std::vector<SamplingRow> rows{row(rigid, 0.01, 3, 300), row(rigid, 0.02, 3, 300), row(rigid, 0.03, 3, 300)};
+    std::vector<SamplingRow> rows{row(rigid, 0.01, 3, 300), row(rigid, 0.02, 3, 300),
+                                  row(rigid, 0.03, 3, 300)};
     rows[1].state = "unstable";
     EXPECT_EQ(verdicts_of(rows, 300).front().allowed, nullptr);
     rows[0].state = "failed";
@@ -79,7 +84,8 @@ TEST(SamplingVerdict, WhatIsUnstableIsNotUsable) {
 }
 
 TEST(SamplingVerdict, DifferencesHaveTheirSign) {
-    std::vector<SamplingRow> const rows{row(rigid, 0.01, 2.9, 300, 0.003), row(bonds, 0.01, 3, 300, 0.004), row(bonds, 0.02, 7, 300)};
+    std::vector<SamplingRow> const rows{row(rigid, 0.01, 2.9, 300, 0.003),
+                                        row(bonds, 0.01, 3, 300, 0.004), row(bonds, 0.02, 7, 300)};
     auto const found = differences_of(verdicts_of(rows, 300));
     ASSERT_EQ(found.size(), 1U);
     EXPECT_NEAR(found[0].gyration.value, -0.1, 1e-12);

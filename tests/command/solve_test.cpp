@@ -2,9 +2,9 @@
 #include <fstream>
 
 #include "oracle/oracle.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -45,8 +45,11 @@ TEST(Solve, JsonHoldsWhatTheContractNames) {
                                   "bead_forces",
                                   "joint_forces"})
         EXPECT_TRUE(json.contains(key)) << key;
-    EXPECT_EQ(json["chains"], Json::parse(R"([{"name": "arm", "bodies": 4, "kind": "revolute", "base": "fixed"}])"));
-    for (char const* const key : {"median", "min", "max", "repeat"}) EXPECT_TRUE(json["seconds"].contains(key)) << key;
+    EXPECT_EQ(
+        json["chains"],
+        Json::parse(R"([{"name": "arm", "bodies": 4, "kind": "revolute", "base": "fixed"}])"));
+    for (char const* const key : {"median", "min", "max", "repeat"})
+        EXPECT_TRUE(json["seconds"].contains(key)) << key;
     EXPECT_LE(json["residual"].get<double>(), json["residual_bound"].get<double>());
     EXPECT_TRUE(json["valid"].get<bool>());
     EXPECT_TRUE(json["joint_accelerations"][0].is_number());  // revolute
@@ -66,7 +69,8 @@ TEST(Solve, AccelerationsAreThoseOfTheOracle) {
         for (int i = 0; i < (found.is_number() ? 1 : 3); ++i) {
             auto const value = static_cast<double>(expected.qdd[k][i]);
             largest = std::max(largest, std::abs(value));
-            difference = std::max(difference, std::abs(value - (found.is_number() ? found : found[i]).get<double>()));
+            difference = std::max(
+                difference, std::abs(value - (found.is_number() ? found : found[i]).get<double>()));
         }
         for (int i = 0; i < 3; ++i) {
             auto const force = static_cast<double>(expected.constraint_force[k].force[i]),
@@ -79,18 +83,22 @@ TEST(Solve, AccelerationsAreThoseOfTheOracle) {
 }
 
 TEST(Solve, RefinementKeepsTheAnswerAndSaysWhatItTook) {
-    Json const plain = solved({input("arm.yaml")}), refined = solved({input("arm.yaml"), "--refine", "2"});
+    Json const plain = solved({input("arm.yaml")}),
+               refined = solved({input("arm.yaml"), "--refine", "2"});
     EXPECT_TRUE(plain["refinement"]["seconds_of_each"].empty());
     ASSERT_EQ(refined["refinement"]["seconds_of_each"].size(), 2U);
     EXPECT_GT(refined["refinement"]["seconds_of_each"][0].get<double>(), 0);
     EXPECT_LE(refined["residual"].get<double>(), refined["residual_bound"].get<double>());
-    EXPECT_NEAR(refined["joint_accelerations"][0].get<double>(), plain["joint_accelerations"][0].get<double>(), 1e-10);
+    EXPECT_NEAR(refined["joint_accelerations"][0].get<double>(),
+                plain["joint_accelerations"][0].get<double>(), 1e-10);
     Json const by_scene = solved({input("arm.yaml"), "--set", "solver.refine=2"});
     EXPECT_EQ(by_scene["joint_accelerations"], refined["joint_accelerations"]);
-    Json const overridden = solved({input("arm.yaml"), "--set", "solver.refine=2", "--refine", "0"});
+    Json const overridden =
+        solved({input("arm.yaml"), "--set", "solver.refine=2", "--refine", "0"});
     EXPECT_EQ(overridden["joint_accelerations"], plain["joint_accelerations"]);
     expect_refused(catena({"solve", input("arm.yaml"), "--refine", "11"}), 2, "--refine");
-    expect_refused(catena({"solve", input("random-link.yaml"), "--refine", "1"}), 2, "are not refined (solver.refine): leave it out");
+    expect_refused(catena({"solve", input("random-link.yaml"), "--refine", "1"}), 2,
+                   "are not refined (solver.refine): leave it out");
 }
 
 TEST(Solve, AFreeBaseHasTwoAccelerations) {
@@ -106,7 +114,8 @@ TEST(Solve, TensionIsPositiveWhereALinkPulls) {
     TemporaryFolder const folder;
     std::ofstream(folder / "hanging.csv") << "0,0,-1\n0,0,-2\n";
     std::ofstream(folder / "hanging.yaml")
-        << "units: si\nforces: {gravity: [0, 0, -10]}\nchains: [{base: fixed, anchor: [0, 0, 0], positions: hanging.csv, "
+        << "units: si\nforces: {gravity: [0, 0, -10]}\nchains: [{base: fixed, anchor: [0, 0, 0], "
+           "positions: hanging.csv, "
            "generator: {freely_jointed: {beads: 2, length: 1, mass: 2}}}]\n";
     for (std::string const handles : {"projected", "full"}) {
         Json const json = solved({folder / "hanging.yaml", "--handles", handles});
@@ -118,27 +127,34 @@ TEST(Solve, TensionIsPositiveWhereALinkPulls) {
     }
 }
 
-/// Of two planar chains under gravity across their plane, one held at both ends: the other's joints carry its weight all the same.
+/// Of two planar chains under gravity across their plane, one held at both ends: the other's joints
+/// carry its weight all the same.
 TEST(Solve, AChainHeldAtBothEndsLeavesTheForcesOfOthersAcrossThePlane) {
     TemporaryFolder const folder;
-    std::string const bar = "{mass: 2, com: [0.5, 0, 0], inertia: [0.1, 0.2, 0.2], joint: {type: planar, axis: [0, 0, 1]",
-                      free_chain =
-                          "  - {name: free, base: fixed, bodies: [" + bar + "}}, " + bar + ", translation: [1, 0, 0], q: 0.3}}]}\n",
+    std::string const bar =
+                          "{mass: 2, com: [0.5, 0, 0], inertia: [0.1, 0.2, 0.2], joint: {type: "
+                          "planar, axis: [0, 0, 1]",
+                      free_chain = "  - {name: free, base: fixed, bodies: [" + bar + "}}, " + bar +
+                                   ", translation: [1, 0, 0], q: 0.3}}]}\n",
                       head = "units: si\nforces: {gravity: [0, -9.81, -2]}\nchains:\n";
     std::ofstream(folder / "one.yaml") << head << free_chain;
     std::ofstream(folder / "two.yaml")
-        << head << free_chain << "  - {name: held, base: fixed, bodies: [" << bar << ", q: 1.5707963267948966}}, " << bar
+        << head << free_chain << "  - {name: held, base: fixed, bodies: [" << bar
+        << ", q: 1.5707963267948966}}, " << bar
         << ", translation: [1, 0, 0], q: -1.5707963267948966}}, " << bar
-        << ", translation: [1, 0, 0], q: -1.5707963267948966}}], tip: {joint: {type: planar, axis: [0, 0, 1], "
+        << ", translation: [1, 0, 0], q: -1.5707963267948966}}], tip: {joint: {type: planar, axis: "
+           "[0, 0, 1], "
            "translation: [1, 0, 0], anchor: [1, 0, 0]}}}\n";
-    Json const one = solved({folder / "one.yaml"})["joint_forces"], two = solved({folder / "two.yaml"})["joint_forces"];
+    Json const one = solved({folder / "one.yaml"})["joint_forces"],
+               two = solved({folder / "two.yaml"})["joint_forces"];
     for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(one[k], two[k]) << k;
     EXPECT_NEAR(two[0][5].get<double>(), 8.0, 1e-13);  // both bars' weight along the axis
     EXPECT_EQ(two[2][5].get<double>(), 0.0);           // held twice: not determined
 }
 
 TEST(Solve, KnowsTheFixmanPotential) {
-    Json const json = solved({input("freely-jointed-trimer.yaml"), "--set", "dynamics.fixman=true"});
+    Json const json =
+        solved({input("freely-jointed-trimer.yaml"), "--set", "dynamics.fixman=true"});
     EXPECT_LT(json["potential_energy"]["fixman"].get<double>(), 0);
     EXPECT_TRUE(json["rnea_residual"].is_null());  // inverse dynamics does not know it
     EXPECT_TRUE(json["valid"].get<bool>());
@@ -146,17 +162,21 @@ TEST(Solve, KnowsTheFixmanPotential) {
 
 TEST(Solve, SaysWhatTheReaderOfTheSceneChanged) {
     TemporaryFolder const folder;
-    std::ofstream(folder / "scene.yaml") << "title: caf\xE9\nchains: [{generator: {pendulum: {links: 3}}}]\n";
+    std::ofstream(folder / "scene.yaml")
+        << "title: caf\xE9\nchains: [{generator: {pendulum: {links: 3}}}]\n";
     Ended const text = catena({"solve", folder / "scene.yaml", "--repeat", "1"}),
                 json = catena({"solve", folder / "scene.yaml", "--json", "-"});
     expect_good(text);
     expect_good(json);
     ASSERT_EQ(json.json().at("notes").size(), 1U);
-    EXPECT_NE(text.out.find(json.json().at("notes")[0].get<std::string>()), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find(json.json().at("notes")[0].get<std::string>()), std::string::npos)
+        << text.out;
 }
 
 TEST(Solve, ArraysEndAtTenThousandBodies) {
-    EXPECT_EQ(solved({input("random-link.yaml"), "--set", small + "10000"})["bead_accelerations"].size(), 10000U);
+    EXPECT_EQ(
+        solved({input("random-link.yaml"), "--set", small + "10000"})["bead_accelerations"].size(),
+        10000U);
     Json const larger = solved({input("random-link.yaml"), "--set", small + "10001"});
     EXPECT_FALSE(larger.contains("joint_accelerations"));
     EXPECT_TRUE(larger["rnea_residual"].is_null());
@@ -164,9 +184,11 @@ TEST(Solve, ArraysEndAtTenThousandBodies) {
 }
 
 TEST(Solve, TextNamesTimeResidualAndVerdict) {
-    Ended const e = catena({"solve", input("random-spherical.yaml"), "--repeat", "3", "--backend", "serial"});
+    Ended const e =
+        catena({"solve", input("random-spherical.yaml"), "--repeat", "3", "--backend", "serial"});
     expect_good(e);
-    for (std::string const part : {"serial, projected handles, 1 rank", "median of 3", "matrix sweep", "bound", "(32 depth eps)\nVALID\n"})
+    for (std::string const part : {"serial, projected handles, 1 rank", "median of 3",
+                                   "matrix sweep", "bound", "(32 depth eps)\nVALID\n"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 

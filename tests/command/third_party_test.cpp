@@ -1,5 +1,6 @@
-// Catena beside Simbody, MuJoCo and Pinocchio: how far everybody's accelerations are from those with 60 digits (tests/data/reference),
-// relative to the largest one. Every backend with either kind of handles holds these chains.
+// Catena beside Simbody, MuJoCo and Pinocchio: how far everybody's accelerations are from those
+// with 60 digits (tests/data/reference), relative to the largest one. Every backend with either
+// kind of handles holds these chains.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +14,8 @@
 namespace catena::test {
 namespace {
 
-constexpr double allowed = 1e-12;  // of the largest acceleration, the project's goal for these chains; their conditions reach 4e6
+constexpr double allowed = 1e-12;  // of the largest acceleration, the project's goal for these
+                                   // chains; their conditions reach 4e6
 
 struct Deviation {
     double acceleration = 0, pin_force = 0, residual = 0, bound = 0;
@@ -22,7 +24,8 @@ struct Deviation {
 std::vector<double> flat(ReferenceChain const& r) {
     std::vector<double> values;
     for (std::size_t k = 0; k < r.qdd.size(); ++k)
-        values.insert(values.end(), r.qdd[k].data, r.qdd[k].data + (r.chain.bodies.joint[k] == JointType::revolute ? 1 : 3));
+        values.insert(values.end(), r.qdd[k].data,
+                      r.qdd[k].data + (r.chain.bodies.joint[k] == JointType::revolute ? 1 : 3));
     return values;
 }
 
@@ -44,7 +47,8 @@ Deviation deviation(ReferenceChain const& r, Backend backend, Handles handles) {
     d.acceleration = largest_difference(scene, solution, flat(r));
     std::vector<Vec3> forces;
     for (std::size_t k = 0; k < r.pin_force.size(); ++k)
-        forces.push_back({{solution.joint_force[6 * k + 3], solution.joint_force[6 * k + 4], solution.joint_force[6 * k + 5]}});
+        forces.push_back({{solution.joint_force[6 * k + 3], solution.joint_force[6 * k + 4],
+                           solution.joint_force[6 * k + 5]}});
     if (!forces.empty()) d.pin_force = relative_difference(forces, r.pin_force);
     return d;
 }
@@ -55,22 +59,26 @@ void print_others(ReferenceChain const& r) {
                                     {"pinocchio_double_aba_local", "Pinocchio, local"},
                                     {"pinocchio_double_aba_world", "Pinocchio, world"},
                                     {"pinocchio_double_relative_to_largest", "Pinocchio"}})
-        if (auto const found = r.agreement.find(key); found != r.agreement.end()) std::printf("  %-28s %10.1e\n", name, found->second);
+        if (auto const found = r.agreement.find(key); found != r.agreement.end())
+            std::printf("  %-28s %10.1e\n", name, found->second);
 }
 
 TEST(ThirdParty, AccelerationsAndPinForces) {
     bool const root = testing::world().rank() == 0;
     for (ReferenceChain const& r : reference_chains()) {
         if (root)
-            std::printf("%s: %zu bodies, condition %.1e\n  %-28s %10s %10s %10s\n", r.name.c_str(), r.chain.size(), r.condition, "", "q''",
-                        "pin force", "residual");
+            std::printf("%s: %zu bodies, condition %.1e\n  %-28s %10s %10s %10s\n", r.name.c_str(),
+                        r.chain.size(), r.condition, "", "q''", "pin force", "residual");
         for (Backend const backend : cpu_backends())
             for (Handles const handles : {Handles::projected, Handles::full}) {
                 Deviation const d = deviation(r, backend, handles);
-                std::string const name = std::string("Catena ") + name_of(backend) + " " + name_of(handles);
+                std::string const name =
+                    std::string("Catena ") + name_of(backend) + " " + name_of(handles);
                 if (root)
-                    std::printf("  %-28s %10.1e %10s %10.1e\n", name.c_str(), d.acceleration,
-                                r.pin_force.empty() ? "" : fmt::format("{:.1e}", d.pin_force).c_str(), d.residual);
+                    std::printf(
+                        "  %-28s %10.1e %10s %10.1e\n", name.c_str(), d.acceleration,
+                        r.pin_force.empty() ? "" : fmt::format("{:.1e}", d.pin_force).c_str(),
+                        d.residual);
                 EXPECT_LE(d.residual, d.bound) << r.name << ", " << name;
                 EXPECT_LE(d.acceleration, allowed) << r.name << ", " << name;
                 EXPECT_LE(d.pin_force, allowed) << r.name << ", " << name;

@@ -25,14 +25,18 @@ struct Kind {
     RandomJoints joints;
 };
 Kind constexpr kinds[] = {
-    {"revolute", RandomJoints::revolute},   {"spherical", RandomJoints::spherical},      {"universal", RandomJoints::universal},
-    {"prismatic", RandomJoints::prismatic}, {"helical", RandomJoints::helical},          {"planar", RandomJoints::planar},
-    {"weld mixture", RandomJoints::weld},   {"revolute+spherical", RandomJoints::mixed}, {"every kind", RandomJoints::any}};
+    {"revolute", RandomJoints::revolute},   {"spherical", RandomJoints::spherical},
+    {"universal", RandomJoints::universal}, {"prismatic", RandomJoints::prismatic},
+    {"helical", RandomJoints::helical},     {"planar", RandomJoints::planar},
+    {"weld mixture", RandomJoints::weld},   {"revolute+spherical", RandomJoints::mixed},
+    {"every kind", RandomJoints::any}};
 std::size_t constexpr kind_count = std::size(kinds);
 JointType constexpr tips[] = {JointType::spherical, JointType::revolute,  JointType::universal,
                               JointType::weld,      JointType::prismatic, JointType::helical};
 
-std::size_t pick(Random& random, std::size_t count) { return static_cast<std::size_t>(random.uniform() * static_cast<double>(count)); }
+std::size_t pick(Random& random, std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+}
 
 /// Coordinates of the chain that move freely: turns and shifts.
 struct Freedom {
@@ -42,8 +46,9 @@ Freedom freedom(ChainSpec const& chain) {
     Freedom f;
     BodyArrays const& b = chain.bodies;
     for (std::size_t k = 0; k < b.size(); ++k) {
-        bool const driven =
-            std::any_of(b.driven.begin(), b.driven.end(), [&](DrivenJoint const& d) { return d.body == static_cast<std::int64_t>(k); });
+        bool const driven = std::any_of(
+            b.driven.begin(), b.driven.end(),
+            [&](DrivenJoint const& d) { return d.body == static_cast<std::int64_t>(k); });
         int const coordinates = driven                               ? 0
                                 : b.joint[k] == JointType::weld      ? 0
                                 : b.joint[k] == JointType::spherical ? 3
@@ -63,20 +68,26 @@ bool in_a_plane(ChainSpec const& chain) {
     if (b.size() == 0 || chain.base == Base::free) return false;
     Vec3 const z{{0, 0, 1}};
     for (std::size_t k = 0; k < b.size(); ++k)
-        if (b.joint[k] != JointType::revolute || norm(cross(b.axis[k], z)) > 0 || norm(b.rotation[k] * z - z) > 0) return false;
+        if (b.joint[k] != JointType::revolute || norm(cross(b.axis[k], z)) > 0 ||
+            norm(b.rotation[k] * z - z) > 0)
+            return false;
     return true;
 }
 
-/// Whether the chain can follow any motion of its tip: else the tip may hold it more than once, and its forces are not unique.
+/// Whether the chain can follow any motion of its tip: else the tip may hold it more than once, and
+/// its forces are not unique.
 bool tip_fits(CampaignCase const& c) {
     ChainSpec const& chain = c.chain;
     if (chain.tip == Tip::free || chain.bodies.size() == 0) return true;
     if (in_a_plane(chain)) {
-        bool const pin = chain.tip_joint.type == JointType::spherical || chain.tip_joint.type == JointType::revolute;
-        return pin && chain.size() >= 3 && chain.bodies.driven.empty() && c.handles == Handles::projected;
+        bool const pin = chain.tip_joint.type == JointType::spherical ||
+                         chain.tip_joint.type == JointType::revolute;
+        return pin && chain.size() >= 3 && chain.bodies.driven.empty() &&
+               c.handles == Handles::projected;
     }
     Freedom const f = freedom(chain);
-    bool const shifts_alone = f.turns == 0 && f.all >= 3 && chain.tip_joint.type == JointType::spherical;
+    bool const shifts_alone =
+        f.turns == 0 && f.all >= 3 && chain.tip_joint.type == JointType::spherical;
     return (f.turns >= 3 && f.all >= 7) || shifts_alone;
 }
 
@@ -87,10 +98,13 @@ struct Answer {
 
 template <class Scalar>
 Answer answer_of(oracle::OracleResult<Scalar> const& r) {
-    auto const wide = [](std::vector<Vector<Scalar, 3>> const& values) { return converted<long double>(values); };
+    auto const wide = [](std::vector<Vector<Scalar, 3>> const& values) {
+        return converted<long double>(values);
+    };
     Answer a{{wide(r.com_acceleration)}, {}};
     if (!r.alpha.empty()) a.accelerations.push_back(wide(r.alpha));
-    if (!r.constraint_force.empty()) a.accelerations.insert(a.accelerations.end(), {wide(r.qdd), wide({r.base_acceleration})});
+    if (!r.constraint_force.empty())
+        a.accelerations.insert(a.accelerations.end(), {wide(r.qdd), wide({r.base_acceleration})});
     std::vector<Vector<Scalar, 3>> torque, force;
     for (auto const& f : r.constraint_force) torque.push_back(f.torque), force.push_back(f.force);
     if (!force.empty()) a.forces = {wide(torque), wide(force)};
@@ -111,10 +125,13 @@ Answer answer_of(ChainSystem& system, ChainSpec const& chain) {
         return a;
     }
     std::vector<Vec3> torque, force;
-    for (auto const& f : found.joint_force) torque.push_back({{f[0], f[1], f[2]}}), force.push_back({{f[3], f[4], f[5]}});
-    std::vector<V> const base = converted<long double>(std::vector<Vec3>{found.base_acceleration[0]});
+    for (auto const& f : found.joint_force)
+        torque.push_back({{f[0], f[1], f[2]}}), force.push_back({{f[3], f[4], f[5]}});
+    std::vector<V> const base =
+        converted<long double>(std::vector<Vec3>{found.base_acceleration[0]});
     a.accelerations.insert(a.accelerations.end(),
-                           {converted<long double>(found.alpha), converted<long double>(found.joint_acceleration), base});
+                           {converted<long double>(found.alpha),
+                            converted<long double>(found.joint_acceleration), base});
     a.forces = {converted<long double>(torque), converted<long double>(force)};
     return a;
 }
@@ -126,14 +143,17 @@ long double largest(std::vector<V> const& values) {
     return most;
 }
 
-/// Largest difference, each quantity relative to its largest component; where that is below a thousandth of
-/// the largest of all, to the latter, and where all of them are zero (nothing but welds), to one of these chains' units.
-double difference(std::vector<std::vector<V>> const& found, std::vector<std::vector<V>> const& expected) {
+/// Largest difference, each quantity relative to its largest component; where that is below a
+/// thousandth of the largest of all, to the latter, and where all of them are zero (nothing but
+/// welds), to one of these chains' units.
+double difference(std::vector<std::vector<V>> const& found,
+                  std::vector<std::vector<V>> const& expected) {
     long double overall = 1, worst = 0;
     for (auto const& quantity : expected) overall = std::max(overall, largest(quantity));
     for (std::size_t i = 0; i < expected.size(); ++i) {
         std::vector<V> error;
-        for (std::size_t k = 0; k < expected[i].size(); ++k) error.push_back(found[i][k] - expected[i][k]);
+        for (std::size_t k = 0; k < expected[i].size(); ++k)
+            error.push_back(found[i][k] - expected[i][k]);
         long double const own = largest(expected[i]);
         long double const relative = largest(error) / (own > 1e-3L * overall ? own : overall);
         if (!(relative <= worst)) worst = relative;  // a NaN is the worst
@@ -141,23 +161,26 @@ double difference(std::vector<std::vector<V>> const& found, std::vector<std::vec
     return static_cast<double>(worst);
 }
 
-/// Largest difference of accelerations (or, `forces`, of constraint forces) per size of three random changes of the chain and its
-/// equations; one random direction may happen to matter little.
-double growth_of(CampaignCase const& c, oracle::OracleResult<long double> const& exact, bool forces) {
+/// Largest difference of accelerations (or, `forces`, of constraint forces) per size of three
+/// random changes of the chain and its equations; one random direction may happen to matter little.
+double growth_of(CampaignCase const& c, oracle::OracleResult<long double> const& exact,
+                 bool forces) {
     double constexpr size = 0x1p-40;
     Answer const answer = answer_of(exact);
     double growth = 1;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Nudged const n = nudged(seed, c.chain, c.loads, exact, size);
         Answer const moved = answer_of(oracle::aba<long double>(n.chain, n.loads));
-        double const change = forces ? difference(moved.forces, answer.forces) : difference(moved.accelerations, answer.accelerations);
+        double const change = forces ? difference(moved.forces, answer.forces)
+                                     : difference(moved.accelerations, answer.accelerations);
         growth = std::max(growth, change / size);
     }
     return growth;
 }
 
 /// 1e-11, where that is not kept the solver's own residual bound times the growth.
-double bound_of(CampaignCase const& c, oracle::OracleResult<long double> const& exact, double residual_bound, double error, bool forces) {
+double bound_of(CampaignCase const& c, oracle::OracleResult<long double> const& exact,
+                double residual_bound, double error, bool forces) {
     return error <= least ? least : std::max(least, residual_bound * growth_of(c, exact, forces));
 }
 
@@ -169,14 +192,16 @@ std::vector<Backend> const& backends() {
 
 struct Row {
     int seeds = 0, tips = 0, dense = 0, above_least = 0;
-    double acceleration = 0, force = 0, over_bound = 0, residual_over_bound = 0, oracles = 0, in_double = 0;
+    double acceleration = 0, force = 0, over_bound = 0, residual_over_bound = 0, oracles = 0,
+           in_double = 0;
     void add(CampaignCase const& c, CampaignErrors const& e) {
         ++seeds;
         tips += c.chain.tip == Tip::jointed;
         dense += c.chain.size() <= 12;
         acceleration = std::max(acceleration, e.acceleration);
         force = std::max(force, e.force);
-        over_bound = std::max({over_bound, e.acceleration / e.acceleration_bound, e.force / e.force_bound});
+        over_bound =
+            std::max({over_bound, e.acceleration / e.acceleration_bound, e.force / e.force_bound});
         above_least += e.acceleration > least || e.force > least;
         residual_over_bound = std::max(residual_over_bound, e.residual / e.residual_bound);
         oracles = std::max(oracles, e.oracles);
@@ -185,11 +210,14 @@ struct Row {
 };
 
 void print(std::map<std::string, Row> const& table) {
-    fmt::print("{:<20}{:>7}{:>6}{:>7}{:>11}{:>11}{:>13}{:>13}{:>11}{:>15}{:>12}\n", "kind", "seeds", "tips", "dense", "q'' error",
-               "force err.", "above 1e-11", "error/bound", "res./bound", "aba in double", "aba - dense");
+    fmt::print("{:<20}{:>7}{:>6}{:>7}{:>11}{:>11}{:>13}{:>13}{:>11}{:>15}{:>12}\n", "kind", "seeds",
+               "tips", "dense", "q'' error", "force err.", "above 1e-11", "error/bound",
+               "res./bound", "aba in double", "aba - dense");
     for (auto const& [kind, r] : table)
-        fmt::print("{:<20}{:>7}{:>6}{:>7}{:>11.1e}{:>11.1e}{:>13}{:>13.3f}{:>11.3f}{:>15.1e}{:>12.1e}\n", kind, r.seeds, r.tips, r.dense,
-                   r.acceleration, r.force, r.above_least, r.over_bound, r.residual_over_bound, r.in_double, r.oracles);
+        fmt::print(
+            "{:<20}{:>7}{:>6}{:>7}{:>11.1e}{:>11.1e}{:>13}{:>13.3f}{:>11.3f}{:>15.1e}{:>12.1e}\n",
+            kind, r.seeds, r.tips, r.dense, r.acceleration, r.force, r.above_least, r.over_bound,
+            r.residual_over_bound, r.in_double, r.oracles);
     std::fflush(stdout);
 }
 
@@ -198,7 +226,8 @@ std::string add_to(Row& row, CampaignCase const& c) {
     try {
         CampaignErrors const e = campaign_errors(c, c.chain);
         row.add(c, e);
-        if (e.acceleration > least || e.force > least) fmt::print("seed {}, {}, {} bodies: {}\n", c.seed, c.kind, c.chain.size(), e.text());
+        if (e.acceleration > least || e.force > least)
+            fmt::print("seed {}, {}, {} bodies: {}\n", c.seed, c.kind, c.chain.size(), e.text());
         return e.good() ? "" : e.text();
     } catch (std::exception const& error) {
         return error.what();
@@ -209,7 +238,8 @@ std::string add_to(Row& row, CampaignCase const& c) {
 
 std::string CampaignErrors::text() const {
     return fmt::format(
-        "accelerations {:.3g} (bound {:.3g}), forces {:.3g} (bound {:.3g}), residual {:.3g} (bound {:.3g}), articulated bodies in double "
+        "accelerations {:.3g} (bound {:.3g}), forces {:.3g} (bound {:.3g}), residual {:.3g} (bound "
+        "{:.3g}), articulated bodies in double "
         "{:.3g}",
         acceleration, acceleration_bound, force, force_bound, residual, residual_bound, in_double);
 }
@@ -228,7 +258,8 @@ CampaignCase campaign_case(std::uint64_t seed) {
         bool const linked = kind > kind_count;
         Tip const end = tip ? Tip::jointed : Tip::free;
         c.kind = linked ? "bodies on links" : "beads on links";
-        c.chain = linked ? random_linked_chain(seed, n, base, end) : random_bead_chain(seed, n, base, end);
+        c.chain = linked ? random_linked_chain(seed, n, base, end)
+                         : random_bead_chain(seed, n, base, end);
         return c;
     }
     c.kind = kinds[kind].name;
@@ -272,23 +303,29 @@ CampaignErrors campaign_errors(CampaignCase const& c, ChainSpec const& solved) {
     e.force = difference(found.forces, expected.forces);
     if (c.chain.size() <= 12) {
         Answer const dense = answer_of(oracle::dense<long double>(c.chain, c.loads));
-        e.acceleration = std::max(e.acceleration, difference(found.accelerations, dense.accelerations));
+        e.acceleration =
+            std::max(e.acceleration, difference(found.accelerations, dense.accelerations));
         e.force = std::max(e.force, difference(found.forces, dense.forces));
         e.oracles = difference(dense.accelerations, expected.accelerations);
     }
     Answer const in_double = answer_of(oracle::aba<double>(c.chain, c.loads));
-    e.in_double = std::max(difference(in_double.accelerations, expected.accelerations), difference(in_double.forces, expected.forces));
+    e.in_double = std::max(difference(in_double.accelerations, expected.accelerations),
+                           difference(in_double.forces, expected.forces));
     e.residual = system.residual();
     e.residual_bound = system.residual_bound();
     bool const held_twice =
-        c.chain.tip == Tip::jointed && in_a_plane(c.chain);  // forces are not unique, nor is there a growth out of plane
-    if (held_twice) e.force = 0, e.in_double = difference(in_double.accelerations, expected.accelerations);
-    e.acceleration_bound = held_twice ? least : bound_of(c, exact, e.residual_bound, e.acceleration, false);
+        c.chain.tip == Tip::jointed &&
+        in_a_plane(c.chain);  // forces are not unique, nor is there a growth out of plane
+    if (held_twice)
+        e.force = 0, e.in_double = difference(in_double.accelerations, expected.accelerations);
+    e.acceleration_bound =
+        held_twice ? least : bound_of(c, exact, e.residual_bound, e.acceleration, false);
     e.force_bound = bound_of(c, exact, e.residual_bound, e.force, true);
     return e;
 }
 
-Shrunk smallest_failing(CampaignCase const& c, std::function<bool(CampaignCase const&)> const& good) {
+Shrunk smallest_failing(CampaignCase const& c,
+                        std::function<bool(CampaignCase const&)> const& good) {
     return shrink(c.chain, [&](ChainSpec const& chain) {
         CampaignCase smaller = c;
         smaller.chain = chain;
@@ -303,13 +340,17 @@ void run_campaign(std::uint64_t first, std::uint64_t last) {
         CampaignCase const c = campaign_case(seed);
         std::string const problem = add_to(table[c.kind], c);
         if (problem.empty()) continue;
-        failures += fmt::format("seed {}, {}, {} bodies, backend {}, handles {}: {}\n", seed, c.kind, c.chain.size(), name_of(c.backend),
-                                name_of(c.handles), problem);
-        auto const good = [](CampaignCase const& smaller) { return campaign_errors(smaller, smaller.chain).good(); };
+        failures +=
+            fmt::format("seed {}, {}, {} bodies, backend {}, handles {}: {}\n", seed, c.kind,
+                        c.chain.size(), name_of(c.backend), name_of(c.handles), problem);
+        auto const good = [](CampaignCase const& smaller) {
+            return campaign_errors(smaller, smaller.chain).good();
+        };
         if (smallest.empty()) smallest = smallest_failing(c, good).description;
     }
     print(table);
-    EXPECT_TRUE(failures.empty()) << failures << "the smallest chain found for the first of them:\n" << smallest;
+    EXPECT_TRUE(failures.empty()) << failures << "the smallest chain found for the first of them:\n"
+                                  << smallest;
 }
 
 }  // namespace catena::test

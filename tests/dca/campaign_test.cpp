@@ -11,9 +11,11 @@ namespace {
 
 TEST(Campaign, ChainsOf2000SeedsAgreeWithTheOracles) { run_campaign(1, 2000); }
 
-/// What hangs on three slides at right angles falls freely: no force is left there, and the residual must not ask for digits of none.
+/// What hangs on three slides at right angles falls freely: no force is left there, and the
+/// residual must not ask for digits of none.
 TEST(Campaign, BodiesThatFallFreely) {
-    RandomChainOptions const slides{.bodies = 12, .joints = RandomJoints::prismatic, .moving = false, .loaded = false};
+    RandomChainOptions const slides{
+        .bodies = 12, .joints = RandomJoints::prismatic, .moving = false, .loaded = false};
     CampaignCase c;
     c.chain = random_chain(1, slides);
     c.loads.gravity = {{1, 2, -9.81}};
@@ -45,7 +47,8 @@ TEST(Campaign, AWrongAnswerIsShrunk) {
     ASSERT_FALSE(good(c));
     Shrunk const found = smallest_failing(c, good);
     EXPECT_LE(found.chain.size(), 2U) << found.description;
-    EXPECT_TRUE(std::count(found.chain.bodies.mass.begin(), found.chain.bodies.mass.end(), mass)) << found.description;
+    EXPECT_TRUE(std::count(found.chain.bodies.mass.begin(), found.chain.bodies.mass.end(), mass))
+        << found.description;
 }
 
 }  // namespace

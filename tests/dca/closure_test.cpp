@@ -31,7 +31,9 @@ Vector<double, K> diagonal(EigenMatrix const& m) {
     for (int i = 0; i < K; ++i) d[i] = m(i, i);
     return d;
 }
-EigenMatrix as_eigen(Matrix<double, K, K> const& m) { return Eigen::Map<Eigen::Matrix<double, K, K, Eigen::RowMajor> const>(m.data); }
+EigenMatrix as_eigen(Matrix<double, K, K> const& m) {
+    return Eigen::Map<Eigen::Matrix<double, K, K, Eigen::RowMajor> const>(m.data);
+}
 
 TEST(Closure, spectra_are_those_of_another_solver) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -40,8 +42,10 @@ TEST(Closure, spectra_are_those_of_another_solver) {
         m = scale * m * scale;
         auto const found = dca::spectrum_of(symmetric(m));
         EigenMatrix const v = as_eigen(found.vectors);
-        Eigen::Matrix<double, K, 1> values = Eigen::Map<Eigen::Matrix<double, K, 1> const>(found.values.data);
-        EXPECT_LE((v * values.asDiagonal() * v.transpose() - m).norm(), 32 * 0x1p-52 * m.norm()) << seed;
+        Eigen::Matrix<double, K, 1> values =
+            Eigen::Map<Eigen::Matrix<double, K, 1> const>(found.values.data);
+        EXPECT_LE((v * values.asDiagonal() * v.transpose() - m).norm(), 32 * 0x1p-52 * m.norm())
+            << seed;
         EXPECT_LE((v.transpose() * v - EigenMatrix::Identity()).norm(), 32 * 0x1p-52) << seed;
         std::sort(values.data(), values.data() + K);
         Eigen::SelfAdjointEigenSolver<EigenMatrix> const exact(m);
@@ -66,16 +70,19 @@ TEST(Closure, the_least_forces_are_those_of_the_pseudo_inverse) {
             EigenMatrix const unscaled = z.diagonal().cwiseSqrt().asDiagonal();
             EigenMatrix const error = unscaled * (as_eigen(joint.inboard) - expected) * unscaled;
             double const condition = cod.pseudoInverse().norm();
-            EXPECT_LE(error.norm(), 64 * 0x1p-52 * condition * condition) << seed << ", rank " << rank << " of " << restricted;
+            EXPECT_LE(error.norm(), 64 * 0x1p-52 * condition * condition)
+                << seed << ", rank " << rank << " of " << restricted;
         }
 }
 
 TEST(Closure, regular_joints_are_factorised_as_all_others) {
-    EigenMatrix const z = random_matrix(3, K) + EigenMatrix(random_matrix(3, K).diagonal().asDiagonal());
+    EigenMatrix const z =
+        random_matrix(3, K) + EigenMatrix(random_matrix(3, K).diagonal().asDiagonal());
     auto const joint = dca::closing_joint(symmetric(z), diagonal(z), K);
     EXPECT_FALSE(dca::has_least_norm(joint));
     auto const factor = dca::factorize(symmetric(z), K);
-    for (int i = 0; i < Symmetric<double, K>::size; ++i) EXPECT_EQ(joint.factor.data[i], factor.data[i]);
+    for (int i = 0; i < Symmetric<double, K>::size; ++i)
+        EXPECT_EQ(joint.factor.data[i], factor.data[i]);
 }
 
 TEST(Closure, indefinite_matrices_are_not_taken_for_singular_ones) {

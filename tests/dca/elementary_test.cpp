@@ -13,7 +13,8 @@ namespace {
 double units(double value, long double exact) {
     int exponent = 0;
     std::frexp(static_cast<double>(exact), &exponent);
-    return static_cast<double>(std::fabs(static_cast<long double>(value) - exact)) / std::ldexp(1.0, exponent - 53);
+    return static_cast<double>(std::fabs(static_cast<long double>(value) - exact)) /
+           std::ldexp(1.0, exponent - 53);
 }
 
 struct Worst {
@@ -58,7 +59,8 @@ TEST(Elementary, WhatIsKnownIsExact) {
 TEST(Elementary, TheAngleIsThatOfTheLibrary) {
     double worst = 0;
     auto const look = [&](double s, double w) {
-        worst = std::max(worst, units(angle_of(s, w), std::atan2(static_cast<long double>(s), static_cast<long double>(w))));
+        worst = std::max(worst, units(angle_of(s, w), std::atan2(static_cast<long double>(s),
+                                                                 static_cast<long double>(w))));
     };
     for (int i = 1; i <= 300000; ++i) {
         CosSin const a = cos_sin(i * 1.5707963 / 300000);

@@ -14,12 +14,15 @@ namespace {
 TEST(GpuOrder, EveryNumberHasItsPlaceAndTheHaloComesBefore) {
     for (int const columns : {1, 3, 27})
         for (std::int64_t const bodies : {1, 16, 511, 512, 513, 1500}) {
-            std::int64_t const pitch = gpu_order::pitch(columns), end = gpu_order::padded(bodies) * columns;
+            std::int64_t const pitch = gpu_order::pitch(columns),
+                               end = gpu_order::padded(bodies) * columns;
             std::set<std::int64_t> taken;
             for (std::int64_t k = -1; k < bodies; ++k)
                 for (int i = 0; i < columns; ++i) {
-                    std::int64_t const place = gpu_order::first_number(k, pitch) + i * gpu_order::lanes;
-                    EXPECT_TRUE(k < 0 ? place >= -pitch && place < 0 : place >= 0 && place < end) << k << " " << i;
+                    std::int64_t const place =
+                        gpu_order::first_number(k, pitch) + i * gpu_order::lanes;
+                    EXPECT_TRUE(k < 0 ? place >= -pitch && place < 0 : place >= 0 && place < end)
+                        << k << " " << i;
                     EXPECT_TRUE(taken.insert(place).second) << k << " " << i;
                 }
         }
@@ -63,7 +66,9 @@ TEST(Field, SomeComponentsAreAFieldOfTheirOwn) {
 /// The last one, whose tip nobody holds, is no exception.
 TEST(Field, AlikeBodiesOfAChainHaveAlikeHandles) {
     auto const alone = serial_communicator();
-    Scene const scene = parse_scene("chains: [{base: fixed, generator: {pendulum: {links: 9, mass: 2, length: 3}}}]", "alike.yaml");
+    Scene const scene = parse_scene(
+        "chains: [{base: fixed, generator: {pendulum: {links: 9, mass: 2, length: 3}}}]",
+        "alike.yaml");
     ChainSystem const system(scene, Axes::joint, *alone);
     ChainGroup const& group = *system.groups().front();
     EXPECT_TRUE(group.inverse_mass.alike() && group.inverse_inertia.alike());

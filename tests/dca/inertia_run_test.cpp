@@ -1,4 +1,5 @@
-// Runs of hinged bodies joined one to the other are what their inertias make of them; and these satisfy all bodies' equations.
+// Runs of revolute bodies joined one to the other are what their inertias make of them; and these
+// satisfy all bodies' equations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,44 +12,57 @@
 namespace catena::dca {
 namespace {
 
-using Body = HingedBody<double>;
+using Body = ArticulatedBody<double>;
 
 /// In memory of its own.
-struct KeptHinges {
-    std::vector<ReleasedHinge<double>> hinges;
+struct KeptRevolutes {
+    std::vector<ReleasedRevolute<double>> revolutes;
     std::vector<BodyInRun<double>> bodies;
     std::vector<BodyAcceleration<double>> swings;
     RunsEnd<double> at_end;
     Mat3 last_axes;
 
-    explicit KeptHinges(std::size_t n) : hinges(n), bodies(n), swings(n) {}
-    void put(int i, ReleasedHinge<double> const& hinge) { hinges[static_cast<std::size_t>(i)] = hinge; }
-    void put(int i, ReleasedHinge<double> const& hinge, BodyInRun<double> const& body, BodyAcceleration<double> const& swing) {
-        put(i, hinge);
+    explicit KeptRevolutes(std::size_t n) : revolutes(n), bodies(n), swings(n) {}
+    void put(int i, ReleasedRevolute<double> const& revolute) {
+        revolutes[static_cast<std::size_t>(i)] = revolute;
+    }
+    void put(int i, ReleasedRevolute<double> const& revolute, BodyInRun<double> const& body,
+             BodyAcceleration<double> const& swing) {
+        put(i, revolute);
         bodies[static_cast<std::size_t>(i)] = body;
         swings[static_cast<std::size_t>(i)] = swing;
     }
     void put(RunsEnd<double> const& end) { at_end = end; }
     void put_axes(Mat3 const& axes) { last_axes = axes; }
-    ReleasedHinge<double> const& hinge(int i) const { return hinges[static_cast<std::size_t>(i)]; }
+    ReleasedRevolute<double> const& revolute(int i) const {
+        return revolutes[static_cast<std::size_t>(i)];
+    }
     BodyInRun<double> const& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
-    BodyAcceleration<double> const& swing(int i) const { return swings[static_cast<std::size_t>(i)]; }
+    BodyAcceleration<double> const& swing(int i) const {
+        return swings[static_cast<std::size_t>(i)];
+    }
     RunsEnd<double> const& end() const { return at_end; }
     Mat3 const& axes() const { return last_axes; }
 };
 template <class Torque>
-BiasedSegment<double, 5> climb(std::vector<Body> const& b, Torque const& torque, KeptHinges& kept) {
+BiasedSegment<double, 5> climb(std::vector<Body> const& b, Torque const& torque,
+                               KeptRevolutes& kept) {
     auto const body = [&](int i) { return b[static_cast<std::size_t>(i)]; };
-    return climb_hinges<double>(static_cast<int>(b.size()), BodiesOfRun<double, decltype(body)>(body), torque, kept);
+    return climb_revolutes<double>(static_cast<int>(b.size()),
+                                   BodiesOfRun<double, decltype(body)>(body), torque, kept);
 }
-BiasedSegment<double, 5> climb(std::vector<Body> const& b, KeptHinges& kept) {
+BiasedSegment<double, 5> climb(std::vector<Body> const& b, KeptRevolutes& kept) {
     return climb(b, [](int) { return Undriven{}; }, kept);
 }
 
 struct Draw {
     std::mt19937_64 engine;
-    double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
-    Vec3 vector(double most) { return {{(*this)(-most, most), (*this)(-most, most), (*this)(-most, most)}}; }
+    double operator()(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
+    Vec3 vector(double most) {
+        return {{(*this)(-most, most), (*this)(-most, most), (*this)(-most, most)}};
+    }
     Mat3 axes() {
         Vec3 const v = vector(1);
         return to_matrix(normalized(Quat{(*this)(-1, 1), v[0], v[1], v[2]}));
@@ -127,7 +141,7 @@ TEST_P(InertiaRuns, AreTheSegmentsOfTheirBodies) {
             append(joined.matrix, next.matrix, 5, joint);
             append(joined.bias, next.bias, joint, offset);
         }
-        KeptHinges kept(b.size());
+        KeptRevolutes kept(b.size());
         auto const [matrix, bias] = climb(b, kept);
         Difference z11, z22, z12, biases;
         for (int i = 0; i < 5; ++i) {
@@ -148,7 +162,8 @@ TEST_P(InertiaRuns, AreTheSegmentsOfTheirBodies) {
     }
 }
 
-/// They satisfy every body's equations and every joint's, the hinges apart; at the ends they are what the segment says.
+/// They satisfy every body's equations and every joint's, the revolute joints apart; at the ends
+/// they are what the segment says.
 TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
     int const n = GetParam();
     for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -156,30 +171,38 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
         Draw draw{std::mt19937_64(seed + 100)};
         Vector<double, 5> first, next;
         for (int i = 0; i < 5; ++i) first[i] = draw(-2, 2), next[i] = draw(-2, 2);
-        KeptHinges kept(b.size());
+        KeptRevolutes kept(b.size());
         climb(b, kept);
         std::vector<BodyAcceleration<double>> a(b.size());
-        std::vector<double> about_hinge(b.size());
+        std::vector<double> about_revolute(b.size());
         Vector<double, 5> inboard = next;
-        descend_hinges<double>(
-            n, true, [&](int i) -> HingedFrame<double> { return b[static_cast<std::size_t>(i)]; }, kept, first, next,
-            [&](int i, HingedFrame<double> const&, BodyAcceleration<double> const& of_body) {
+        descend_revolutes<double>(
+            n, true, [&](int i) -> RevoluteFrame<double> { return b[static_cast<std::size_t>(i)]; },
+            kept, first, next,
+            [&](int i, RevoluteFrame<double> const&, BodyAcceleration<double> const& of_body) {
                 a[static_cast<std::size_t>(i)] = of_body;
                 inboard = inboard_force(b[static_cast<std::size_t>(i)], of_body, inboard);
             },
-            [](int, BodyAcceleration<double>&) {}, [&](int i, double of_hinge) { about_hinge[static_cast<std::size_t>(i)] = of_hinge; });
+            [](int, BodyAcceleration<double>&) {},
+            [&](int i, double of_revolute) {
+                about_revolute[static_cast<std::size_t>(i)] = of_revolute;
+            });
 
         Difference begins;
         for (int i = 0; i < 5; ++i) begins.add(inboard[i], first[i]);
         EXPECT_LE(begins.value(), tolerance(n)) << seed;
-        Vec3 torque = moment(b[0].handle1(), first), force = push(b[0].handle1(), first);  // by the inboard joint, about the body's centre
-        Difference joints, hinges, last;
+        Vec3 torque = moment(b[0].handle1(), first),
+             force = push(b[0].handle1(), first);  // by the inboard joint, about the body's centre
+        Difference joints, revolutes, last;
         double largest = 0, off = 0;
         for (std::size_t k = 0; k < b.size(); ++k) {
-            largest = std::max({largest, norm(torque), norm(force), norm(b[k].torque), norm(b[k].force)});
+            largest =
+                std::max({largest, norm(torque), norm(force), norm(b[k].torque), norm(b[k].force)});
             Vec3 const force_out = (force + b[k].force) - b[k].mass * a[k].a;
-            Vec3 const torque_out = (torque + b[k].torque) - b[k].inertia * a[k].alpha - cross(b[k].r2, force_out);  // about handle 2
-            Vec3 const along_force = transposed_times(b[k].e2, force_out), along_torque = transposed_times(b[k].e2, torque_out);
+            Vec3 const torque_out = (torque + b[k].torque) - b[k].inertia * a[k].alpha -
+                                    cross(b[k].r2, force_out);  // about handle 2
+            Vec3 const along_force = transposed_times(b[k].e2, force_out),
+                       along_torque = transposed_times(b[k].e2, torque_out);
             if (k + 1 == b.size()) {
                 for (int i = 0; i < 3; ++i) last.add(along_force[i], next[i]);
                 for (int i = 0; i < 2; ++i) last.add(along_torque[i], next[3 + i]);
@@ -188,21 +211,24 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
                 force = b[k + 1].e1 * along_force;
                 torque = b[k + 1].e1 * along_torque + cross(b[k + 1].r1, force);
                 auto const in = along(b[k].handle2(), a[k].alpha, a[k].a + b[k].inward2);
-                auto const out = along(b[k + 1].handle1(), a[k + 1].alpha, a[k + 1].a + b[k + 1].inward1) + b[k + 1].bias;
+                auto const out =
+                    along(b[k + 1].handle1(), a[k + 1].alpha, a[k + 1].a + b[k + 1].inward1) +
+                    b[k + 1].bias;
                 for (int i = 0; i < 5; ++i) joints.add(in[i], out[i]);
-                double const before = dot(b[k].e2.column(2), a[k].alpha), after = dot(b[k + 1].e1.column(2), a[k + 1].alpha);
-                hinges.add(before + about_hinge[k + 1], after);
+                double const before = dot(b[k].e2.column(2), a[k].alpha),
+                             after = dot(b[k + 1].e1.column(2), a[k + 1].alpha);
+                revolutes.add(before + about_revolute[k + 1], after);
             }
         }
         EXPECT_LE(joints.value(), tolerance(n)) << seed;
-        EXPECT_LE(hinges.value(), tolerance(n)) << seed;
-        EXPECT_LE(off / largest, tolerance(n)) << seed;  // no torque about a hinge
+        EXPECT_LE(revolutes.value(), tolerance(n)) << seed;
+        EXPECT_LE(off / largest, tolerance(n)) << seed;  // no torque about a revolute joint
         EXPECT_LE(last.value(), tolerance(n) * std::max(1.0, largest)) << seed;
     }
 }
 
-/// A hinge's torque is what its two bodies' torques would say.
-TEST_P(InertiaRuns, TakeHingesTorques) {
+/// A revolute joint's torque is what its two bodies' torques would say.
+TEST_P(InertiaRuns, TakeRevolutesTorques) {
     int const n = GetParam();
     for (unsigned seed = 1; seed <= 20; ++seed) {
         std::vector<Body> const b = bodies(n, seed);
@@ -214,18 +240,20 @@ TEST_P(InertiaRuns, TakeHingesTorques) {
             pushed[k].torque = pushed[k].torque + torque[k] * b[k].e1.column(2);
             pushed[k - 1].torque = pushed[k - 1].torque - torque[k] * b[k - 1].e2.column(2);
         }
-        KeptHinges expected(b.size()), found(b.size());
+        KeptRevolutes expected(b.size()), found(b.size());
         auto const of_pushed = climb(pushed, expected).bias;
-        auto const driven = climb(b, [&](int i) { return torque[static_cast<std::size_t>(i)]; }, found).bias;
-        Difference biases, hinges;
+        auto const driven =
+            climb(b, [&](int i) { return torque[static_cast<std::size_t>(i)]; }, found).bias;
+        Difference biases, revolutes;
         for (int i = 0; i < 5; ++i) {
             biases.add(driven.b1[i], of_pushed.b1[i]);
             biases.add(driven.b2[i], of_pushed.b2[i]);
         }
-        for (std::size_t k = 1; k < b.size(); ++k) hinges.add(found.hinges[k].bias, expected.hinges[k].bias);
-        for (int i = 0; i < 6; ++i) hinges.add(found.at_end.bias[i], expected.at_end.bias[i]);
+        for (std::size_t k = 1; k < b.size(); ++k)
+            revolutes.add(found.revolutes[k].bias, expected.revolutes[k].bias);
+        for (int i = 0; i < 6; ++i) revolutes.add(found.at_end.bias[i], expected.at_end.bias[i]);
         EXPECT_LE(biases.value(), tolerance(n)) << seed;
-        EXPECT_LE(hinges.value(), tolerance(n)) << seed;
+        EXPECT_LE(revolutes.value(), tolerance(n)) << seed;
     }
 }
 

@@ -11,10 +11,12 @@ namespace {
 
 TEST(LongArray, IsZeroWhereverItsMemoryComesFrom) {
     constexpr std::size_t edge = LargePages<double>::from_bytes / sizeof(double);
-    for (std::size_t const size : {std::size_t{1}, std::size_t{1000}, edge - 1, edge, edge + 1, 3 * edge + 7})
+    for (std::size_t const size :
+         {std::size_t{1}, std::size_t{1000}, edge - 1, edge, edge + 1, 3 * edge + 7})
         for (int again = 0; again < 3; ++again) {
             LongArray<double> array(size);
-            EXPECT_TRUE(std::all_of(array.begin(), array.end(), [](double v) { return v == 0; })) << size;
+            EXPECT_TRUE(std::all_of(array.begin(), array.end(), [](double v) { return v == 0; }))
+                << size;
             std::fill(array.begin(), array.end(), 1.5);
             LongArray<double> const copy = array;
             EXPECT_TRUE(copy == array) << size;

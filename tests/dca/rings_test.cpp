@@ -1,40 +1,46 @@
-// Chains closed on themselves, and loops that hold a chain more than once: every backend and handle kind against the oracles.
+// Chains closed on themselves, and loops that hold a chain more than once: every backend and handle
+// kind against the oracles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "oracle/oracle.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 #include "tests/support/variants.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
 
 double constexpr eps = 0x1p-53;
 
-Variant const variants[] = {{Backend::serial, Handles::projected},      {Backend::serial, Handles::full},
-                            {Backend::segments, Handles::projected},    {Backend::segments, Handles::full},
-                            {Backend::cuda, Handles::projected},        {Backend::cuda, Handles::full},
-                            {Backend::cuda_levels, Handles::projected}, {Backend::cuda_levels, Handles::full}};
+Variant const variants[] = {
+    {Backend::serial, Handles::projected},      {Backend::serial, Handles::full},
+    {Backend::segments, Handles::projected},    {Backend::segments, Handles::full},
+    {Backend::cuda, Handles::projected},        {Backend::cuda, Handles::full},
+    {Backend::cuda_levels, Handles::projected}, {Backend::cuda_levels, Handles::full}};
 
 class Rings : public WithVariant {};
 INSTANTIATE_TEST_SUITE_P(Variants, Rings, testing::ValuesIn(variants), name_of_variant);
 
-/// A regular polygon of bars of length 1, the first of which moves; `closing` is the joint of the last to the first.
+/// A regular polygon of bars of length 1, the first of which moves; `closing` is the joint of the
+/// last to the first.
 std::string polygon(int bars, std::string const& type, std::string const& closing) {
     double const half = std::acos(-1.0) / bars;
-    std::string const body = "{mass: 1, com: [0.5, 0.01, 0.02], inertia: [0.02, 0.084, 0.09], joint: ";
+    std::string const body =
+        "{mass: 1, com: [0.5, 0.01, 0.02], inertia: [0.02, 0.084, 0.09], joint: ";
     std::string text = "units: si\nchains:\n  - base: free\n    bodies:\n      - " + body +
                        "{type: free, qd: {omega: [0.3, -0.2, 0.5], velocity: [1, 2, 3]}}}\n";
     for (int k = 1; k < bars; ++k)
-        text +=
-            fmt::format("      - {}{{type: {}, translation: [1, 0, 0], q: {}}}}}\n", body, type,
-                        type == "spherical" ? fmt::format("[{:.17g}, 0, 0, {:.17g}], qd: [{}, 0.5, -1]", std::cos(half), std::sin(half), k)
-                                            : fmt::format("{:.17g}, axis: [0, 0, 1], qd: {}", 2 * half, k));
-    return text + "    tip: {ring: {type: " + closing + ", translation: [1, 0, 0]}}\nforces: {gravity: [1, 2, -9.81]}\n";
+        text += fmt::format("      - {}{{type: {}, translation: [1, 0, 0], q: {}}}}}\n", body, type,
+                            type == "spherical"
+                                ? fmt::format("[{:.17g}, 0, 0, {:.17g}], qd: [{}, 0.5, -1]",
+                                              std::cos(half), std::sin(half), k)
+                                : fmt::format("{:.17g}, axis: [0, 0, 1], qd: {}", 2 * half, k));
+    return text + "    tip: {ring: {type: " + closing +
+           ", translation: [1, 0, 0]}}\nforces: {gravity: [1, 2, -9.81]}\n";
 }
 
 /// As the solver's velocities are after they were made to fit.
@@ -47,22 +53,29 @@ ChainSpec fitted(Scene const& scene) {
 struct Errors {
     double acceleration = 0, force = 0, residual = 0, residual_bound = 0;
 };
-Errors errors(Scene const& scene, oracle::OracleResult<long double> const& expected, Communicator const& communicator) {
+Errors errors(Scene const& scene, oracle::OracleResult<long double> const& expected,
+              Communicator const& communicator) {
     ChainSystem system(scene, Axes::joint, communicator);
     system.evaluate();
     ChainSystem::Accelerations const found = system.accelerations();
     std::vector<Vec3> force, torque;
-    for (auto const& f : found.joint_force) torque.push_back({{f[0], f[1], f[2]}}), force.push_back({{f[3], f[4], f[5]}});
+    for (auto const& f : found.joint_force)
+        torque.push_back({{f[0], f[1], f[2]}}), force.push_back({{f[3], f[4], f[5]}});
     std::vector<Vector<long double, 3>> expected_force, expected_torque;
-    for (auto const& f : expected.constraint_force) expected_torque.push_back(f.torque), expected_force.push_back(f.force);
-    auto const error = [](std::vector<Vec3> const& values, std::vector<Vector<long double, 3>> const& exact) {
+    for (auto const& f : expected.constraint_force)
+        expected_torque.push_back(f.torque), expected_force.push_back(f.force);
+    auto const error = [](std::vector<Vec3> const& values,
+                          std::vector<Vector<long double, 3>> const& exact) {
         return static_cast<double>(relative_difference(converted<long double>(values), exact));
     };
-    return {std::max(error(found.acceleration, expected.com_acceleration), error(found.alpha, expected.alpha)),
-            std::max(error(force, expected_force), error(torque, expected_torque)), system.residual(), system.residual_bound()};
+    return {std::max(error(found.acceleration, expected.com_acceleration),
+                     error(found.alpha, expected.alpha)),
+            std::max(error(force, expected_force), error(torque, expected_torque)),
+            system.residual(), system.residual_bound()};
 }
 
-/// The ring: all constraints at once by Lagrange's multipliers, in another scalar and by another solver.
+/// The ring: all constraints at once by Lagrange's multipliers, in another scalar and by
+/// another solver.
 TEST_P(Rings, twelve_bodies_on_spherical_joints_agree_with_one_dense_system) {
     Scene scene = with_backend(parse_scene(polygon(12, "spherical", "spherical"), "ring.yaml"));
     scene.chains[0] = fitted(scene);
@@ -77,11 +90,13 @@ TEST_P(Rings, twelve_bodies_on_spherical_joints_agree_with_one_dense_system) {
     EXPECT_GT(norm(exact.constraint_force[0].force), 1);  // the closing joint carries something
 }
 
-/// Across its plane a planar ring is held three times over; two bars between two balls turn about the line through them.
+/// Across its plane a planar ring is held three times over; two bars between two balls turn about
+/// the line through them.
 TEST_P(Rings, redundant_rings_move_as_the_oracle_says) {
     for (auto const& [text, bars] :
          {std::pair{polygon(4, "revolute", "revolute, axis: [0, 0, 1]"), 4},
-          std::pair{polygon(5, "revolute", "revolute, axis: [0, 0, 1]"), 5}, std::pair{polygon(5, "revolute", "spherical"), 5},
+          std::pair{polygon(5, "revolute", "revolute, axis: [0, 0, 1]"), 5},
+          std::pair{polygon(5, "revolute", "spherical"), 5},
           std::pair{polygon(2, "spherical", "spherical"), 2}}) {
         SCOPED_TRACE(text);
         Scene scene = with_backend(parse_scene(text, "ring.yaml"));
@@ -93,14 +108,18 @@ TEST_P(Rings, redundant_rings_move_as_the_oracle_says) {
     }
 }
 
-/// The same of bridges: a planar linkage with all of its handles, Bricard's, a rod between two balls.
+/// The same of bridges: a planar linkage with all of its handles, Bricard's, a rod between two
+/// balls.
 TEST_P(Rings, redundant_bridges_move_as_the_oracle_says) {
     std::string const inputs = CATENA_SOURCE_DIR "/inputs/";
     Scene const rod = parse_scene(
-        "units: si\nchains: [{base: fixed, bodies: [{mass: 1, com: [0.5, 0.1, 0], inertia: [0.1, 0.1, 0.1], joint: {type: spherical, qd: "
-        "[2, 0, 0]}}], tip: {joint: {type: spherical, translation: [1, 0, 0]}}}]\nforces: {gravity: [0, 0, -9.81]}\n",
+        "units: si\nchains: [{base: fixed, bodies: [{mass: 1, com: [0.5, 0.1, 0], inertia: [0.1, "
+        "0.1, 0.1], joint: {type: spherical, qd: "
+        "[2, 0, 0]}}], tip: {joint: {type: spherical, translation: [1, 0, 0]}}}]\nforces: "
+        "{gravity: [0, 0, -9.81]}\n",
         "rod.yaml");
-    for (Scene const& given : {load_scene(inputs + "four-bar.yaml"), load_scene(inputs + "bricard.yaml"), rod}) {
+    for (Scene const& given :
+         {load_scene(inputs + "four-bar.yaml"), load_scene(inputs + "bricard.yaml"), rod}) {
         SCOPED_TRACE(given.title);
         Scene scene = with_backend(given);
         scene.forces.gravity = {{3, -9.81, 1}};
@@ -115,8 +134,9 @@ TEST_P(Rings, redundant_bridges_move_as_the_oracle_says) {
 TEST_P(Rings, random_rings_agree_with_articulated_bodies) {
     JointType const closing[] = {JointType::spherical, JointType::revolute,  JointType::universal,
                                  JointType::weld,      JointType::prismatic, JointType::helical};
-    RandomJoints const joints[] = {RandomJoints::revolute,  RandomJoints::spherical, RandomJoints::mixed,
-                                   RandomJoints::universal, RandomJoints::helical,   RandomJoints::any};
+    RandomJoints const joints[] = {RandomJoints::revolute, RandomJoints::spherical,
+                                   RandomJoints::mixed,    RandomJoints::universal,
+                                   RandomJoints::helical,  RandomJoints::any};
     for (std::uint64_t seed = 0; seed < 72; ++seed) {
         RandomChainOptions const options{.bodies = 12 + seed * 5 % 40,
                                          .joints = joints[seed % 6],

@@ -1,4 +1,5 @@
-// The two operations against a dense elimination, for every block size and every number of restricted directions.
+// The two operations against a dense elimination, for every block size and every number of
+// restricted directions.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -36,8 +37,9 @@ struct Random {
     }
 };
 
-/// Given forces at the outer handles, the closing of the restricted directions decides the joint force; both sides' handle
-/// accelerations then follow from eqs 2.1-2.4 and must be the joined segment's (eqs 2.8-2.9).
+/// Given forces at the outer handles, the closing of the restricted directions decides the joint
+/// force; both sides' handle accelerations then follow from eqs 2.1-2.4 and must be the joined
+/// segment's (eqs 2.8-2.9).
 template <int K>
 void check(int restricted, std::uint64_t seed) {
     test::Random random(seed);
@@ -48,10 +50,12 @@ void check(int restricted, std::uint64_t seed) {
     Vector<double, K> offset;
     auto const s = assemble(a, b, restricted, joint);
     auto const bias = assemble(ba, bb, joint, offset);
-    Vector<double, K> const first = Random<K>::vector(random), next = Random<K>::vector(random), f2 = -next;
+    Vector<double, K> const first = Random<K>::vector(random), next = Random<K>::vector(random),
+                            f2 = -next;
     Vector<double, K> const force = disassemble(joint, offset, first, next);
 
-    double const tolerance = 100 * K * K * 0x1p-53 / 0.3;  // rounding of K^2 products over the smallest eigenvalue
+    double const tolerance =
+        100 * K * K * 0x1p-53 / 0.3;  // rounding of K^2 products over the smallest eigenvalue
     Vector<double, K> const a1 = full(a.z11) * first - a.z12 * force + ba.b1;
     Vector<double, K> const inner_a = transposed_times(a.z12, first) - full(a.z22) * force + ba.b2;
     Vector<double, K> const inner_b = full(b.z11) * force + b.z12 * f2 + bb.b1;

@@ -25,11 +25,13 @@ std::vector<std::vector<std::int64_t>> const scenes{{1},
 /// Bodies of each rank.
 std::vector<std::int64_t> counts(Partition const& p) {
     std::vector<std::int64_t> of_rank;
-    for (std::size_t r = 0; r + 1 < p.first_of_rank.size(); ++r) of_rank.push_back(p.first_of_rank[r + 1] - p.first_of_rank[r]);
+    for (std::size_t r = 0; r + 1 < p.first_of_rank.size(); ++r)
+        of_rank.push_back(p.first_of_rank[r + 1] - p.first_of_rank[r]);
     return of_rank;
 }
 
-Partition cut(std::vector<std::int64_t> const& lengths, int ranks, Shares const& shares, bool pairwise = false) {
+Partition cut(std::vector<std::int64_t> const& lengths, int ranks, Shares const& shares,
+              bool pairwise = false) {
     Partition p(lengths, pairwise, ranks);
     cut_by_shares(p, ranks, shares);
     return p;
@@ -38,7 +40,8 @@ Partition cut(std::vector<std::int64_t> const& lengths, int ranks, Shares const&
 /// The first rank eight times the last, those between on the way.
 Shares falling(int ranks) {
     Shares shares;
-    for (int r = 0; r < ranks; ++r) shares.push_back(ranks == 1 ? 1000 : 8000 - 7000 * r / (ranks - 1));
+    for (int r = 0; r < ranks; ++r)
+        shares.push_back(ranks == 1 ? 1000 : 8000 - 7000 * r / (ranks - 1));
     return shares;
 }
 
@@ -48,8 +51,10 @@ TEST(Shares, EqualOnesMakeThePartitionsCuts) {
             for (bool const pairwise : {false, true}) {
                 auto const expected = Partition(lengths, pairwise, ranks).first_of_rank;
                 auto const all = static_cast<std::size_t>(ranks);
-                for (Shares const& shares : {Shares{}, Shares(all, 1), Shares(all, 1000), shares_of_speeds(std::vector<double>(all, 0.3))})
-                    EXPECT_EQ(cut(lengths, ranks, shares, pairwise).first_of_rank, expected) << lengths[0] << " on " << ranks;
+                for (Shares const& shares : {Shares{}, Shares(all, 1), Shares(all, 1000),
+                                             shares_of_speeds(std::vector<double>(all, 0.3))})
+                    EXPECT_EQ(cut(lengths, ranks, shares, pairwise).first_of_rank, expected)
+                        << lengths[0] << " on " << ranks;
             }
 }
 
@@ -70,11 +75,13 @@ TEST(Shares, UnitsStayWholeAndTheTreesAreThoseOfOneRank) {
             ASSERT_EQ(p.first_of_rank.front(), 0);
             ASSERT_EQ(p.first_of_rank.back(), p.bodies());
             for (int rank = 0; rank < ranks; ++rank) {
-                ASSERT_LE(p.first_of_rank[static_cast<std::size_t>(rank)], p.first_of_rank[static_cast<std::size_t>(rank) + 1]);
+                ASSERT_LE(p.first_of_rank[static_cast<std::size_t>(rank)],
+                          p.first_of_rank[static_cast<std::size_t>(rank) + 1]);
                 for (Piece const& piece : pieces_of(p, rank)) {
                     ChainTree const& tree = p.trees[static_cast<std::size_t>(piece.chain)];
                     EXPECT_EQ(piece.body, tree.first_body_of_unit(piece.first_unit));
-                    EXPECT_EQ(piece.body + piece.count, tree.first_body_of_unit(piece.first_unit + piece.units));
+                    EXPECT_EQ(piece.body + piece.count,
+                              tree.first_body_of_unit(piece.first_unit + piece.units));
                 }
             }
         }
@@ -109,8 +116,10 @@ TEST(Shares, ReachNoFartherThanEightToOne) {
 }
 
 TEST(Shares, WhoseSpeedIsNotKnownCountsAsTheMean) {
-    double constexpr nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(shares_of_speeds(std::vector{1.0, 3.0, 0.0, nan, infinity, -1.0}), (Shares{500, 1500, 1000, 1000, 1000, 1000}));
+    double constexpr nan = std::numeric_limits<double>::quiet_NaN(),
+                     infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(shares_of_speeds(std::vector{1.0, 3.0, 0.0, nan, infinity, -1.0}),
+              (Shares{500, 1500, 1000, 1000, 1000, 1000}));
     EXPECT_EQ(shares_of_speeds(std::vector{0.0, nan}), (Shares{1000, 1000}));
 }
 

@@ -1,39 +1,45 @@
-// The GPU's sweeps, run on the host, leave the bits of the host's loops: whatever the blocks' sizes, on one rank and several.
+// The GPU's sweeps, run on the host, leave the bits of the host's loops: whatever the blocks'
+// sizes, on one rank and several.
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
 #include "dca/leaf_choice.hpp"
+#include "reader/load_scene.hpp"
 #include "scene/freedom.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/compared_solver.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/stage_space.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
 
-std::unique_ptr<ChainSolver> make_stage_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
+std::unique_ptr<ChainSolver> make_stage_solver(ChainGroup const& group, Executor const& executor,
+                                               Communicator const& communicator) {
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
-        return std::make_unique<dca::TreeSolver<typename decltype(leaf)::type, StageSpace>>(group, StageSpace(executor), communicator);
+        return std::make_unique<dca::TreeSolver<typename decltype(leaf)::type, StageSpace>>(
+            group, StageSpace(executor), communicator);
     };
     if (group.handles == Handles::articulated) return dca::with_articulated_leaf(group, make);
-    return group.beads || group.linked || group.axes == Axes::world ? dca::with_absolute_leaf(group, make)
-                                                                    : dca::with_joint_leaf(group, make);
+    return group.beads || group.linked || group.axes == Axes::world
+               ? dca::with_absolute_leaf(group, make)
+               : dca::with_joint_leaf(group, make);
 }
 
 dca::StageRecords records_of(ChainGroup const& group) {
-    return group.handles == Handles::articulated ? dca::ArticulatedSweeps<dca::ArticulatedLeaf<false>>::in_stage
-                                                 : dca::stage_records(group.directions, group.handles == Handles::projected);
+    return group.handles == Handles::articulated
+               ? dca::ArticulatedSweeps<dca::ArticulatedLeaf<false>>::in_stage
+               : dca::stage_records(group.directions, group.handles == Handles::projected);
 }
 
 struct NamedGpu {
     std::string name;
     StagedGpu gpu;
 };
-char const *const h100 = "an H100", *const joins_groups = "that joins runs in groups where they are few",
+char const *const h100 = "an H100",
+                  *const joins_groups = "that joins runs in groups where they are few",
                   *const turns_groups = "whose one cluster turns what is above groups";
 StagedGpu of_h100(dca::StageRecords const& records) {
     StagedGpu gpu{dca::stage_sizes(records, cuda_on_host::most_shared_bytes, 132)};
@@ -42,9 +48,11 @@ StagedGpu of_h100(dca::StageRecords const& records) {
     return gpu;
 }
 std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
-    auto const with = [](std::int64_t threads, std::int64_t most, std::int64_t together, bool runs_apart) {
-        return NamedGpu{"of " + std::to_string(threads) + " threads and " + std::to_string(most) + " items a block, " +
-                            std::to_string(together) + " blocks together" + (runs_apart ? ", runs apart" : ""),
+    auto const with = [](std::int64_t threads, std::int64_t most, std::int64_t together,
+                         bool runs_apart) {
+        return NamedGpu{"of " + std::to_string(threads) + " threads and " + std::to_string(most) +
+                            " items a block, " + std::to_string(together) + " blocks together" +
+                            (runs_apart ? ", runs apart" : ""),
                         {{threads, most, together}, runs_apart}};
     };
     NamedGpu small = with(64, 4, 3, true);
@@ -82,7 +90,8 @@ class StageKernels : public ::testing::Test {
     void SetUp() override { StageSpace::seen = {}; }
     void expect_same(Scene const& scene, Axes axes = Axes::joint) {
         bool const articulated =
-            axes == Axes::joint && std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
+            axes == Axes::joint &&
+            std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
         std::vector<Handles> kinds{Handles::projected};
         if (alone()) kinds.push_back(Handles::full);
         if (articulated) kinds.push_back(Handles::articulated);
@@ -90,18 +99,26 @@ class StageKernels : public ::testing::Test {
             for (auto const& group : make_groups(scene, axes, handles, false, testing::world())) {
                 std::vector<NamedSolver> solvers;
                 for (NamedGpu const& each : gpus(records_of(*group))) {
-                    if (only_ ? each.name != only_ : each.name == joins_groups || each.name == turns_groups) continue;
+                    if (only_ ? each.name != only_
+                              : each.name == joins_groups || each.name == turns_groups)
+                        continue;
                     StageSpace::gpu = each.gpu;
-                    StageSpace::ranks = each.gpu.ranks_reach_each_other ? &testing::world() : nullptr;
-                    solvers.push_back({each.name, make_stage_solver(*group, *executor_, testing::world())});
+                    StageSpace::ranks =
+                        each.gpu.ranks_reach_each_other ? &testing::world() : nullptr;
+                    solvers.push_back(
+                        {each.name, make_stage_solver(*group, *executor_, testing::world())});
                 }
                 directions_.insert(group->directions);
-                auto compared = compared_solver(*group, make_tree_solver(*group, *executor_, testing::world()), std::move(solvers));
-                evaluate_compared(*group, scene, *executor_, testing::world(), std::move(compared), true);
+                auto compared =
+                    compared_solver(*group, make_tree_solver(*group, *executor_, testing::world()),
+                                    std::move(solvers));
+                evaluate_compared(*group, scene, *executor_, testing::world(), std::move(compared),
+                                  true);
             }
     }
     static Scene scene_of(std::string const& chains) {
-        return parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
+        return parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}",
+                           "scene.yaml");
     }
     static Scene scene_of(std::vector<ChainSpec> const& chains) {
         Scene scene;
@@ -120,11 +137,14 @@ class StageKernels : public ::testing::Test {
 };
 
 TEST_F(StageKernels, EveryKindAndSize) {
-    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld", "mixed"})
-        for (int const bodies : alone() ? std::vector<int>{1, 2, 5, 16, 33, 257} : std::vector<int>{2, 257}) {
+    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute",
+                                    "prismatic", "helical", "weld", "mixed"})
+        for (int const bodies :
+             alone() ? std::vector<int>{1, 2, 5, 16, 33, 257} : std::vector<int>{2, 257}) {
             SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies));
             expect_same(scene_of(std::string("{base: ") + (bodies % 2 ? "free" : "fixed") +
-                                 ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 1}}}"));
+                                 ", generator: {random: {bodies: " + std::to_string(bodies) +
+                                 ", joint: " + joint + ", seed: 1}}}"));
             if (HasFailure()) return;
         }
     EXPECT_EQ(directions_, (std::set<int>{1, 2, 3, 4, 5, 6}));
@@ -134,22 +154,29 @@ TEST_F(StageKernels, EveryKindAndSize) {
 TEST_F(StageKernels, UnitsOfSeveralBlocks) {
     if (alone()) return;
     only_ = h100;
-    for (RandomJoints const joints : {RandomJoints::planar, RandomJoints::spherical, RandomJoints::revolute}) {
+    for (RandomJoints const joints :
+         {RandomJoints::planar, RandomJoints::spherical, RandomJoints::revolute}) {
         StageSpace::seen = {};
         std::size_t const bodies = joints == RandomJoints::revolute ? 20000 : 6000;
-        expect_same(scene_of({random_chain(4, {.bodies = bodies, .joints = joints, .base = Base::fixed})}));
+        expect_same(
+            scene_of({random_chain(4, {.bodies = bodies, .joints = joints, .base = Base::fixed})}));
         ASSERT_FALSE(StageSpace::seen.blocks_that_turn_shared.empty());
         EXPECT_GT(*StageSpace::seen.blocks_that_turn_shared.rbegin(), 1U);
     }
-    expect_same(scene_of({random_bead_chain(3, 6000, Base::fixed), random_bead_chain(4, 70, Base::free)}));
+    expect_same(
+        scene_of({random_bead_chain(3, 6000, Base::fixed), random_bead_chain(4, 70, Base::free)}));
 }
 
 TEST_F(StageKernels, ManyChainsAndTips) {
-    std::string const of = "generator: {random: {joint: ", tip = ", seed: 3}}, tip: {joint: {type: spherical}}}";
+    std::string const of = "generator: {random: {joint: ",
+                      tip = ", seed: 3}}, tip: {joint: {type: spherical}}}";
     expect_same(
-        scene_of("{name: a, count: 9, generator: {random: {joint: link, bodies: 70, rigid: 0.3, seed: 2}}}, {name: b, base: fixed, " + of +
-                 "spherical, bodies: 40" + tip + ", {name: c, base: fixed, " + of + "mixed, bodies: 130" + tip +
-                 ", {name: d, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, " + of + "link, bodies: 33, seed: 4}}}, " +
+        scene_of("{name: a, count: 9, generator: {random: {joint: link, bodies: 70, rigid: 0.3, "
+                 "seed: 2}}}, {name: b, base: fixed, " +
+                 of + "spherical, bodies: 40" + tip + ", {name: c, base: fixed, " + of +
+                 "mixed, bodies: 130" + tip +
+                 ", {name: d, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, " + of +
+                 "link, bodies: 33, seed: 4}}}, " +
                  "{name: e, count: 40, generator: {freely_jointed: {beads: 3, length: 0.38}}}"));
 }
 
@@ -157,17 +184,24 @@ TEST_F(StageKernels, LoadsDrivesTipsAndRings) {
     if (!alone()) return;
     using enum JointType;
     std::uint64_t seed = 0;
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::any})
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::any})
         for (JointType const type : {spherical, weld, helical})
             for (bool const ring : {false, true}) {
                 SCOPED_TRACE("seed " + std::to_string(++seed));
-                RandomChainOptions options{
-                    .bodies = 70, .joints = joints, .base = ring ? Base::free : Base::fixed, .springs = true, .drag = true, .driven = 0.2};
+                RandomChainOptions options{.bodies = 70,
+                                           .joints = joints,
+                                           .base = ring ? Base::free : Base::fixed,
+                                           .springs = true,
+                                           .drag = true,
+                                           .driven = 0.2};
                 options.tip = type;
                 options.ring = ring;
                 expect_same(scene_of({random_chain(seed, options)}));
                 options.tip = std::nullopt;
-                if (!ring) expect_same(scene_of({random_chain(seed, options), random_chain(seed + 100, options)}));
+                if (!ring)
+                    expect_same(
+                        scene_of({random_chain(seed, options), random_chain(seed + 100, options)}));
                 if (HasFailure()) return;
             }
 }
@@ -175,17 +209,21 @@ TEST_F(StageKernels, LoadsDrivesTipsAndRings) {
 TEST_F(StageKernels, AbsoluteCoordinates) {
     for (char const* const base : {"free", "fixed"})
         for (char const* const tip : {"", ", tip: {joint: {type: spherical}}"})
-            expect_same(
-                scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: 200, joint: spherical, seed: 1}}" + tip + "}"),
-                Axes::world);
+            expect_same(scene_of(std::string("{base: ") + base +
+                                 ", generator: {random: {bodies: 200, joint: spherical, seed: 1}}" +
+                                 tip + "}"),
+                        Axes::world);
 }
 
 TEST_F(StageKernels, LinksWithTipsAndRings) {
     for (Base const base : {Base::fixed, Base::free})
         for (Tip const tip : {Tip::free, Tip::jointed})
-            expect_same(scene_of({random_bead_chain(5, 300, base, tip), random_linked_chain(5, 300, base, tip)}));
-    expect_same(scene_of({closed(random_bead_chain(6, 170, Base::free)), random_bead_chain(7, 50, Base::fixed),
-                          closed(random_linked_chain(8, 90, Base::free)), closed(random_bead_chain(9, 5, Base::free))}));
+            expect_same(scene_of(
+                {random_bead_chain(5, 300, base, tip), random_linked_chain(5, 300, base, tip)}));
+    expect_same(scene_of({closed(random_bead_chain(6, 170, Base::free)),
+                          random_bead_chain(7, 50, Base::fixed),
+                          closed(random_linked_chain(8, 90, Base::free)),
+                          closed(random_bead_chain(9, 5, Base::free))}));
 }
 
 /// Runs of a chain in so many blocks, which turn with one above them.
@@ -193,8 +231,10 @@ TEST_F(StageKernels, BlocksThatTurnTogether) {
     if (!alone()) return;
     StageSpace::seen = {};
     for (int blocks = 1; blocks <= 8; ++blocks)
-        expect_same(scene_of({random_bead_chain(3, static_cast<std::size_t>(128 * blocks - 5), Base::fixed)}));
-    for (unsigned blocks = 2; blocks <= 8; ++blocks) EXPECT_TRUE(StageSpace::seen.blocks_that_turn.contains(blocks)) << blocks;
+        expect_same(scene_of(
+            {random_bead_chain(3, static_cast<std::size_t>(128 * blocks - 5), Base::fixed)}));
+    for (unsigned blocks = 2; blocks <= 8; ++blocks)
+        EXPECT_TRUE(StageSpace::seen.blocks_that_turn.contains(blocks)) << blocks;
     EXPECT_GE(StageSpace::seen.most_stages, 6U);
     EXPECT_GT(StageSpace::seen.turns_alone, 0);
     EXPECT_GT(StageSpace::seen.runs_apart, 0);
@@ -205,7 +245,8 @@ TEST_F(StageKernels, BlocksThatTurnTogether) {
 TEST_F(StageKernels, ShortChains) {
     if (!alone()) return;
     only_ = h100;
-    for (std::size_t const bodies : {1, 4, 5, 16, 17, 127, 128, 129, 500, 1024, 2000, 4096, 4097, 8191, 8192, 8193})
+    for (std::size_t const bodies :
+         {1, 4, 5, 16, 17, 127, 128, 129, 500, 1024, 2000, 4096, 4097, 8191, 8192, 8193})
         for (Base const base : {Base::fixed, Base::free}) {
             if (bodies > 2000 && (bodies % 2 == 0) == (base == Base::free)) continue;
             SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
@@ -215,16 +256,25 @@ TEST_F(StageKernels, ShortChains) {
                 EXPECT_EQ(StageSpace::seen.blocks_of_short_chains.empty(), bodies > 8192);
             };
             expect_short(random_bead_chain(bodies, bodies, base), Axes::joint);
-            expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}), Axes::world);
-            expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}), Axes::joint);
+            expect_short(
+                random_chain(bodies,
+                             {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}),
+                Axes::world);
+            expect_short(
+                random_chain(bodies,
+                             {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}),
+                Axes::joint);
             if (base == Base::fixed)  // else the first body leaves the plane
-                expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::planar, .base = base}), Axes::joint);
+                expect_short(
+                    random_chain(bodies,
+                                 {.bodies = bodies, .joints = RandomJoints::planar, .base = base}),
+                    Axes::joint);
             if (HasFailure()) return;
         }
 }
 
-/// By a thread or by several each; whose joints are not all hinges go the other way.
-TEST_F(StageKernels, RunsOnHinges) {
+/// By a thread or by several each; whose joints are not all revolute joints go the other way.
+TEST_F(StageKernels, RunsOnRevolutes) {
     if (!alone()) return;
     for (std::size_t const bodies : {2, 17, 19, 45, 128, 511})
         for (Base const base : {Base::fixed, Base::free}) {
@@ -234,20 +284,25 @@ TEST_F(StageKernels, RunsOnHinges) {
             };
             expect_same(scene_of({chain(RandomJoints::revolute, bodies)}));
             expect_same(
-                scene_of({chain(RandomJoints::revolute, bodies), chain(RandomJoints::universal, 20), chain(RandomJoints::revolute, 64)}));
+                scene_of({chain(RandomJoints::revolute, bodies), chain(RandomJoints::universal, 20),
+                          chain(RandomJoints::revolute, 64)}));
         }
     std::vector<ChainSpec> short_ones;  // with runs of every length side by side
     for (std::size_t bodies = 1; bodies <= 40; ++bodies)
-        short_ones.push_back(random_chain(bodies, {.bodies = 7 * bodies % 41, .joints = RandomJoints::revolute, .base = Base::free}));
+        short_ones.push_back(random_chain(
+            bodies,
+            {.bodies = 7 * bodies % 41, .joints = RandomJoints::revolute, .base = Base::free}));
     expect_same(scene_of(short_ones));
     std::set<int> const all_teams{kernels::lanes_of_narrow_team, kernels::lanes_of_broad_team};
     EXPECT_EQ(StageSpace::seen.lanes_of_teams, all_teams);
 }
-/// More than a block of stages that lanes of a warp climb together has: the first one is narrow then, and keeps its nodes for the way down.
-TEST_F(StageKernels, ManyRunsOnHinges) {
+/// More than a block of stages that lanes of a warp climb together has: the first one is narrow
+/// then, and keeps its nodes for the way down.
+TEST_F(StageKernels, ManyRunsOnRevolutes) {
     if (!alone()) return;
     only_ = h100;
-    expect_same(scene_of({random_chain(5, {.bodies = 9000, .joints = RandomJoints::revolute, .base = Base::fixed})}));
+    expect_same(scene_of({random_chain(
+        5, {.bodies = 9000, .joints = RandomJoints::revolute, .base = Base::fixed})}));
     EXPECT_GT(StageSpace::seen.most_stages, 1U);
 }
 
@@ -266,7 +321,8 @@ TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
             light.beads.mass[bead] = -1e-3;  // no positive definite matrices there
             expect_short(light);
         }
-    ChainSpec falling = random_bead_chain(3, 301, Base::free);  // biases are zero, some of them less than that
+    ChainSpec falling =
+        random_bead_chain(3, 301, Base::free);  // biases are zero, some of them less than that
     falling.beads.velocity.assign(falling.beads.size(), {{-1, 0, 0}});
     expect_short(falling);
     ChainSpec tiny = random_bead_chain(2, 300, Base::fixed);
@@ -280,13 +336,16 @@ TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
     expect_short(tiny);
 }
 
-/// Joints are found whose matrices are not positive definite, wherever they meet and whoever merges them.
+/// Joints are found whose matrices are not positive definite, wherever they meet and whoever merges
+/// them.
 TEST_F(StageKernels, MatricesThatAreNotPositiveDefinite) {
     if (!alone()) return;
-    for (RandomJoints const joints : {RandomJoints::spherical, RandomJoints::universal, RandomJoints::revolute, RandomJoints::any})
+    for (RandomJoints const joints : {RandomJoints::spherical, RandomJoints::universal,
+                                      RandomJoints::revolute, RandomJoints::any})
         for (std::size_t const body : {31, 32, 100, 128, 290}) {  // the last run has 12 bodies
             SCOPED_TRACE("body " + std::to_string(body));
-            ChainSpec chain = random_chain(9, {.bodies = 300, .joints = joints, .base = Base::fixed});
+            ChainSpec chain =
+                random_chain(9, {.bodies = 300, .joints = joints, .base = Base::fixed});
             chain.bodies.mass[body] = -1e-3;
             expect_same(scene_of({chain}));
         }
@@ -301,14 +360,16 @@ TEST_F(StageKernels, GroupsOfRuns) {
         EXPECT_EQ(StageSpace::seen.groups > 1, several);
     };
     // Several blocks above them.
-    if (expect_groups({random_bead_chain(1, 40000, Base::fixed)}, true); !alone() || HasFailure()) return;
+    if (expect_groups({random_bead_chain(1, 40000, Base::fixed)}, true); !alone() || HasFailure())
+        return;
     EXPECT_FALSE(StageSpace::seen.blocks_that_turn.empty());
     for (std::size_t const bodies : {257, 512, 513, 1000, 1100, 5000})
         for (Base const base : {Base::fixed, Base::free}) {
             SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
             ChainSpec const beads = random_bead_chain(bodies, bodies, base);
             expect_groups({beads}, bodies > 512);
-            expect_groups({beads, random_bead_chain(3, bodies, base)}, bodies == 512);  // where the second one's runs begin a group
+            expect_groups({beads, random_bead_chain(3, bodies, base)},
+                          bodies == 512);  // where the second one's runs begin a group
             if (HasFailure()) return;
         }
     expect_groups({random_linked_chain(5, 1300, Base::fixed, Tip::jointed)}, true);
@@ -335,7 +396,8 @@ TEST_F(StageKernels, GroupsOfOneChain) {
         }
     expect_blocks({1}, random_linked_chain(5, 1300, Base::fixed));
     expect_blocks({}, random_bead_chain(5, 1300, Base::fixed, Tip::jointed));
-    for (std::size_t const bead : {272, 512, 1024, 16384}) {  // within a group, and where groups and warps meet
+    for (std::size_t const bead :
+         {272, 512, 1024, 16384}) {  // within a group, and where groups and warps meet
         ChainSpec light = random_bead_chain(1, bead < 10000 ? 1500 : 17000, Base::fixed);
         light.beads.mass[bead] = -1e-3;  // no positive definite matrix there
         expect_blocks({bead < 10000 ? 1U : 2U}, light);
@@ -347,8 +409,9 @@ TEST(Groups, AreJoinedInOneLaunch) {
         dca::Schedule const schedule = dca::make_schedule(dca::Partition({bodies}, false, 1), 0);
         dca::StageRecords const records = dca::stage_records(1, true);
         dca::StageSizes const sizes = of_h100(records).sizes;
-        cuda::PlanByGroups const by_groups = cuda::plan_by_groups(schedule.runs, schedule.levels, schedule.roots, schedule.slots, {},
-                                                                  records, sizes, cuda::fewest_groups_below_stages);
+        cuda::PlanByGroups const by_groups =
+            cuda::plan_by_groups(schedule.runs, schedule.levels, schedule.roots, schedule.slots, {},
+                                 records, sizes, cuda::fewest_groups_below_stages);
         EXPECT_EQ(std::ssize(by_groups.groups), (bodies - 1) / cuda::bodies_of_group + 1);
         EXPECT_TRUE(by_groups.stages_above_groups);
         dca::StagePlan const& plan = by_groups.stages;

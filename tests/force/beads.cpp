@@ -20,7 +20,8 @@ BeadSystem split(BeadSystem beads, int ranks) {
     return beads;
 }
 
-BeadSystem proteins(std::vector<std::string> const& sequences, int ranks, std::optional<Vec3> const& box) {
+BeadSystem proteins(std::vector<std::string> const& sequences, int ranks,
+                    std::optional<Vec3> const& box) {
     BeadSystem beads;
     beads.box = box;
     beads.scene_file = "scene.yaml";
@@ -30,7 +31,8 @@ BeadSystem proteins(std::vector<std::string> const& sequences, int ranks, std::o
         std::int64_t const n = std::ssize(sequence);
         for (std::int64_t k = 0; k < n; ++k) {
             auto const* residue = find_calvados2(sequence[k]);
-            if (k > 0) beads.links.push_back({beads.size() - 1, beads.size(), calvados2::bond_length});
+            if (k > 0)
+                beads.links.push_back({beads.size() - 1, beads.size(), calvados2::bond_length});
             beads.mass.push_back(calvados2::bead_mass(*residue, {k, n}));
             beads.residue.push_back(residue->name);
         }
@@ -45,7 +47,8 @@ std::vector<Vec3> wound(BeadSystem const& beads, std::uint64_t seed) {
         std::size_t const column = c % 3, row = c / 3;
         for (std::int64_t k = 0; k < beads.chain_offset[c + 1] - beads.chain_offset[c]; ++k) {
             double const turn = 0.9 * static_cast<double>(k);
-            positions.push_back({{0.3 * static_cast<double>(k), 1.7 * static_cast<double>(column) + 0.35 * std::cos(turn),
+            positions.push_back({{0.3 * static_cast<double>(k),
+                                  1.7 * static_cast<double>(column) + 0.35 * std::cos(turn),
                                   1.7 * static_cast<double>(row) + 0.35 * std::sin(turn)}});
         }
     }
@@ -67,8 +70,10 @@ std::string random_sequence(std::size_t length, std::uint64_t seed) {
     return sequence;
 }
 
-std::vector<Vec3> evaluate(OpenMmForce& force, BeadSystem const& beads, int rank, std::vector<Vec3> const& all) {
-    std::int64_t const first = beads.first_of_rank[rank], own = beads.first_of_rank[rank + 1] - first;
+std::vector<Vec3> evaluate(OpenMmForce& force, BeadSystem const& beads, int rank,
+                           std::vector<Vec3> const& all) {
+    std::int64_t const first = beads.first_of_rank[rank],
+                       own = beads.first_of_rank[rank + 1] - first;
     Field<3> positions(own), forces(own);
     for (std::int64_t k = 0; k < own; ++k) positions.set(k, all[first + k]);
     force.begin(std::as_const(positions).view());
@@ -90,10 +95,12 @@ double largest(std::vector<Vec3> const& forces) {
     return value;
 }
 
-double difference(std::vector<Vec3> const& part, std::vector<Vec3> const& whole, std::int64_t first) {
+double difference(std::vector<Vec3> const& part, std::vector<Vec3> const& whole,
+                  std::int64_t first) {
     double value = 0;
     for (std::size_t k = 0; k < part.size(); ++k)
-        for (int c = 0; c < 3; ++c) value = std::max(value, std::abs(part[k][c] - whole[first + k][c]));
+        for (int c = 0; c < 3; ++c)
+            value = std::max(value, std::abs(part[k][c] - whole[first + k][c]));
     return value;
 }
 
@@ -122,9 +129,10 @@ std::string pdb_of(BeadSystem const& beads, std::vector<Vec3> const& positions) 
     std::string text;
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
         for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k)
-            text += fmt::format("ATOM  {:5}  CA  {:>3} {}{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00\n", k + 1, beads.residue[k],
-                                beads.chain_name[c], k - beads.chain_offset[c] + 1, 10 * positions[k][0], 10 * positions[k][1],
-                                10 * positions[k][2]);
+            text += fmt::format(
+                "ATOM  {:5}  CA  {:>3} {}{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00\n", k + 1,
+                beads.residue[k], beads.chain_name[c], k - beads.chain_offset[c] + 1,
+                10 * positions[k][0], 10 * positions[k][1], 10 * positions[k][2]);
         text += "TER\n";
     }
     return text + "END\n";

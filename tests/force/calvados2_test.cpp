@@ -11,7 +11,8 @@ namespace catena {
 namespace {
 
 nlohmann::json reference(std::string const& name) {
-    return nlohmann::json::parse(std::ifstream(std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-" + name + ".json"));
+    return nlohmann::json::parse(std::ifstream(std::string(CATENA_TEST_DATA) +
+                                               "/reference/calvados2-asyn-" + name + ".json"));
 }
 
 TEST(Calvados2, HasTheTwentyResiduesOfTheFile) {

@@ -13,7 +13,8 @@ namespace {
 
 struct Arrays {
     std::vector<DeviceBead> bead{{2, {0, 0, 0}}, {0, {1, 0, -2}}, {1, {0, 0, 0}}};
-    std::vector<float> position = std::vector<float>(16, 7.0f), correction = std::vector<float>(16, 7.0f);
+    std::vector<float> position = std::vector<float>(16, 7.0f),
+                       correction = std::vector<float>(16, 7.0f);
     std::vector<double> double_position = std::vector<double>(16, 7.0);
     std::vector<std::int64_t> force = std::vector<std::int64_t>(12, 0);
     std::int64_t trouble = -1;
@@ -48,7 +49,8 @@ TEST(DeviceBeads, PositionsGoToTheirPlacesAndCells) {
     EXPECT_EQ(a.position[1], 3.0f);
     EXPECT_EQ(a.position[2], 3.0f);
     EXPECT_EQ(a.position[3], 7.0f);  // a charge
-    EXPECT_NEAR(static_cast<double>(a.position[0]) + static_cast<double>(a.correction[0]), 1.1, 1e-14);
+    EXPECT_NEAR(static_cast<double>(a.position[0]) + static_cast<double>(a.correction[0]), 1.1,
+                1e-14);
     a.single().put(0, {{2, 3, 4}});
     EXPECT_EQ(a.position[8], 1.0f);
     EXPECT_EQ(a.correction[8], 7.0f);

@@ -19,7 +19,8 @@ void add_bonds(System& system, int n, bool periodic) {
     auto* custom = new CustomBondForce("k*(r-r0)^2/(1+r)");
     custom->addGlobalParameter("k", 12.5);
     custom->addPerBondParameter("r0");
-    for (int i = 0; i + 1 < n; ++i) harmonic->addBond(i, i + 1, 0.38, 800);  // along links and between the chains' ends
+    for (int i = 0; i + 1 < n; ++i)
+        harmonic->addBond(i, i + 1, 0.38, 800);  // along links and between the chains' ends
     for (int i = 0; i + 37 < n; i += 5) harmonic->addBond(i, i + 37, 1.0 + 0.01 * i, 3);
     for (int i = 0; i + 3 < n; i += 2) custom->addBond(i, i + 3, {0.5 + 0.001 * i});
     harmonic->setUsesPeriodicBoundaryConditions(periodic);
@@ -38,7 +39,8 @@ void add_angles_and_torsions(System& system, int n, bool periodic) {
     auto* custom_torsions = new CustomTorsionForce("k*(1+cos(3*theta))");
     custom_torsions->addPerTorsionParameter("k");
     for (int i = 0; i + 2 < n; ++i)
-        (i % 2 ? custom_angles->addAngle(i, i + 1, i + 2, {7.0 + 0.1 * i}) : angles->addAngle(i, i + 1, i + 2, 1.9, 20));
+        (i % 2 ? custom_angles->addAngle(i, i + 1, i + 2, {7.0 + 0.1 * i})
+               : angles->addAngle(i, i + 1, i + 2, 1.9, 20));
     for (int i = 0; i + 5 < n; ++i) {
         torsions->addTorsion(i, i + 1, i + 2, i + 3, 1 + i % 3, 0.3, 2.0);
         rb->addTorsion(i, i + 1, i + 3, i + 5, 0.1, 0.7, -0.3, 0.2, 0.1, -0.1);
@@ -49,7 +51,9 @@ void add_angles_and_torsions(System& system, int n, bool periodic) {
     torsions->setUsesPeriodicBoundaryConditions(periodic);
     rb->setUsesPeriodicBoundaryConditions(periodic);
     custom_torsions->setUsesPeriodicBoundaryConditions(periodic);
-    for (Force* force : std::initializer_list<Force*>{angles, custom_angles, torsions, rb, custom_torsions}) system.addForce(force);
+    for (Force* force :
+         std::initializer_list<Force*>{angles, custom_angles, torsions, rb, custom_torsions})
+        system.addForce(force);
 }
 
 void add_external(System& system, int n) {
@@ -61,7 +65,8 @@ void add_external(System& system, int n) {
 
 void add_charges(System& system, int n, bool periodic) {
     auto* charges = new NonbondedForce;
-    charges->setNonbondedMethod(periodic ? NonbondedForce::CutoffPeriodic : NonbondedForce::CutoffNonPeriodic);
+    charges->setNonbondedMethod(periodic ? NonbondedForce::CutoffPeriodic
+                                         : NonbondedForce::CutoffNonPeriodic);
     charges->setCutoffDistance(1.4);
     charges->setUseSwitchingFunction(true);
     charges->setSwitchingDistance(1.1);
@@ -69,7 +74,8 @@ void add_charges(System& system, int n, bool periodic) {
     charges->addGlobalParameter("scale", 0.7);
     for (int i = 0; i < n; ++i) charges->addParticle(0.2 * (i % 5 - 2), 0.3 + 0.01 * (i % 4), 0.5);
     for (int i = 0; i + 1 < n; ++i) charges->addException(i, i + 1, 0, 1, 0);
-    for (int i = 0; i + 24 < n; i += 6) charges->addException(i, i + 24, 0.3, 0.4, 0.1);  // farther than the cutoff and its skin
+    for (int i = 0; i + 24 < n; i += 6)
+        charges->addException(i, i + 24, 0.3, 0.4, 0.1);  // farther than the cutoff and its skin
     for (int i = 0; i < n; i += 4) charges->addParticleParameterOffset("scale", i, 0.1, 0.0, 0.2);
     charges->addExceptionParameterOffset("scale", n, 0.2, 0.0, 0.0);
     charges->setExceptionsUsePeriodicBoundaryConditions(periodic);
@@ -77,14 +83,16 @@ void add_charges(System& system, int n, bool periodic) {
 }
 
 void add_pairs(System& system, int n, bool periodic) {
-    auto const method = periodic ? CustomNonbondedForce::CutoffPeriodic : CustomNonbondedForce::CutoffNonPeriodic;
+    auto const method =
+        periodic ? CustomNonbondedForce::CutoffPeriodic : CustomNonbondedForce::CutoffNonPeriodic;
     auto* tabulated = new CustomNonbondedForce("a1*a2*shape(r)");
     tabulated->addPerParticleParameter("a");
     std::vector<double> values;
     for (int i = 0; i <= 40; ++i) values.push_back(std::exp(-0.1 * i) * std::sin(0.3 * i));
     tabulated->addTabulatedFunction("shape", new Continuous1DFunction(values, 0, 1.25));
     tabulated->setCutoffDistance(1.2);
-    auto* charged = new CustomNonbondedForce("q1*q2*exp(-r)");  // farther than the others, between some
+    auto* charged =
+        new CustomNonbondedForce("q1*q2*exp(-r)");  // farther than the others, between some
     charged->addPerParticleParameter("q");
     charged->setCutoffDistance(1.7);
     auto* grouped = new CustomNonbondedForce("g/r^2");
@@ -98,7 +106,8 @@ void add_pairs(System& system, int n, bool periodic) {
         if (i % 2 == 0) even.insert(i);
         if (i % 3 == 0) third.insert(i);
     }
-    for (int i = 0; i + 2 < n; ++i) tabulated->addExclusion(i, i + 2), charged->addExclusion(i, i + 2);
+    for (int i = 0; i + 2 < n; ++i)
+        tabulated->addExclusion(i, i + 2), charged->addExclusion(i, i + 2);
     grouped->addInteractionGroup(even, third);
     for (auto* pairs : {tabulated, charged, grouped}) {
         pairs->setNonbondedMethod(method);
@@ -111,7 +120,9 @@ void add_pairs(System& system, int n, bool periodic) {
 std::unique_ptr<System> bare_system(BeadSystem const& beads) {
     auto system = std::make_unique<System>();
     for (double mass : beads.mass) system->addParticle(mass);
-    if (beads.box) system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0}, {0, 0, (*beads.box)[2]});
+    if (beads.box)
+        system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0},
+                                             {0, 0, (*beads.box)[2]});
     return system;
 }
 

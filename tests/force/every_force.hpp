@@ -10,8 +10,9 @@
 
 namespace catena::testing {
 
-/// Harmonic bonds, angles and torsions of every kind along and across the chains, an external force, two pair forces with cutoffs (one with
-/// exceptions, offsets and a switch, one with a tabulated function) and interaction groups. Periodic if the beads have a box.
+/// Harmonic bonds, angles and torsions of every kind along and across the chains, an external
+/// force, two pair forces with cutoffs (one with exceptions, offsets and a switch, one with a
+/// tabulated function) and interaction groups. Periodic if the beads have a box.
 std::unique_ptr<OpenMM::System> every_force(BeadSystem const& beads);
 
 /// The particles alone.

@@ -15,7 +15,8 @@ namespace {
 
 using OpenMM::CustomNonbondedForce;
 
-/// Charges q1 q2, those of some of the particles; a force of the same form acts on all where every one has some.
+/// Charges q1 q2, those of some of the particles; a force of the same form acts on all where every
+/// one has some.
 std::unique_ptr<CustomNonbondedForce> charges(double cutoff, std::vector<double> const& q) {
     auto force = std::make_unique<CustomNonbondedForce>("q1*q2*exp(-r)");
     force->addPerParticleParameter("q");
@@ -28,7 +29,8 @@ std::unique_ptr<CustomNonbondedForce> charges(double cutoff, std::vector<double>
 class Layers : public ::testing::Test {
   protected:
     int constexpr static beads_ = 8;
-    std::vector<double> const all_ = std::vector<double>(beads_, 1.0), some_{0, 1, 0, 0, -1, 0, 0, 0};
+    std::vector<double> const all_ = std::vector<double>(beads_, 1.0),
+                              some_{0, 1, 0, 0, -1, 0, 0, 0};
 
     OpenMmModel model(std::vector<std::unique_ptr<OpenMM::Force>> forces) const {
         OpenMmModel m;
@@ -47,7 +49,9 @@ class Layers : public ::testing::Test {
         (forces.push_back(std::move(force)), ...);
         return model(std::move(forces));
     }
-    std::size_t taken(OpenMmModel m, double most_pairs = 1) const { return take_layers(m, scene_, most_pairs).size(); }
+    std::size_t taken(OpenMmModel m, double most_pairs = 1) const {
+        return take_layers(m, scene_, most_pairs).size();
+    }
 
     BeadSystem scene_ = proteins({"AKAAD", "AAA"});
 };
@@ -73,13 +77,15 @@ TEST_F(Layers, HoldTheBeadsThatActInForcesThatReachFarther) {
     EXPECT_EQ(layer.model.terms, std::vector<std::string>{"force 1"});
     EXPECT_EQ(layer.model.bead_of_particle, (std::vector<std::int64_t>{0, 1}));
     ASSERT_EQ(layer.model.system->getNumForces(), 1);
-    auto const& of_layer = dynamic_cast<CustomNonbondedForce const&>(layer.model.system->getForce(0));
+    auto const& of_layer =
+        dynamic_cast<CustomNonbondedForce const&>(layer.model.system->getForce(0));
     EXPECT_EQ(of_layer.getForceGroup(), 1);
     EXPECT_EQ(of_layer.getNumParticles(), 2);
     EXPECT_EQ(of_layer.getNumExclusions(), 1);  // of the pair that is there
     ASSERT_EQ(m.system->getNumForces(), 1);
     EXPECT_EQ(m.system->getForce(0).getForceGroup(), 0);
-    EXPECT_EQ(text_of(layer, scene), "force 1 in a Context of its own: 2 of 8 beads act in it, up to 4 nm");
+    EXPECT_EQ(text_of(layer, scene),
+              "force 1 in a Context of its own: 2 of 8 beads act in it, up to 4 nm");
 }
 
 TEST_F(Layers, OfParticlesInAnotherOrderThanBeads) {
@@ -104,7 +110,9 @@ TEST_F(Layers, AreOneForEachReach) {
 }
 
 TEST_F(Layers, ComeWhereTheyLeaveFewerPairs) {
-    auto const two = [&] { return model_of(charges(2, all_), charges(4, some_)); };  // 64 8 + 4 64 of 64 64: 19 %
+    auto const two = [&] {
+        return model_of(charges(2, all_), charges(4, some_));
+    };  // 64 8 + 4 64 of 64 64: 19 %
     EXPECT_EQ(taken(two(), 0.18), 0u);
     EXPECT_EQ(taken(two(), 0.2), 1u);
     EXPECT_EQ(taken(model_of(charges(2, all_), charges(4, all_))), 0u);
@@ -122,10 +130,16 @@ TEST_F(Layers, AreNotOfForcesThatAskForMoreThanPairs) {
     EXPECT_EQ(with([](CustomNonbondedForce&) {}), 1u);
     EXPECT_EQ(with([](CustomNonbondedForce& f) { f.addInteractionGroup({0, 1}, {4}); }), 0u);
     EXPECT_EQ(with([](CustomNonbondedForce& f) { f.setUseLongRangeCorrection(true); }), 0u);
-    EXPECT_EQ(with([](CustomNonbondedForce& f) { f.setNonbondedMethod(CustomNonbondedForce::NoCutoff); }), 0u);
-    EXPECT_EQ(with([](CustomNonbondedForce& f) { f.setEnergyFunction("(q1+q2)*exp(-r)"); }), 0u);  // all act
-    // A force that cannot be split needs the System as it is, one that stays and reaches farther its pairs.
-    EXPECT_EQ(taken(model_of(charges(2, all_), charges(4, some_), std::make_unique<OpenMM::CMMotionRemover>())), 0u);
+    EXPECT_EQ(
+        with([](CustomNonbondedForce& f) { f.setNonbondedMethod(CustomNonbondedForce::NoCutoff); }),
+        0u);
+    EXPECT_EQ(with([](CustomNonbondedForce& f) { f.setEnergyFunction("(q1+q2)*exp(-r)"); }),
+              0u);  // all act
+    // A force that cannot be split needs the System as it is, one that stays and reaches farther
+    // its pairs.
+    EXPECT_EQ(taken(model_of(charges(2, all_), charges(4, some_),
+                             std::make_unique<OpenMM::CMMotionRemover>())),
+              0u);
     auto groups = charges(5, all_);
     groups->addInteractionGroup({0}, {1});
     EXPECT_EQ(taken(model_of(charges(2, all_), charges(4, some_), std::move(groups))), 0u);

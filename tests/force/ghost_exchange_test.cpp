@@ -1,4 +1,5 @@
-// Ghosts are those that a search among all beads finds, and stand where their beads do, on any number of ranks.
+// Ghosts are those that a search among all beads finds, and stand where their beads do, on any
+// number of ranks.
 #include "neighbours/ghost_exchange.hpp"
 
 #include <gtest/gtest.h>
@@ -11,8 +12,8 @@
 #include <random>
 #include <set>
 
-#include "neighbours/ghosts.hpp"
 #include "mpi/first_rank.hpp"
+#include "neighbours/ghosts.hpp"
 #include "tests/force/ranks.hpp"
 
 namespace catena::testing {
@@ -27,7 +28,8 @@ struct Beads {
         std::uniform_real_distribution<double> place(0, edge);
         for (Vec3& x : positions)
             for (double& c : x.data) c = place(random);
-        for (int r = 0; r <= communicator.size(); ++r) plan.first_of_rank.push_back(count * r / communicator.size());
+        for (int r = 0; r <= communicator.size(); ++r)
+            plan.first_of_rank.push_back(count * r / communicator.size());
         if (shuffled) {
             for (std::int64_t k = 0; k < count; ++k) plan.by_rank.push_back(k);
             std::shuffle(plan.by_rank.begin(), plan.by_rank.end(), random);
@@ -55,15 +57,18 @@ struct Beads {
     std::vector<std::int64_t> piece_with(std::int64_t bead) const {
         std::int64_t first = bead;
         while (!plan.piece.empty() && plan.piece[static_cast<std::size_t>(first)] == 0) --first;
-        std::vector<std::int64_t> all(plan.piece.empty() ? 1 : plan.piece[static_cast<std::size_t>(first)]);
+        std::vector<std::int64_t> all(
+            plan.piece.empty() ? 1 : plan.piece[static_cast<std::size_t>(first)]);
         std::iota(all.begin(), all.end(), first);
         return all;
     }
-    /// All ghosts that act within the ranges' reach and so much more, or are in a piece with one, partners included.
+    /// All ghosts that act within the ranges' reach and so much more, or are in a piece with one,
+    /// partners included.
     std::vector<std::int64_t> expected(double more) const {
         std::set<std::int64_t> all(plan.partners.begin(), plan.partners.end());
         for (PairRange const& range : plan.ranges) {
-            std::vector<std::int64_t> acting, own;  // of `there`: numbers among all; own ones by their places in it
+            std::vector<std::int64_t> acting,
+                own;  // of `there`: numbers among all; own ones by their places in it
             std::vector<Vec3> there;
             for (std::int64_t k = 0; k < std::ssize(positions); ++k)
                 if (range.is_for(k)) {
@@ -71,7 +76,9 @@ struct Beads {
                     there.push_back(positions[k]);
                 }
             for (std::int64_t const k : own_beads())
-                if (range.is_for(k)) own.push_back(std::lower_bound(acting.begin(), acting.end(), k) - acting.begin());
+                if (range.is_for(k))
+                    own.push_back(std::lower_bound(acting.begin(), acting.end(), k) -
+                                  acting.begin());
             for (std::int64_t const i : ghosts_of(there, own, range.reach + more, plan.box))
                 for (std::int64_t const k : piece_with(acting[i])) all.insert(k);
         }
@@ -109,9 +116,11 @@ std::int64_t walk_along(Beads& beads, Communicator const& communicator, int step
             EXPECT_EQ(sorted(ghosts.beads()), beads.expected(skin));
         }
         auto const held = sorted(ghosts.beads()), needed = beads.expected(0);
-        EXPECT_TRUE(std::includes(held.begin(), held.end(), needed.begin(), needed.end())) << "step " << n;
+        EXPECT_TRUE(std::includes(held.begin(), held.end(), needed.begin(), needed.end()))
+            << "step " << n;
         for (std::size_t i = 0; i < ghosts.beads().size(); ++i)
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(ghosts.positions()[i][c], beads.positions[ghosts.beads()[i]][c]);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_EQ(ghosts.positions()[i][c], beads.positions[ghosts.beads()[i]][c]);
         EXPECT_NO_THROW(ghosts.audit(beads.own()));
         beads.walk(stride);
     }
@@ -142,7 +151,8 @@ TEST(GhostExchange, HoldsNearestImagesInABox) {
 /// Of four beads, or of one and three, scattered far from each other or not.
 TEST(GhostExchange, PiecesAreGhostsAsAWhole) {
     on_ranks([](Communicator const& communicator) {
-        std::pair<std::optional<Vec3>, double> const cases[] = {{std::nullopt, 1.0}, {std::nullopt, 9.0}, {Vec3{{60, 12, 12}}, 1.0}};
+        std::pair<std::optional<Vec3>, double> const cases[] = {
+            {std::nullopt, 1.0}, {std::nullopt, 9.0}, {Vec3{{60, 12, 12}}, 1.0}};
         for (auto const& [box, width] : cases) {
             Beads beads(240, 12, communicator);
             beads.plan.box = box;
@@ -150,7 +160,9 @@ TEST(GhostExchange, PiecesAreGhostsAsAWhole) {
             for (std::int64_t k = 0; k < 240; ++k) {
                 beads.plan.piece.push_back(k % 4 == 0 ? k % 20 == 0 ? 1 : 4 : k % 20 == 1 ? 3 : 0);
                 if (beads.plan.piece.back() == 0)
-                    beads.positions[k] = beads.positions[k - 1] + Vec3{{off(beads.random), off(beads.random), off(beads.random)}};
+                    beads.positions[k] =
+                        beads.positions[k - 1] +
+                        Vec3{{off(beads.random), off(beads.random), off(beads.random)}};
             }
             PairRange few{reach, {}};
             for (std::int64_t k = 0; k < 240; ++k) few.acts.push_back(k % 3 == 0 ? 1 : 0);
@@ -167,7 +179,8 @@ TEST(GhostExchange, PiecesAreGhostsAsAWhole) {
 
 TEST(GhostExchange, BeadsThatActNotSoFarAreGhostsNearbyAlone) {
     on_ranks([](Communicator const& communicator) {
-        for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{60, 12, 12}}}}) {
+        for (std::optional<Vec3> const& box :
+             {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{60, 12, 12}}}}) {
             Beads beads(300, 12, communicator, true);
             beads.plan.box = box;
             PairRange few{reach, {}};
@@ -183,7 +196,8 @@ TEST(GhostExchange, BeadsThatActNotSoFarAreGhostsNearbyAlone) {
     });
 }
 
-/// Where a rank's beads leave no cell of the box free, beads are looked for over the longest range, and some are none's ghosts still.
+/// Where a rank's beads leave no cell of the box free, beads are looked for over the longest range,
+/// and some are none's ghosts still.
 TEST(GhostExchange, SeveralRangesInAFullBox) {
     on_ranks([](Communicator const& communicator) {
         Beads beads(60, 9, communicator, true);
@@ -195,7 +209,8 @@ TEST(GhostExchange, SeveralRangesInAFullBox) {
         for (int n = 0; n < 20; ++n) {
             ghosts.update(beads.own());
             auto const held = sorted(ghosts.beads()), needed = beads.expected(0);
-            EXPECT_TRUE(std::includes(held.begin(), held.end(), needed.begin(), needed.end())) << "step " << n;
+            EXPECT_TRUE(std::includes(held.begin(), held.end(), needed.begin(), needed.end()))
+                << "step " << n;
             EXPECT_NO_THROW(ghosts.audit(beads.own()));
             auto const own = beads.own();
             if (!own.empty() && own.size() + held.size() < beads.positions.size()) {
@@ -213,7 +228,8 @@ TEST(GhostExchange, PartnersAreGhostsWhereverTheyAre) {
         // Bead k and bead 59 - k are partners.
         std::vector<std::int64_t> const own = beads.own_beads();
         for (std::int64_t const k : own)
-            if (std::find(own.begin(), own.end(), 59 - k) == own.end()) beads.plan.partners.push_back(59 - k);
+            if (std::find(own.begin(), own.end(), 59 - k) == own.end())
+                beads.plan.partners.push_back(59 - k);
         std::sort(beads.plan.partners.begin(), beads.plan.partners.end());
         walk_along(beads, communicator, 10, 0.1);
         beads.plan.ranges.clear();
@@ -231,13 +247,16 @@ TEST(GhostExchange, PartnersAreGhostsWhereverTheyAre) {
 TEST(GhostExchange, NothingIsFeltAside) {
     on_ranks([](Communicator const& communicator) {
         for (std::optional<Vec3> const& box :
-             {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{40, 12, 12}}}, std::optional<Vec3>{Vec3{{9, 9, 9}}}}) {
+             {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{40, 12, 12}}},
+              std::optional<Vec3>{Vec3{{9, 9, 9}}}}) {
             Beads beads(40, 9, communicator);
             beads.plan.box = box;
             GhostExchange ghosts(communicator, beads.plan);
             ghosts.update(beads.own());
             auto const own = beads.own();
-            if (own.empty() || std::ssize(own) + std::ssize(ghosts.beads()) == std::ssize(beads.positions)) continue;
+            if (own.empty() ||
+                std::ssize(own) + std::ssize(ghosts.beads()) == std::ssize(beads.positions))
+                continue;
             for (std::int64_t i = 0; i < 30; ++i) {
                 Vec3 const place = ghosts.aside(i, 30);
                 EXPECT_TRUE(near_any({&place, 1}, own, reach + skin / 2, box).empty()) << i;
@@ -260,15 +279,18 @@ TEST(GhostExchange, OnlyRanksThatAreNearSpeak) {
         Beads beads(240, 4, communicator);
         std::vector<std::int64_t> const& first = beads.plan.first_of_rank;
         for (int r = 0; r < communicator.size(); ++r)
-            for (std::int64_t k = first[r]; k < first[r + 1]; ++k) beads.positions[k][0] += 4.0 * r;  // in a row, each as long as 2 reaches
+            for (std::int64_t k = first[r]; k < first[r + 1]; ++k)
+                beads.positions[k][0] += 4.0 * r;  // in a row, each as long as 2 reaches
         GhostExchange ghosts(communicator, beads.plan);
         ghosts.update(beads.own());
         std::int64_t const before = ghosts.traffic().messages;
         ghosts.update(beads.own());
-        int const neighbours = (communicator.rank() > 0 ? 1 : 0) + (communicator.rank() + 1 < communicator.size() ? 1 : 0);
+        int const neighbours = (communicator.rank() > 0 ? 1 : 0) +
+                               (communicator.rank() + 1 < communicator.size() ? 1 : 0);
         EXPECT_EQ(ghosts.traffic().messages - before, neighbours);
         EXPECT_EQ(ghosts.traffic().rebuilds, 1);
-        EXPECT_LT(std::ssize(ghosts.beads()), 240 - std::ssize(beads.own()) + (communicator.size() <= 2 ? 1 : 0));
+        EXPECT_LT(std::ssize(ghosts.beads()),
+                  240 - std::ssize(beads.own()) + (communicator.size() <= 2 ? 1 : 0));
     });
 }
 
@@ -293,13 +315,16 @@ TEST(GhostExchange, TheAuditFindsWhatIsMissedOrStale) {
         ghosts.update(beads.own());
         EXPECT_NO_THROW(ghosts.audit(beads.own()));
         Beads moved = beads;
-        moved.positions.back() = moved.positions.front() + Vec3{{0.5 * reach, 0, 0}};  // of the last rank, to the first one's
-        EXPECT_TRUE(fails_with("is felt on a rank that has no ghost of it", [&] { ghosts.audit(moved.own()); }));
+        moved.positions.back() = moved.positions.front() +
+                                 Vec3{{0.5 * reach, 0, 0}};  // of the last rank, to the first one's
+        EXPECT_TRUE(fails_with("is felt on a rank that has no ghost of it",
+                               [&] { ghosts.audit(moved.own()); }));
         ghosts.renew();
         ghosts.update(moved.own());
         EXPECT_NO_THROW(ghosts.audit(moved.own()));
         moved.positions.back()[1] += 1e-12;
-        EXPECT_TRUE(fails_with("a ghost of bead 100 is not where the bead is", [&] { ghosts.audit(moved.own()); }));
+        EXPECT_TRUE(fails_with("a ghost of bead 100 is not where the bead is",
+                               [&] { ghosts.audit(moved.own()); }));
     });
 }
 
@@ -309,7 +334,8 @@ TEST(GhostExchange, APositionThatIsNotFiniteIsEverybodysMessage) {
         GhostExchange ghosts(communicator, beads.plan);
         ghosts.update(beads.own());
         beads.positions[17][2] = std::numeric_limits<double>::quiet_NaN();
-        EXPECT_TRUE(fails_with("the position of bead 18 is not finite", [&] { ghosts.update(beads.own()); }));
+        EXPECT_TRUE(fails_with("the position of bead 18 is not finite",
+                               [&] { ghosts.update(beads.own()); }));
     });
 }
 

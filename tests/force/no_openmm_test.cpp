@@ -16,7 +16,9 @@ void expect_built_without(Call call) {
         call();
         ADD_FAILURE() << "nothing was thrown";
     } catch (InputError const& e) {
-        EXPECT_TRUE(std::string(e.what()).starts_with("built without OpenMM (scene.yaml: forces.openmm): ")) << e.what();
+        EXPECT_TRUE(
+            std::string(e.what()).starts_with("built without OpenMM (scene.yaml: forces.openmm): "))
+            << e.what();
     }
 }
 

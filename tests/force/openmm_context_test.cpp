@@ -1,4 +1,5 @@
-// Where a Context's particles are placed: coordinates go on where beads do, and forces are those of nearest images all the same.
+// Where a Context's particles are placed: coordinates go on where beads do, and forces are those of
+// nearest images all the same.
 #include "force/context.hpp"
 
 #include <gtest/gtest.h>
@@ -32,15 +33,19 @@ class Places : public ::testing::Test {
         return system;
     }
     double x(ForceContext& context, int particle) const {
-        return context.context().getState(OpenMM::State::Positions).getPositions()[static_cast<std::size_t>(particle)][0];
+        return context.context()
+            .getState(OpenMM::State::Positions)
+            .getPositions()[static_cast<std::size_t>(particle)][0];
     }
     Vec3 const box_{{10, 10, 10}};
-    static double constexpr in_single = 16 * 0x1p-24 * 10;  // of coordinates of 10 nm, times a slope of 2
+    static double constexpr in_single =
+        16 * 0x1p-24 * 10;  // of coordinates of 10 nm, times a slope of 2
 };
 
 TEST_F(Places, ABeadThatLeavesTheBoxGoesOn) {
     ForceContext context(pair(true), platform("CPU"), box_);
-    context.set_positions(std::vector<Vec3>{{{-10.5, 5, 5}}, {{39, 5, 5}}}, 2);  // 9.5 and 9: 0.5 apart
+    context.set_positions(std::vector<Vec3>{{{-10.5, 5, 5}}, {{39, 5, 5}}},
+                          2);  // 9.5 and 9: 0.5 apart
     EXPECT_DOUBLE_EQ(x(context, 0), 9.5);
     EXPECT_DOUBLE_EQ(x(context, 1), 9);
     context.set_positions(std::vector<Vec3>{{{-9.5, 5, 5}}, {{39, 5, 5}}}, 2);
@@ -55,7 +60,9 @@ TEST_F(Places, ABeadThatLeavesTheBoxGoesOn) {
 
 TEST_F(Places, AreFoundAnewForAStrayAndAfterAWhile) {
     ForceContext context(pair(true), platform("CPU"), box_);
-    auto const set = [&](double first) { context.set_positions(std::vector<Vec3>{{{first, 5, 5}}, {{5, 5, 5}}}, 2); };
+    auto const set = [&](double first) {
+        context.set_positions(std::vector<Vec3>{{{first, 5, 5}}, {{5, 5, 5}}}, 2);
+    };
     set(9);
     set(14.9);
     EXPECT_DOUBLE_EQ(x(context, 0), 14.9);
@@ -94,7 +101,9 @@ TEST_F(Places, InTheOpenTheMiddleGoesToTheOriginForAWhile) {
 /// A state that is set, or another copy's frame.
 TEST_F(Places, InTheOpenAreFoundAnewAfterAJump) {
     ForceContext context(pair(false), platform("CPU"), std::nullopt);
-    auto const set = [&](double first) { context.set_positions(std::vector<Vec3>{{{first, 0, 0}}, {{first + 2, 0, 0}}}, 2); };
+    auto const set = [&](double first) {
+        context.set_positions(std::vector<Vec3>{{{first, 0, 0}}, {{first + 2, 0, 0}}}, 2);
+    };
     set(0);
     set(9);
     EXPECT_DOUBLE_EQ(x(context, 0), 8);
@@ -105,14 +114,16 @@ TEST_F(Places, InTheOpenAreFoundAnewAfterAJump) {
     EXPECT_NEAR(context.forces()[0][0], 4, in_single);
 }
 
-/// A run that writes energies is the run that does not: the same bits, as long as one thread adds up forces.
+/// A run that writes energies is the run that does not: the same bits, as long as one thread adds
+/// up forces.
 TEST(PlacesOfARun, DoNotDependOnWhenEnergiesAreAskedFor) {
     BeadSystem const beads = proteins({random_sequence(60, 1)});
     OpenMmSpec spec = on_reference();
     spec.platform = "CPU";
     spec.threads = 1;
     auto const serial = serial_communicator();
-    auto const quiet = make_openmm_force(spec, beads, *serial), asked = make_openmm_force(spec, beads, *serial);
+    auto const quiet = make_openmm_force(spec, beads, *serial),
+               asked = make_openmm_force(spec, beads, *serial);
     auto positions = wound(beads, 3);
     for (int step = 0; step < 300; ++step) {
         EXPECT_EQ(difference(evaluate(*asked, positions), evaluate(*quiet, positions)), 0) << step;

@@ -22,7 +22,8 @@ class Import : public ::testing::Test {
         system->addConstraint(1, 2, 0.39);
     }
     ImportedSystem import(std::vector<Vec3> const& positions) {
-        return import_openmm_system(spec(scratch_file("import.pdb", pdb_of(beads, positions))), "scene.yaml");
+        return import_openmm_system(spec(scratch_file("import.pdb", pdb_of(beads, positions))),
+                                    "scene.yaml");
     }
     OpenMmSpec spec(std::string const& topology) const {
         OpenMmSpec made;
@@ -42,7 +43,8 @@ TEST_F(Import, ChainsMassesAndLengths) {
     ASSERT_EQ(imported.chains.size(), 3u);
     EXPECT_EQ(imported.chains[0].name, "A");
     EXPECT_EQ(imported.chains[0].residue, (std::vector<std::string>{"LYS", "ASP", "GLU", "LYS"}));
-    EXPECT_EQ(imported.chains[0].mass, std::vector<double>(beads.mass.begin(), beads.mass.begin() + 4));
+    EXPECT_EQ(imported.chains[0].mass,
+              std::vector<double>(beads.mass.begin(), beads.mass.begin() + 4));
     EXPECT_EQ(imported.chains[0].length, (std::vector<double>{0, 0.38, 0.39, 0.41}));
     EXPECT_EQ(imported.chains[1].length, (std::vector<double>{0, 0.5}));
     EXPECT_EQ(imported.chains[2].length, std::vector<double>{0});
@@ -61,10 +63,12 @@ TEST_F(Import, Box) {
 }
 
 TEST_F(Import, AlphaSynuclein) {
-    std::string const reference = std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-system-openmm7.xml";
-    beads = proteins({std::string(
-        "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMP"
-        "SEEGYQDYEPEA")});
+    std::string const reference =
+        std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-system-openmm7.xml";
+    beads =
+        proteins({std::string("MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGG"
+                              "AVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMP"
+                              "SEEGYQDYEPEA")});
     OpenMmSpec published;
     published.system = reference;
     published.topology = scratch_file("asyn.pdb", pdb_of(beads, wound(beads, 1)));
@@ -79,36 +83,43 @@ TEST_F(Import, AlphaSynuclein) {
 
 TEST_F(Import, Messages) {
     auto const positions = wound(beads, 1);
-    EXPECT_EQ(
-        complaint([&] { import(positions); }),
-        "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml: forces.openmm.system, chain B, body 2): "
-        "join neighbours in a chain (a bond of stiffness 0 does not), or end the chain between them in the topology (TER)");
+    EXPECT_EQ(complaint([&] { import(positions); }),
+              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint "
+              "(scene.yaml: forces.openmm.system, chain B, body 2): "
+              "join neighbours in a chain (a bond of stiffness 0 does not), or end the chain "
+              "between them in the topology (TER)");
     join_glycines();
     std::string const short_file = scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions));
     EXPECT_EQ(complaint([&] { import_openmm_system(spec(short_file), "scene.yaml"); }),
-              "the topology has 2 atoms and the System 7 particles (scene.yaml: forces.openmm.topology): give one atom a particle, in the "
+              "the topology has 2 atoms and the System 7 particles (scene.yaml: "
+              "forces.openmm.topology): give one atom a particle, in the "
               "System's order");
     EXPECT_EQ(complaint([&] { import_openmm_system(spec("/nowhere/a.pdb"), "scene.yaml"); }),
-              "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB file that can be read");
+              "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB file "
+              "that can be read");
 }
 
 TEST_F(Import, AMotionRemoverIsLeftOutWithANote) {
     join_glycines();
     system->addForce(new OpenMM::CMMotionRemover);
     EXPECT_EQ(import(wound(beads, 1)).notes,
-              std::vector<std::string>{"The System's CMMotionRemover, which has no energy and stops the centre of mass, is left out."});
+              std::vector<std::string>{"The System's CMMotionRemover, which has no energy and "
+                                       "stops the centre of mass, is left out."});
 }
 
 /// 1000 kJ/mol/nm2 as in MOFF: sqrt(0.00831446 300 / 1000) / 0.5 = 0.0998916.
 TEST_F(Import, SoftBondsAreNotedAndSofterOnesRefused) {
     bonds->addBond(4, 5, 0.5, 1000);
-    EXPECT_EQ(
-        import(wound(beads, 1)).notes,
-        std::vector<std::string>{"1 link of fixed length stands for soft bonds: the thermal spread sqrt(kT/k) at 300 K is up to 9.99 % of "
-                                 "the length (particles 4 and 5 from 0: 1000 kJ/mol/nm2, 0.5 nm); Catena keeps no springs between "
-                                 "neighbours."});
+    EXPECT_EQ(import(wound(beads, 1)).notes,
+              std::vector<std::string>{"1 link of fixed length stands for soft bonds: the thermal "
+                                       "spread sqrt(kT/k) at 300 K is up to 9.99 % of "
+                                       "the length (particles 4 and 5 from 0: 1000 kJ/mol/nm2, 0.5 "
+                                       "nm); Catena keeps no springs between "
+                                       "neighbours."});
     bonds->setBondParameters(bonds->getNumBonds() - 1, 4, 5, 0.5, 200);
-    EXPECT_TRUE(complaint([&] { import(wound(beads, 1)); }).starts_with("the bond between particles 4 and 5 (from 0) is too soft"));
+    EXPECT_TRUE(complaint([&] {
+                    import(wound(beads, 1));
+                }).starts_with("the bond between particles 4 and 5 (from 0) is too soft"));
     system->addConstraint(4, 5, 0.5);  // has the last word
     EXPECT_TRUE(import(wound(beads, 1)).notes.empty());
 }
@@ -120,7 +131,9 @@ TEST_F(Import, SpringsOnOnePairRestTogether) {
     auto const imported = import(wound(beads, 1));
     EXPECT_NEAR(imported.chains[1].length[1], 0.425, 1e-15);
     ASSERT_EQ(imported.notes.size(), 1U);
-    EXPECT_NE(imported.notes[0].find("(particles 4 and 5 from 0: 2 bonds, 0.425 nm)"), std::string::npos) << imported.notes[0];
+    EXPECT_NE(imported.notes[0].find("(particles 4 and 5 from 0: 2 bonds, 0.425 nm)"),
+              std::string::npos)
+        << imported.notes[0];
 }
 
 TEST_F(Import, OtherBondsBetweenNeighboursAreNamed) {
@@ -128,7 +141,9 @@ TEST_F(Import, OtherBondsBetweenNeighboursAreNamed) {
     fene->addBond(5, 4);
     system->addForce(fene);
     std::string const text = complaint([&] { import(wound(beads, 1)); });
-    EXPECT_TRUE(text.starts_with("particles 4 and 5 (from 0) are joined by a CustomBondForce (FENE) and by no harmonic bond or constraint"))
+    EXPECT_TRUE(
+        text.starts_with("particles 4 and 5 (from 0) are joined by a CustomBondForce (FENE) and by "
+                         "no harmonic bond or constraint"))
         << text;
     EXPECT_NE(text.find("add a constraint"), std::string::npos) << text;
 }
@@ -137,25 +152,32 @@ TEST_F(Import, BranchesAndRingsAreNamed) {
     join_glycines();
     bonds->addBond(0, 3, 0.4, stiff);  // ends of the first chain
     EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
-    EXPECT_TRUE(import(wound(beads, 1)).notes.at(0).starts_with("Chain A is closed into a ring by a harmonic bond, which stays a spring"));
+    EXPECT_TRUE(
+        import(wound(beads, 1))
+            .notes.at(0)
+            .starts_with("Chain A is closed into a ring by a harmonic bond, which stays a spring"));
     system->addConstraint(0, 1, 0.38);  // an infinitely stiff first link
     EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
     bonds->setBondParameters(4, 0, 3, 0.4, 1);  // a restraint of the ends, no link
     EXPECT_TRUE(import(wound(beads, 1)).notes.empty());
     bonds->setBondParameters(1, 3, 1, 0.41, stiff);  // was 3 to 2
     std::string const text = complaint([&] { import(wound(beads, 1)); });
-    EXPECT_TRUE(text.starts_with("particle 3 (from 0) is joined to particle 1 and not to particle 2 before it: the molecule is branched"))
+    EXPECT_TRUE(
+        text.starts_with("particle 3 (from 0) is joined to particle 1 and not to particle 2 before "
+                         "it: the molecule is branched"))
         << text;
 }
 
 TEST_F(Import, BondsThatAreNoneAreRefused) {
     join_glycines();
     bonds->setBondParameters(0, 0, 1, 0.38, -5);
+    EXPECT_TRUE(complaint([&] { import(wound(beads, 1)); })
+                    .starts_with("the harmonic bond between particles 0 and 1 (from 0) has "
+                                 "stiffness -5 and length 0.38"));
+    bonds->setBondParameters(0, 0, 1, 0, stiff);
     EXPECT_TRUE(complaint([&] {
                     import(wound(beads, 1));
-                }).starts_with("the harmonic bond between particles 0 and 1 (from 0) has stiffness -5 and length 0.38"));
-    bonds->setBondParameters(0, 0, 1, 0, stiff);
-    EXPECT_TRUE(complaint([&] { import(wound(beads, 1)); }).starts_with("the bond between particles 0 and 1 (from 0) has length 0 nm"));
+                }).starts_with("the bond between particles 0 and 1 (from 0) has length 0 nm"));
 }
 
 }  // namespace

@@ -33,58 +33,75 @@ class Messages : public ::testing::Test {
         spec.system = scratch_file("messages.xml", xml);
         return spec;
     }
-    std::string of_system(std::function<void(OpenMM::System&)> const& change) { return of(with_system(change)); }
+    std::string of_system(std::function<void(OpenMM::System&)> const& change) {
+        return of(with_system(change));
+    }
 };
 
 TEST_F(Messages, Platform) {
     OpenMmSpec spec = on_reference();
     spec.platform = "Abacus";
-    EXPECT_TRUE(of(spec).starts_with("OpenMM " + version +
-                                     " has no platform Abacus (scene.yaml: forces.openmm.platform): take one of Reference, CPU"))
+    EXPECT_TRUE(of(spec).starts_with(
+        "OpenMM " + version +
+        " has no platform Abacus (scene.yaml: forces.openmm.platform): take one of Reference, CPU"))
         << of(spec);
     spec = on_reference();
     spec.precision = "half";
-    EXPECT_EQ(of(spec), "OpenMM knows no precision \"half\" (scene.yaml: forces.openmm.precision): take single, mixed or double");
+    EXPECT_EQ(of(spec),
+              "OpenMM knows no precision \"half\" (scene.yaml: forces.openmm.precision): take "
+              "single, mixed or double");
     spec = on_reference();
     spec.path = "device";
-    EXPECT_EQ(of(spec),
-              "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: forces.openmm.path): take auto, or "
-              "chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
+    EXPECT_EQ(
+        of(spec),
+        "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: "
+        "forces.openmm.path): take auto, or "
+        "chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
 }
 
 TEST_F(Messages, Builder) {
     EXPECT_EQ(of(on_reference("martini")),
-              "OpenMM's forces have no builder \"martini\" (scene.yaml: forces.openmm): take builder: calvados2, or system: and topology:");
+              "OpenMM's forces have no builder \"martini\" (scene.yaml: forces.openmm): take "
+              "builder: calvados2, or system: and topology:");
     EXPECT_EQ(of(on_reference("")),
-              "OpenMM's forces have no builder \"\" (scene.yaml: forces.openmm): take builder: calvados2, or system: and topology:");
+              "OpenMM's forces have no builder \"\" (scene.yaml: forces.openmm): take builder: "
+              "calvados2, or system: and topology:");
     beads = proteins({});
     EXPECT_EQ(of(on_reference()),
-              "OpenMM has nothing to act on (scene.yaml: forces.openmm): give the scene a chain of beads, or leave forces.openmm out");
+              "OpenMM has nothing to act on (scene.yaml: forces.openmm): give the scene a chain of "
+              "beads, or leave forces.openmm out");
 }
 
 TEST_F(Messages, Calvados2) {
     OpenMmSpec spec = on_reference();
     spec.temperature = 0;
-    EXPECT_EQ(of(spec), "temperature 0 K is not positive (scene.yaml: forces.openmm.temperature): give it in kelvin");
+    EXPECT_EQ(of(spec),
+              "temperature 0 K is not positive (scene.yaml: forces.openmm.temperature): give it in "
+              "kelvin");
     spec.temperature = 643.5;
-    EXPECT_EQ(
-        of(spec),
-        "at 643.5 K the permittivity of water, which charges feel, is not known (scene.yaml: forces.openmm.temperature): give at most "
-        "643 K there (it is dynamics.temperature where it is left out)");
+    EXPECT_EQ(of(spec),
+              "at 643.5 K the permittivity of water, which charges feel, is not known (scene.yaml: "
+              "forces.openmm.temperature): give at most "
+              "643 K there (it is dynamics.temperature where it is left out)");
     spec = on_reference();
     spec.ionic_strength = -0.1;
-    EXPECT_EQ(of(spec), "ionic strength -0.1 mol/l is negative (scene.yaml: forces.openmm.ionic_strength): give it in mol/l");
+    EXPECT_EQ(of(spec),
+              "ionic strength -0.1 mol/l is negative (scene.yaml: forces.openmm.ionic_strength): "
+              "give it in mol/l");
     spec = on_reference();
     spec.switch_width = 2;
     EXPECT_EQ(of(spec),
-              "switch width 2 nm is not between 0 and the shortest cutoff, 2 nm (scene.yaml: forces.openmm.switch_width): take about 0.2");
+              "switch width 2 nm is not between 0 and the shortest cutoff, 2 nm (scene.yaml: "
+              "forces.openmm.switch_width): take about 0.2");
     beads.box = Vec3{{9, 7.5, 9}};
     EXPECT_EQ(of(on_reference()),
-              "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml: box.periodic): take a larger box or none");
+              "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml: box.periodic): "
+              "take a larger box or none");
     beads.box.reset();
     beads.residue[5] = "UNK";
     EXPECT_EQ(of(on_reference()),
-              "CALVADOS 2 has no residue UNK (scene.yaml: chain B, body 2): use the twenty amino acids (sequence and model: calvados2), or "
+              "CALVADOS 2 has no residue UNK (scene.yaml: chain B, body 2): use the twenty amino "
+              "acids (sequence and model: calvados2), or "
               "give the forces "
               "as a System (forces.openmm.system)");
 }
@@ -92,20 +109,29 @@ TEST_F(Messages, Calvados2) {
 TEST_F(Messages, UnreadableSystem) {
     OpenMmSpec spec = on_reference("");
     spec.system = "/nowhere/system.xml";
-    EXPECT_EQ(of(spec), "cannot open /nowhere/system.xml (scene.yaml: forces.openmm.system): name a serialised System that can be read");
-    EXPECT_NE(of(with_text("hello")).find(" is no serialised System (scene.yaml: forces.openmm.system): "), std::string::npos);
-    EXPECT_NE(of(with_text("<?xml version=\"1.0\" ?>\n<State type=\"State\" version=\"1\"></State>")).find(" is no serialised System ("),
+    EXPECT_EQ(of(spec),
+              "cannot open /nowhere/system.xml (scene.yaml: forces.openmm.system): name a "
+              "serialised System that can be read");
+    EXPECT_NE(of(with_text("hello"))
+                  .find(" is no serialised System (scene.yaml: forces.openmm.system): "),
               std::string::npos);
+    EXPECT_NE(
+        of(with_text("<?xml version=\"1.0\" ?>\n<State type=\"State\" version=\"1\"></State>"))
+            .find(" is no serialised System ("),
+        std::string::npos);
 
     std::string xml = xml_of(*every_force(proteins({random_sequence(60, 1)})));
-    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is not well-formed: "), std::string::npos);
-    auto const at = xml.find('"', xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
+    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is not well-formed: "),
+              std::string::npos);
+    auto const at =
+        xml.find('"', xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
     xml.replace(at, 1, "9");
     std::string const text = of(with_text(xml));
     EXPECT_TRUE(text.starts_with("OpenMM " + version + " cannot read ")) << text;
-    EXPECT_NE(text.find("messages.xml, written by OpenMM " + version +
-                        ": Unsupported version number (scene.yaml: forces.openmm.system): build Catena"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find("messages.xml, written by OpenMM " + version +
+                  ": Unsupported version number (scene.yaml: forces.openmm.system): build Catena"),
+        std::string::npos)
         << text;
     EXPECT_EQ(text.find('\n'), std::string::npos);
 }
@@ -116,23 +142,35 @@ TEST_F(Messages, ReferenceSystemOnOpenMm7) {
     spec.system = std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-system.xml";
     std::string const text = of(spec);
     EXPECT_TRUE(text.starts_with("OpenMM 7.7 cannot read ")) << text;
-    EXPECT_NE(text.find("written by OpenMM 8.6.1: Unsupported version number"), std::string::npos) << text;
+    EXPECT_NE(text.find("written by OpenMM 8.6.1: Unsupported version number"), std::string::npos)
+        << text;
 }
 
 TEST_F(Messages, WhatMovesParticles) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::AndersenThermostat(310, 1)); }),
               "the System holds an AndersenThermostat, which holds 310 K by collisions" + where +
-                  "remove it: Catena's own integrators hold the temperature (dynamics.integrator: g-baoab)");
+                  "remove it: Catena's own integrators hold the temperature (dynamics.integrator: "
+                  "g-baoab)");
     std::string const volume = "remove it: Catena runs at constant volume, in the System's box";
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::MonteCarloBarostat(1.5, 310)); }),
-              "the System holds a MonteCarloBarostat, which changes the box's volume to hold 1.5 bar at 310 K" + where + volume);
-    EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::MonteCarloAnisotropicBarostat({1, 1, 1}, 300)); }),
-              "the System holds a MonteCarloAnisotropicBarostat, which changes the box's edges to hold a pressure" + where + volume);
-    EXPECT_EQ(of_system([](auto& s) { s.setVirtualSite(2, new OpenMM::TwoParticleAverageSite(1, 3, 0.5, 0.5)); }),
-              "particle 2 (from 0) is a virtual site" + where + "leave virtual sites out: every particle is a bead with a mass");
+              "the System holds a MonteCarloBarostat, which changes the box's volume to hold 1.5 "
+              "bar at 310 K" +
+                  where + volume);
+    EXPECT_EQ(of_system([](auto& s) {
+                  s.addForce(new OpenMM::MonteCarloAnisotropicBarostat({1, 1, 1}, 300));
+              }),
+              "the System holds a MonteCarloAnisotropicBarostat, which changes the box's edges to "
+              "hold a pressure" +
+                  where + volume);
+    EXPECT_EQ(of_system([](auto& s) {
+                  s.setVirtualSite(2, new OpenMM::TwoParticleAverageSite(1, 3, 0.5, 0.5));
+              }),
+              "particle 2 (from 0) is a virtual site" + where +
+                  "leave virtual sites out: every particle is a bead with a mass");
     EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(1, 0); }),
-              "particle 1 (from 0) has no mass" + where + "give it one: every particle is a bead that moves");
+              "particle 1 (from 0) has no mass" + where +
+                  "give it one: every particle is a bead that moves");
 }
 
 TEST_F(Messages, WhatMovesParticlesIsLeftOutWhereItIsNotAskedFor) {
@@ -143,11 +181,15 @@ TEST_F(Messages, WhatMovesParticlesIsLeftOutWhereItIsNotAskedFor) {
         s.addForce(new OpenMM::CMMotionRemover);
     });
     spec.force_groups = {0};
-    std::string const text = fmt::format("{}", fmt::join(make_openmm_force(spec, beads, *serial)->description(), "\n"));
-    EXPECT_NE(text.find("The System's MonteCarloBarostat, which changes the box's volume to hold 1 bar at 300 K, is left out."),
+    std::string const text =
+        fmt::format("{}", fmt::join(make_openmm_force(spec, beads, *serial)->description(), "\n"));
+    EXPECT_NE(text.find("The System's MonteCarloBarostat, which changes the box's volume to hold 1 "
+                        "bar at 300 K, is left out."),
               std::string::npos)
         << text;
-    EXPECT_NE(text.find("The System's CMMotionRemover, which has no energy and stops the centre of mass, is left out."), std::string::npos)
+    EXPECT_NE(text.find("The System's CMMotionRemover, which has no energy and stops the centre of "
+                        "mass, is left out."),
+              std::string::npos)
         << text;
 }
 
@@ -155,14 +197,16 @@ TEST_F(Messages, TermsAreNamedForTablesAndPeople) {
     auto const pairs = [&](auto& s, std::string const& energy, std::string const& name) {
         auto* force = new OpenMM::CustomNonbondedForce(energy);
         if (!name.empty()) force->setName(name);
-        for (char const* const parameter : {"q", "s", "l"}) force->addPerParticleParameter(parameter);
+        for (char const* const parameter : {"q", "s", "l"})
+            force->addPerParticleParameter(parameter);
         for (int i = 0; i < s.getNumParticles(); ++i) force->addParticle({0.5 * i - 1, 0.5, 0.5});
         s.addForce(force);
     };
     // Expressions as the CALVADOS package and OpenABC write them.
     std::string const yukawa = "q*1.73*(exp(-1.27*r)/r-0.0016); q=q1*q2";
     std::string const sticky =
-        "0.8368*select(step(r-2^(1/6)*s),4*l*((s/r)^12-(s/r)^6),4*((s/r)^12-(s/r)^6)+(1-l)); s=0.5*(s1+s2); l=0.5*(l1+l2)";
+        "0.8368*select(step(r-2^(1/6)*s),4*l*((s/r)^12-(s/r)^6),4*((s/r)^12-(s/r)^6)+(1-l)); "
+        "s=0.5*(s1+s2); l=0.5*(l1+l2)";
     auto const force = make_openmm_force(with_system([&](auto& s) {
                                              pairs(s, yukawa, "");
                                              pairs(s, "q1 * q2 * exp(-r / 0.8) / r", "");
@@ -178,10 +222,14 @@ TEST_F(Messages, TermsAreNamedForTablesAndPeople) {
     evaluate(*force, wound(beads, 1));
     std::vector<std::string> names;
     for (auto const& term : force->energies()) names.push_back(term.name);
-    EXPECT_EQ(names, (std::vector<std::string>{"yukawa", "yukawa 2", "ashbaugh-hatch", "CustomNonbondedForce", "a_ _b_ _c_", "total 2",
+    EXPECT_EQ(names, (std::vector<std::string>{"yukawa", "yukawa 2", "ashbaugh-hatch",
+                                               "CustomNonbondedForce", "a_ _b_ _c_", "total 2",
                                                "mine", "mine 2", "mine 3"}));
-    std::string const text = fmt::format("{}", fmt::join(force->description(), "\n"));  // -1, -0.5, 0, 0.5 and 1, 1.5
-    EXPECT_NE(text.find("net charge: A -1.000 e, B 2.500 e; together 1.500 e (yukawa)"), std::string::npos) << text;
+    std::string const text =
+        fmt::format("{}", fmt::join(force->description(), "\n"));  // -1, -0.5, 0, 0.5 and 1, 1.5
+    EXPECT_NE(text.find("net charge: A -1.000 e, B 2.500 e; together 1.500 e (yukawa)"),
+              std::string::npos)
+        << text;
 }
 
 TEST_F(Messages, ConstraintsThatAreNoLinks) {
@@ -193,10 +241,13 @@ TEST_F(Messages, ConstraintsThatAreNoLinks) {
               "the constraint between particles 3 and 4 (from 0) is no link of the scene" + where +
                   "constrain neighbours in a chain only, or make it a bond");
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(1, 2, 0.5); }),
-              "the constraint between particles 1 and 2 (from 0) has length 0.5, its link 0.38" + where + "let both be the same");
-    auto const force =
-        make_openmm_force(with_system([](auto& s) { s.addConstraint(2, 1, 0.38), s.addConstraint(2, 3, 0.38); }), beads, *serial);
-    EXPECT_NE(fmt::format("{}", fmt::join(force->description(), "\n")).find("2 constraints along rigid links left out (length 0.38 nm)"),
+              "the constraint between particles 1 and 2 (from 0) has length 0.5, its link 0.38" +
+                  where + "let both be the same");
+    auto const force = make_openmm_force(
+        with_system([](auto& s) { s.addConstraint(2, 1, 0.38), s.addConstraint(2, 3, 0.38); }),
+        beads, *serial);
+    EXPECT_NE(fmt::format("{}", fmt::join(force->description(), "\n"))
+                  .find("2 constraints along rigid links left out (length 0.38 nm)"),
               std::string::npos);
 }
 
@@ -210,11 +261,12 @@ TEST_F(Messages, BondsOfOtherLengthsThanTheirLinks) {
     });
     auto const force = make_openmm_force(spec, beads, *serial);
     std::string const text = fmt::format("{}", fmt::join(force->description(), "\n"));
-    EXPECT_NE(
-        text.find("2 harmonic bonds along rigid links left out (lengths 0.38 to 0.4 nm); their links differ from them by up to 0.02 nm"),
-        std::string::npos)
+    EXPECT_NE(text.find("2 harmonic bonds along rigid links left out (lengths 0.38 to 0.4 nm); "
+                        "their links differ from them by up to 0.02 nm"),
+              std::string::npos)
         << text;
-    auto const forces = evaluate(*force, {Vec3::zero(), {{9, 0, 0}}, {{9, 9, 0}}, {{1.5, 0, 0}}, {{5, 5, 5}}, {{6, 5, 5}}});
+    auto const forces = evaluate(
+        *force, {Vec3::zero(), {{9, 0, 0}}, {{9, 9, 0}}, {{1.5, 0, 0}}, {{5, 5, 5}}, {{6, 5, 5}}});
     EXPECT_NEAR(forces[0][0], 50, 1e-12);
     EXPECT_EQ(norm(forces[1]), 0);
     EXPECT_EQ(norm(forces[2]), 0);
@@ -226,25 +278,31 @@ TEST_F(Messages, BondsOfOtherLengthsThanTheirLinks) {
 TEST_F(Messages, CountsAndMasses) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
     OpenMmSpec const longer = with_system([](auto& s) { s.addParticle(1); });
-    EXPECT_EQ(of(longer), "the System has 7 particles and the scene 6 beads" + where + "let every particle of " + longer.system +
-                              " be a bead of the scene");
-    EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(4, 60); }), "particle 4 (from 0) has mass 60 in the System and 59.05 in the scene" +
-                                                                        where + "masses come from the System: let the scene give the same");
-    make_openmm_force(with_system([](auto& s) { s.setParticleMass(4, 59.05 * (1 + 1e-9)); }), beads, *serial);
+    EXPECT_EQ(of(longer), "the System has 7 particles and the scene 6 beads" + where +
+                              "let every particle of " + longer.system + " be a bead of the scene");
+    EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(4, 60); }),
+              "particle 4 (from 0) has mass 60 in the System and 59.05 in the scene" + where +
+                  "masses come from the System: let the scene give the same");
+    make_openmm_force(with_system([](auto& s) { s.setParticleMass(4, 59.05 * (1 + 1e-9)); }), beads,
+                      *serial);
 }
 
 TEST_F(Messages, Topology) {
     OpenMmSpec spec = with_system([](auto&) {});
     std::vector<Vec3> const anywhere(6, Vec3::zero());
     spec.topology = scratch_file("short.pdb", pdb_of(proteins({"KDE", "GG"}), anywhere));
-    EXPECT_EQ(of(spec), "the topology has 5 atoms and the System 6 particles (scene.yaml: forces.openmm.topology): let " + spec.topology +
-                            " hold one atom a particle, in the System's order");
+    EXPECT_EQ(of(spec),
+              "the topology has 5 atoms and the System 6 particles (scene.yaml: "
+              "forces.openmm.topology): let " +
+                  spec.topology + " hold one atom a particle, in the System's order");
     spec.topology = scratch_file("other.pdb", pdb_of(proteins({"KDE", "GGG"}), anywhere));
     EXPECT_EQ(of(spec),
-              "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml: forces.openmm.topology): give the chains in the "
+              "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml: "
+              "forces.openmm.topology): give the chains in the "
               "topology's order, or say which particles are whose with forces.openmm.map");
     spec.topology = scratch_file("one.pdb", pdb_of(proteins({"KDEKGG"}), anywhere));
-    EXPECT_TRUE(of(spec).starts_with("chain 1 has 4 beads in the scene and 6 atoms in the topology"));
+    EXPECT_TRUE(
+        of(spec).starts_with("chain 1 has 4 beads in the scene and 6 atoms in the topology"));
     spec.topology = scratch_file("right.pdb", pdb_of(beads, anywhere));
     make_openmm_force(spec, beads, *serial);
 }
@@ -253,15 +311,17 @@ TEST_F(Messages, Map) {
     std::string const where = " (scene.yaml: forces.openmm.map): ";
     OpenMmSpec spec = with_system([](auto&) {});
     spec.map = {{"A", {0, 3}}};
-    EXPECT_EQ(of(spec), "chain B is not in the map" + where + "give every chain of beads its first and last particle");
+    EXPECT_EQ(of(spec), "chain B is not in the map" + where +
+                            "give every chain of beads its first and last particle");
     spec.map = {{"A", {0, 3}}, {"B", {3, 4}}};
-    EXPECT_EQ(of(spec), "particle 3 (from 0) belongs to two chains" + where + "let the ranges be disjoint");
+    EXPECT_EQ(of(spec),
+              "particle 3 (from 0) belongs to two chains" + where + "let the ranges be disjoint");
     spec.map = {{"A", {0, 3}}, {"B", {5, 6}}};
-    EXPECT_EQ(of(spec),
-              "chain B has 2 beads, and its particles are 5 to 6 of 0 to 5" + where + "name its first and last particle, counted from 0");
+    EXPECT_EQ(of(spec), "chain B has 2 beads, and its particles are 5 to 6 of 0 to 5" + where +
+                            "name its first and last particle, counted from 0");
     spec.map = {{"A", {0, 2}}, {"B", {4, 5}}};
-    EXPECT_EQ(of(spec),
-              "chain A has 4 beads, and its particles are 0 to 2 of 0 to 5" + where + "name its first and last particle, counted from 0");
+    EXPECT_EQ(of(spec), "chain A has 4 beads, and its particles are 0 to 2 of 0 to 5" + where +
+                            "name its first and last particle, counted from 0");
     spec.map = {{"A", {0, 3}}, {"C", {0, 1}}, {"B", {4, 5}}};
     EXPECT_EQ(of(spec), "the scene has no chain of beads named C" + where + "take one of A, B");
     spec.map = {{"B", {4, 5}}, {"A", {0, 3}}};
@@ -278,17 +338,23 @@ TEST_F(Messages, Box) {
         s.addForce(pairs);
     };
     std::string const expected =
-        "the System's forces are periodic and its box is not the scene's (scene.yaml: box.periodic): give the System's, [5, 6, 7]; it must "
+        "the System's forces are periodic and its box is not the scene's (scene.yaml: "
+        "box.periodic): give the System's, [5, 6, 7]; it must "
         "be rectangular";
     EXPECT_EQ(of_system(periodic), expected);
     beads.box = Vec3{{5, 6, 7.5}};
     EXPECT_EQ(of_system(periodic), expected);
     beads.box = Vec3{{5, 6, 7}};
     make_openmm_force(with_system(periodic), beads, *serial);
-    EXPECT_EQ(of_system([&](auto& s) { periodic(s), s.setDefaultPeriodicBoxVectors({5, 0, 0}, {1, 6, 0}, {0, 0, 7}); }), expected);
+    EXPECT_EQ(of_system([&](auto& s) {
+                  periodic(s), s.setDefaultPeriodicBoxVectors({5, 0, 0}, {1, 6, 0}, {0, 0, 7});
+              }),
+              expected);
 
-    auto const open = make_openmm_force(with_system([](auto& s) { s.addForce(new OpenMM::HarmonicBondForce); }), beads, *serial);
-    EXPECT_NE(fmt::format("{}", fmt::join(open->description(), "\n")).find("no force of the System knows the scene's box"),
+    auto const open = make_openmm_force(
+        with_system([](auto& s) { s.addForce(new OpenMM::HarmonicBondForce); }), beads, *serial);
+    EXPECT_NE(fmt::format("{}", fmt::join(open->description(), "\n"))
+                  .find("no force of the System knows the scene's box"),
               std::string::npos);
 }
 
@@ -297,7 +363,8 @@ TEST_F(Messages, TooManyForces) {
         EXPECT_EQ(of_system([&](auto& s) {
                       for (int i = 0; i < count; ++i) s.addForce(new OpenMM::CustomBondForce("r"));
                   }),
-                  fmt::format("the System has {} forces (scene.yaml: forces.openmm.system): merge forces of one kind: OpenMM tells 32 "
+                  fmt::format("the System has {} forces (scene.yaml: forces.openmm.system): merge "
+                              "forces of one kind: OpenMM tells 32 "
                               "groups apart",
                               count));
     auto const force = make_openmm_force(with_system([](auto& s) {
@@ -317,7 +384,8 @@ TEST_F(Messages, TooManyForces) {
     EXPECT_GT(energies[0].value, 0);
 }
 
-/// As many ranks as one likes without anybody to speak to: enough where make_openmm_force refuses on every rank.
+/// As many ranks as one likes without anybody to speak to: enough where make_openmm_force refuses
+/// on every rank.
 class Alone final : public Communicator {
   public:
     int rank() const override { return 0; }
@@ -325,12 +393,14 @@ class Alone final : public Communicator {
     int ranks_on_host() const override { return 2; }
     int ranks_on_cores() const override { return 2; }
     int rank_on_host() const override { return 0; }
-    void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const override {
+    void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
+                    std::vector<std::int64_t> const& bytes) const override {
         std::fill(all.begin(), all.end(), std::byte{0});
         std::copy(own.begin(), own.end(), all.begin());
         EXPECT_EQ(std::ssize(own), bytes[0]);
     }
-    void gather(std::span<std::byte const>, std::span<std::byte>, std::vector<std::int64_t> const&) const override {}
+    void gather(std::span<std::byte const>, std::span<std::byte>,
+                std::vector<std::int64_t> const&) const override {}
     void broadcast(std::span<std::byte>) const override {}
     void exchange(std::span<std::byte const>, int, std::span<std::byte>, int) const override {}
     double max(double value) const override { return value; }
@@ -347,15 +417,18 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
         return complaint([&] { make_openmm_force(spec, beads, Alone()); });
     };
     std::string const rest =
-        " cannot be split over 2 ranks (scene.yaml: forces.openmm): set forces.openmm.replicate: true, so that every rank computes the "
+        " cannot be split over 2 ranks (scene.yaml: forces.openmm): set forces.openmm.replicate: "
+        "true, so that every rank computes the "
         "whole System, or run "
         "on one rank";
     EXPECT_EQ(refused(new OpenMM::CustomCVForce("1")), "CustomCVForce" + rest);
     EXPECT_EQ(refused(new OpenMM::CustomGBForce), "CustomGBForce" + rest);
     EXPECT_EQ(refused(new OpenMM::GBSAOBCForce), "GBSAOBCForce" + rest);
     EXPECT_EQ(refused(new OpenMM::GayBerneForce), "GayBerneForce" + rest);
-    EXPECT_EQ(refused(new OpenMM::CustomCentroidBondForce(2, "distance(g1,g2)")), "CustomCentroidBondForce" + rest);
-    EXPECT_EQ(refused(new OpenMM::CustomManyParticleForce(3, "1")), "CustomManyParticleForce" + rest);
+    EXPECT_EQ(refused(new OpenMM::CustomCentroidBondForce(2, "distance(g1,g2)")),
+              "CustomCentroidBondForce" + rest);
+    EXPECT_EQ(refused(new OpenMM::CustomManyParticleForce(3, "1")),
+              "CustomManyParticleForce" + rest);
     for (auto const& [method, name] : {std::pair{OpenMM::NonbondedForce::Ewald, "Ewald"},
                                        {OpenMM::NonbondedForce::PME, "PME"},
                                        {OpenMM::NonbondedForce::LJPME, "LJPME"}}) {
@@ -367,9 +440,13 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
 }
 
 TEST_F(Messages, RefusedByOpenMm) {
-    std::string const text = of_system([](auto& s) { s.addForce(new OpenMM::CustomNonbondedForce("1/r")); });  // without its particles
+    std::string const text = of_system([](auto& s) {
+        s.addForce(new OpenMM::CustomNonbondedForce("1/r"));
+    });  // without its particles
     EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
-    EXPECT_TRUE(text.ends_with(" (scene.yaml: forces.openmm): mend the System, or take another platform")) << text;
+    EXPECT_TRUE(
+        text.ends_with(" (scene.yaml: forces.openmm): mend the System, or take another platform"))
+        << text;
 }
 
 }  // namespace

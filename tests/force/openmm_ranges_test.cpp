@@ -12,7 +12,8 @@
 namespace catena::testing {
 namespace {
 
-std::unique_ptr<OpenMM::CustomNonbondedForce> custom(std::string const& energy, double cutoff, std::initializer_list<double> q) {
+std::unique_ptr<OpenMM::CustomNonbondedForce> custom(std::string const& energy, double cutoff,
+                                                     std::initializer_list<double> q) {
     auto force = std::make_unique<OpenMM::CustomNonbondedForce>(energy);
     force->addPerParticleParameter("q");
     force->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
@@ -21,7 +22,8 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> custom(std::string const& energy, 
     return force;
 }
 
-std::vector<PairRange> ranges_of(std::vector<std::unique_ptr<OpenMM::Force>> forces, std::vector<std::int64_t> const& bead) {
+std::vector<PairRange> ranges_of(std::vector<std::unique_ptr<OpenMM::Force>> forces,
+                                 std::vector<std::int64_t> const& bead) {
     OpenMM::System system;
     for (std::size_t p = 0; p < bead.size(); ++p) system.addParticle(1);
     for (auto& force : forces) system.addForce(force.release());
@@ -38,8 +40,8 @@ std::vector<PairRange> ranges(std::unique_ptr<Force>... force) {
 std::vector<char> const all{};
 
 TEST(PairRanges, ChargesInAProductReachFartherThanTheRest) {
-    auto const found =
-        ranges(custom("4*eps*q1; eps=0.8", 2, {1, 1, 1}), custom("q1*q2*(exp(-r/l)/r-edge); l=0.9; edge=0.01", 4, {1, 0, -1}));
+    auto const found = ranges(custom("4*eps*q1; eps=0.8", 2, {1, 1, 1}),
+                              custom("q1*q2*(exp(-r/l)/r-edge); l=0.9; edge=0.01", 4, {1, 0, -1}));
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[0].reach, 4);
     EXPECT_EQ(found[0].acts, (std::vector<char>{1, 0, 1}));
@@ -59,13 +61,15 @@ TEST(PairRanges, OfBeadsNotOfParticles) {
 TEST(PairRanges, AParticleActsUnlessItsEnergyIsZeroWithEveryOther) {
     EXPECT_EQ(ranges(custom("(q1+q2)/r", 3, {0, 1, 1})).front().acts, all);
     EXPECT_EQ(ranges(custom("q1/r", 3, {0, 1, 1})).front().acts, all);  // as the second of a pair
-    EXPECT_EQ(ranges(custom("select(step(r-1), q1*q2/r, 0)", 3, {0, 1, 1})).front().acts.size(), 3u);
+    EXPECT_EQ(ranges(custom("select(step(r-1), q1*q2/r, 0)", 3, {0, 1, 1})).front().acts.size(),
+              3u);
 }
 
 /// Lepton does not come to an end with such a number.
 TEST(PairRanges, AParameterThatIsNoNumberActs) {
     double const none = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(ranges(custom("q1*q2/r", 3, {0, none, 1})).front().acts, (std::vector<char>{0, 1, 1}));
+    EXPECT_EQ(ranges(custom("q1*q2/r", 3, {0, none, 1})).front().acts,
+              (std::vector<char>{0, 1, 1}));
 }
 
 TEST(PairRanges, OfAForceThatIsNotUnderstoodAllAct) {
@@ -94,14 +98,16 @@ TEST(PairRanges, OffsetsMayChargeAnyParticle) {
 }
 
 TEST(PairRanges, AForceWithoutAllParticlesIsRefused) {
-    EXPECT_THROW(ranges(custom("q1*q2/r", 2, {1, 1}), custom("q1*q2/r", 2, {1, 1, 1})), OpenMM::OpenMMException);
+    EXPECT_THROW(ranges(custom("q1*q2/r", 2, {1, 1}), custom("q1*q2/r", 2, {1, 1, 1})),
+                 OpenMM::OpenMMException);
     EXPECT_THROW(ranges(custom("q1*q2/r", 2, {1, 1, 1, 1})), OpenMM::OpenMMException);
 }
 
 TEST(PairRanges, WhatALongerRangeHoldsIsLeftOut) {
     EXPECT_EQ(ranges(custom("1/r", 2, {1, 1, 1}), custom("1/r^2", 4, {1, 1, 1})).size(), 1u);
     EXPECT_EQ(ranges(custom("q1*q2/r", 4, {1, 0, 1}), custom("q1*q2/r", 2, {1, 0, 0})).size(), 1u);
-    EXPECT_EQ(ranges(custom("q1*q2/r", 2, {1, 0, 1}), custom("q1*q2/r", 2, {0, 1, 0})).front().acts, all);  // both together
+    EXPECT_EQ(ranges(custom("q1*q2/r", 2, {1, 0, 1}), custom("q1*q2/r", 2, {0, 1, 0})).front().acts,
+              all);  // both together
     EXPECT_TRUE(ranges(custom("q1*q2/r", 2, {0, 0, 0})).empty());
     EXPECT_TRUE(ranges(std::make_unique<OpenMM::HarmonicBondForce>()).empty());
 }

@@ -16,14 +16,16 @@ namespace {
 /// Sums of the same doubles in another order: relative to the largest force.
 double constexpr same = 1e-12;
 
-/// Beads swing about where they started, each at its own pace and by less than makes lists of ghosts anew; chains have gone along each
-/// other for `drifting` steps.
-std::vector<Vec3> swung(BeadSystem const& beads, std::vector<Vec3> positions, int step, int drifting) {
+/// Beads swing about where they started, each at its own pace and by less than makes lists of
+/// ghosts anew; chains have gone along each other for `drifting` steps.
+std::vector<Vec3> swung(BeadSystem const& beads, std::vector<Vec3> positions, int step,
+                        int drifting) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> pace(0.01, 0.03), phase(0, 6.28);
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
         for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k) {
-            for (double& x : positions[k].data) x += 0.07 * std::sin(pace(random) * step + phase(random));
+            for (double& x : positions[k].data)
+                x += 0.07 * std::sin(pace(random) * step + phase(random));
             positions[k][0] += 0.05 * static_cast<double>(c) * drifting;
         }
     return positions;
@@ -31,18 +33,21 @@ std::vector<Vec3> swung(BeadSystem const& beads, std::vector<Vec3> positions, in
 
 class Ranks : public ::testing::Test {
   protected:
-    /// What must come of the lists on several ranks: made anew on the way or not, and on some rank without some bead of the scene.
+    /// What must come of the lists on several ranks: made anew on the way or not, and on some rank
+    /// without some bead of the scene.
     enum class Lists { last, are_made_anew, are_made_anew_of_all_beads };
     /// Forces that have Contexts of their own.
     enum class Layers { none, one };
 
     /// Evaluations along a walk of all beads.
-    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists, Layers layers = Layers::none) {
+    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists,
+                 Layers layers = Layers::none) {
         on_ranks([&](Communicator const& communicator) {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
             auto const force = make_openmm_force(spec, beads, communicator);
-            auto const whole = make_openmm_force(in_one_context(spec), split(all_beads, 1), *serial);
+            auto const whole =
+                make_openmm_force(in_one_context(spec), split(all_beads, 1), *serial);
             EXPECT_EQ(layers_of(*force), layers == Layers::one ? 1 : 0);
             EXPECT_EQ(layers_of(*whole), 0);
             auto positions = wound(beads, 3);
@@ -50,14 +55,16 @@ class Ranks : public ::testing::Test {
             for (int i = 0; i < evaluations; ++i) {
                 auto const expected = evaluate(*whole, positions);
                 auto const own = evaluate(*force, beads, communicator.rank(), positions);
-                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected))
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]),
+                          same * largest(expected))
                     << "evaluation " << i << " on " << communicator.size() << " ranks";
                 if (i % 2 == 0) expect_same_energies(*force, *whole);
                 shake(positions, stride, 100 + i);
             }
             std::int64_t const made = force->traffic().rebuilds;
             bool const anew = made > 1 && made < evaluations;
-            EXPECT_EQ(anew, lists != Lists::last && communicator.size() > 1) << made << " on " << communicator.size() << " ranks";
+            EXPECT_EQ(anew, lists != Lists::last && communicator.size() > 1)
+                << made << " on " << communicator.size() << " ranks";
             double const least = -communicator.max(-static_cast<double>(force->largest_context()));
             if (lists == Lists::are_made_anew && communicator.size() > 1) {
                 EXPECT_LT(least, static_cast<double>(beads.size()));
@@ -79,20 +86,24 @@ class Ranks : public ::testing::Test {
         spec.switch_width = 0.2;  // no jumps where roundings take a pair across a cutoff
         return spec;
     }
-    /// Of forces in single precision, relative to the largest: the coordinates of two beads in either Context are rounded by eps `extent`
-    /// each, and overlaps of 0.05 nm make a force change by all of itself.
+    /// Of forces in single precision, relative to the largest: the coordinates of two beads in
+    /// either Context are rounded by eps `extent` each, and overlaps of 0.05 nm make a force change
+    /// by all of itself.
     static double in_single(double extent) { return 4 * 0x1p-24 * extent / 0.05; }
     static std::int64_t layers_of(OpenMmForce const& force) {
         auto const lines = force.description();
-        return std::count_if(lines.begin(), lines.end(),
-                             [](std::string const& line) { return line.find(" in a Context of its own: ") != std::string::npos; });
+        return std::count_if(lines.begin(), lines.end(), [](std::string const& line) {
+            return line.find(" in a Context of its own: ") != std::string::npos;
+        });
     }
-    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole, double tolerance = same) {
+    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole,
+                                     double tolerance = same) {
         auto const terms = force.energies(), expected = whole.energies();
         EXPECT_EQ(terms.size(), expected.size());
         for (std::size_t i = 0; i < std::min(terms.size(), expected.size()); ++i) {
             EXPECT_EQ(terms[i].name, expected[i].name);
-            EXPECT_NEAR(terms[i].value, expected[i].value, tolerance * std::max(1.0, std::abs(expected[i].value)));
+            EXPECT_NEAR(terms[i].value, expected[i].value,
+                        tolerance * std::max(1.0, std::abs(expected[i].value)));
         }
     }
 
@@ -104,17 +115,20 @@ class Ranks : public ::testing::Test {
 };
 
 TEST_F(Ranks, Calvados2) {
-    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, Lists::are_made_anew,
-            Layers::one);
+    compare(on_reference(),
+            proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}),
+            0.1, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, Calvados2InABox) {
-    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, Lists::are_made_anew,
-            Layers::one);
+    compare(on_reference(),
+            proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1,
+            Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
-    compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1,
+    compare(on_reference(),
+            proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1,
             Lists::are_made_anew_of_all_beads, Layers::one);
 }
 
@@ -125,14 +139,16 @@ TEST_F(Ranks, AChainThatComesFromAfar) {
         BeadSystem const beads = split(all_beads, communicator.size());
         auto const serial = serial_communicator();
         auto const force = make_openmm_force(on_reference(), beads, communicator);
-        auto const whole = make_openmm_force(in_one_context(on_reference()), split(all_beads, 1), *serial);
+        auto const whole =
+            make_openmm_force(in_one_context(on_reference()), split(all_beads, 1), *serial);
         auto positions = wound(beads, 3);
         for (std::int64_t k = 30; k < 60; ++k) positions[k][2] += 12;
         for (double const step : {0.0, -0.2, -9.0, -2.8, 6.0}) {
             for (std::int64_t k = 30; k < 60; ++k) positions[k][2] += step;
             auto const expected = evaluate(*whole, positions);
             auto const own = evaluate(*force, beads, communicator.rank(), positions);
-            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected))
+            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]),
+                      same * largest(expected))
                 << "step " << step << " on " << communicator.size() << " ranks";
         }
     });
@@ -150,36 +166,48 @@ TEST_F(Ranks, FewerBeadsThanRanks) {
 }
 
 TEST_F(Ranks, EveryForce) {
-    BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
+    BeadSystem const beads =
+        proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
     compare(of_system(*every_force(beads), "every.xml"), beads, 0.03, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, EveryForceInABox) {
-    BeadSystem const beads = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
+    BeadSystem const beads =
+        proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1,
+                 Vec3{{24, 7, 7}});
     compare(of_system(*every_force(beads), "every-box.xml"), beads, 0.03, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, InOneContext) {
-    BeadSystem const beads = proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}});
+    BeadSystem const beads =
+        proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}});
     compare(in_one_context(on_reference()), beads, 0.1, Lists::are_made_anew);
 }
 
 /// "every.xml": a force between charges is a layer, with exclusions among them.
 TEST_F(Ranks, LayerByLayer) {
-    BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
-    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03, Lists::are_made_anew, Layers::one);
-    BeadSystem const in_box = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
-    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03, Lists::are_made_anew, Layers::one);
+    BeadSystem const beads =
+        proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
+    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03,
+            Lists::are_made_anew, Layers::one);
+    BeadSystem const in_box =
+        proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1,
+                 Vec3{{24, 7, 7}});
+    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03,
+            Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, ALayerWithoutBeadsOnSomeRanks) {
-    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1, Lists::are_made_anew, Layers::one);
-    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1, Lists::are_made_anew, Layers::one);  // of the two ends
+    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1,
+            Lists::are_made_anew, Layers::one);
+    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1,
+            Lists::are_made_anew, Layers::one);  // of the two ends
 }
 
 /// They are taken off all the same, and their terms stay.
 TEST_F(Ranks, ForcesInWhichNoBeadActsHaveNoLayer) {
-    BeadSystem const all_beads = proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)});
+    BeadSystem const all_beads =
+        proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)});
     auto const system = bare_system(all_beads);
     auto const add_charges = [&](char const* name, double cutoff, double charge) {
         auto* pairs = new OpenMM::CustomNonbondedForce("q1*q2*exp(-r)");
@@ -216,12 +244,16 @@ TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
     compare(spec, scene, 0.03, Lists::are_made_anew, Layers::one);
 }
 
-/// In single precision, that shifts and cells are kept while beads leave the box, and ghosts come and go, adds no more than rounding.
+/// In single precision, that shifts and cells are kept while beads leave the box, and ghosts come
+/// and go, adds no more than rounding.
 TEST_F(Ranks, PlacesThatAreKept) {
-    int constexpr quiet = 270, steps = 330, compared_every = 30;  // places are kept for 250 evaluations, unless ghosts change
+    int constexpr quiet = 270, steps = 330,
+                  compared_every = 30;  // places are kept for 250 evaluations, unless ghosts change
     double constexpr edge = 48;
-    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{edge, 9, 9}}}}) {
-        BeadSystem const all_beads = proteins({random_sequence(60, 25), random_sequence(50, 26), random_sequence(40, 27)}, 1, box);
+    for (std::optional<Vec3> const& box :
+         {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{edge, 9, 9}}}}) {
+        BeadSystem const all_beads = proteins(
+            {random_sequence(60, 25), random_sequence(50, 26), random_sequence(40, 27)}, 1, box);
         on_ranks([&](Communicator const& communicator) {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
@@ -237,15 +269,19 @@ TEST_F(Ranks, PlacesThatAreKept) {
                     ghosts = force->traffic().ghosts;
                 }
                 if (step % compared_every != 0) continue;
-                auto const fresh = make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
+                auto const fresh =
+                    make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
                 auto const expected = evaluate(*fresh, positions);
-                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), in_single(edge) * largest(expected))
-                    << "step " << step << " on " << communicator.size() << " ranks" << (box ? ", in a box" : "");
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]),
+                          in_single(edge) * largest(expected))
+                    << "step " << step << " on " << communicator.size() << " ranks"
+                    << (box ? ", in a box" : "");
                 expect_same_energies(*force, *fresh, in_single(edge));
             }
             if (communicator.size() == 1) return;
             EXPECT_GT(force->traffic().rebuilds, 10);
-            EXPECT_LT(force->contexts(), force->traffic().rebuilds);  // their particles were exchanged
+            EXPECT_LT(force->contexts(),
+                      force->traffic().rebuilds);  // their particles were exchanged
             EXPECT_EQ(communicator.max(force->traffic().ghosts != ghosts ? 1 : 0), 1);
         });
     }
@@ -259,14 +295,16 @@ TEST_F(Ranks, BeadsThatAreFarAwayAllAtOnce) {
         BeadSystem const beads = split(all_beads, communicator.size());
         auto const serial = serial_communicator();
         auto const force = make_openmm_force(on_cpu(), beads, communicator);
-        auto const whole = make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
+        auto const whole =
+            make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
         auto const start = wound(beads, 3);
         auto const expected = evaluate(*whole, start);
         for (double const away : {0.0, 1024.0, -4096.0}) {
             auto positions = start;
             for (Vec3& x : positions) x = x + Vec3{{away, -away, 2 * away}};
             auto const own = evaluate(*force, beads, communicator.rank(), positions);
-            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), in_single(length) * largest(expected))
+            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]),
+                      in_single(length) * largest(expected))
                 << away << " nm away on " << communicator.size() << " ranks";
             expect_same_energies(*force, *whole, in_single(length));
         }
@@ -306,12 +344,13 @@ TEST_F(Ranks, Replicated) {
     spec.replicate = false;
     on_ranks([&](Communicator const& communicator) {
         if (communicator.size() == 1) return;
-        std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
-        EXPECT_EQ(
-            text,
-            "NonbondedForce (PME) cannot be split over " + std::to_string(communicator.size()) +
-                " ranks (scene.yaml: forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
-                "or run on one rank");
+        std::string const text = complaint(
+            [&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
+        EXPECT_EQ(text, "NonbondedForce (PME) cannot be split over " +
+                            std::to_string(communicator.size()) +
+                            " ranks (scene.yaml: forces.openmm): set forces.openmm.replicate: "
+                            "true, so that every rank computes the whole System, "
+                            "or run on one rank");
     });
 }
 
@@ -343,7 +382,8 @@ TEST_F(Ranks, OneRanksTroubleIsEverybodysMessage) {
     system->addForce(pairs);
     OpenMmSpec const spec = of_system(*system, "wrong.xml");
     on_ranks([&](Communicator const& communicator) {
-        std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
+        std::string const text = complaint(
+            [&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
         EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
         EXPECT_NE(text.find(" (scene.yaml: forces.openmm): "), std::string::npos) << text;
     });
@@ -364,7 +404,8 @@ TEST_F(Ranks, ThePathIsTheSameOnEveryRank) {
         EXPECT_TRUE(both);
         EXPECT_EQ(communicator.sum(force->path() == "host" ? 1 : 0) % communicator.size(), 0);
         bool found = false;
-        for (auto const& line : force->description()) found = found || line.find("the faster one: from begin to end ") != std::string::npos;
+        for (auto const& line : force->description())
+            found = found || line.find("the faster one: from begin to end ") != std::string::npos;
         EXPECT_TRUE(found);
     });
 }

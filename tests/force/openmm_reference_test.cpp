@@ -64,8 +64,8 @@ class Reference : public ::testing::TestWithParam<std::string> {
     }
 };
 
-// The Reference platform computes in double precision as the reference did: what is left is the order of sums, some ulps of the largest
-// terms.
+// The Reference platform computes in double precision as the reference did: what is left is the
+// order of sums, some ulps of the largest terms.
 double constexpr in_double = 1e-10;
 double constexpr in_single = 1e-3;
 
@@ -96,7 +96,8 @@ TEST_P(Reference, FarFromTheOriginToo) {
 }
 
 TEST_P(Reference, SystemOfTheSameModel) {
-    if (is_openmm_7) GTEST_SKIP() << "NOT RUN: OpenMM 7 cannot read it: see SystemForOpenMm7 and Unreadable";
+    if (is_openmm_7)
+        GTEST_SKIP() << "NOT RUN: OpenMM 7 cannot read it: see SystemForOpenMm7 and Unreadable";
     compare(*from_system("calvados2-asyn-system.xml"), synuclein, in_double);
 }
 
@@ -104,7 +105,9 @@ TEST_P(Reference, SystemForOpenMm7) {
     auto const force = from_system("calvados2-asyn-system-openmm7.xml");
     compare(*force, synuclein, in_double);
     std::string const text = fmt::format("{}", fmt::join(force->description(), "\n"));
-    EXPECT_NE(text.find("139 harmonic bonds along rigid links left out (length 0.38 nm)"), std::string::npos) << text;
+    EXPECT_NE(text.find("139 harmonic bonds along rigid links left out (length 0.38 nm)"),
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find("terms: ashbaugh-hatch, yukawa"), std::string::npos) << text;
 }
 
@@ -113,17 +116,20 @@ TEST_P(Reference, OneGroupOfTheSystem) {
     spec.system = folder + "calvados2-asyn-system-openmm7.xml";
     spec.force_groups = {2};
     auto const force = make_openmm_force(spec, synuclein.beads, *serial);
-    EXPECT_LT(difference(evaluate(*force, synuclein.positions), synuclein.charges), in_double * largest(synuclein.charges));
+    EXPECT_LT(difference(evaluate(*force, synuclein.positions), synuclein.charges),
+              in_double * largest(synuclein.charges));
     ASSERT_EQ(force->energies().size(), 1u);
     EXPECT_EQ(force->energies()[0].name, "yukawa");
 }
 
-INSTANTIATE_TEST_SUITE_P(Synuclein, Reference, ::testing::Values("extended", "coil"), [](auto const& i) { return i.param; });
+INSTANTIATE_TEST_SUITE_P(Synuclein, Reference, ::testing::Values("extended", "coil"),
+                         [](auto const& i) { return i.param; });
 
 /// Against the pair sum: what the reference data have no numbers for.
 class PairSum : public ::testing::Test {
   protected:
-    BeadSystem beads = proteins({random_sequence(40, 1) + "HHH", "H" + random_sequence(30, 2), random_sequence(25, 3)});
+    BeadSystem beads = proteins(
+        {random_sequence(40, 1) + "HHH", "H" + random_sequence(30, 2), random_sequence(25, 3)});
     std::unique_ptr<Communicator> serial = serial_communicator();
 
     void compare(OpenMmSpec const& spec, std::vector<Vec3> const& positions) {
@@ -131,7 +137,8 @@ class PairSum : public ::testing::Test {
         evaluate(*force, positions);
         auto const energies = force->energies();
         auto const expected = pair_sum(beads, spec, positions);
-        EXPECT_NEAR(energies[0].value, expected.ashbaugh_hatch, 1e-11 * std::abs(expected.ashbaugh_hatch));
+        EXPECT_NEAR(energies[0].value, expected.ashbaugh_hatch,
+                    1e-11 * std::abs(expected.ashbaugh_hatch));
         EXPECT_NEAR(energies[1].value, expected.yukawa, 1e-11 * std::abs(expected.yukawa));
     }
 };
@@ -159,7 +166,8 @@ TEST_F(PairSum, InABox) {
     beads.box = Vec3{{9, 8.5, 8.25}};
     auto positions = wound(beads, 6);
     compare(on_reference(), positions);
-    for (std::size_t k = 0; k < positions.size(); ++k) positions[k][k % 3] += (*beads.box)[k % 3] * static_cast<double>(k % 5);
+    for (std::size_t k = 0; k < positions.size(); ++k)
+        positions[k][k % 3] += (*beads.box)[k % 3] * static_cast<double>(k % 5);
     compare(on_reference(), positions);  // unwrapped as it comes
 }
 
@@ -199,7 +207,9 @@ TEST(Switching, TakesTheForceJumpAway) {
         OpenMmSpec spec = on_reference();
         spec.switch_width = width;
         auto const force = make_openmm_force(spec, beads, *serial);
-        auto const at = [&](double r) { return evaluate(*force, {Vec3::zero(), {{r, 0, 0}}, {{r + 0.38, 0, 0}}})[0][0]; };
+        auto const at = [&](double r) {
+            return evaluate(*force, {Vec3::zero(), {{r, 0, 0}}, {{r + 0.38, 0, 0}}})[0][0];
+        };
         return std::abs(at(4 - 1e-9) - at(4 + 1e-9));
     };
     EXPECT_GT(jump(0), 1e-3);

@@ -1,5 +1,5 @@
-// Hundreds of evaluations with lists that are made anew now and then: forces are those of the replicated System, no pair is missed, and
-// they do not remember when the lists were made.
+// Hundreds of evaluations with lists that are made anew now and then: forces are those of the
+// replicated System, no pair is missed, and they do not remember when the lists were made.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -15,26 +15,30 @@ namespace {
 double constexpr same = 1e-12;
 int constexpr steps = 200, compared_every = 10;
 
-/// The chain goes to and fro along x, so that beads far apart along it, which other ranks own, lie side by side.
+/// The chain goes to and fro along x, so that beads far apart along it, which other ranks own, lie
+/// side by side.
 std::vector<Vec3> folded(BeadSystem const& beads, std::uint64_t seed) {
     std::int64_t constexpr leg = 34;
     std::vector<Vec3> positions;
     for (std::int64_t k = 0; k < beads.size(); ++k) {
         std::int64_t const row = k / leg, along = row % 2 == 0 ? k % leg : leg - 1 - k % leg;
-        positions.push_back({{0.9 * static_cast<double>(along), 0.8 * static_cast<double>(row % 4), 0.8 * static_cast<double>(row / 4)}});
+        positions.push_back({{0.9 * static_cast<double>(along), 0.8 * static_cast<double>(row % 4),
+                              0.8 * static_cast<double>(row / 4)}});
     }
     shake(positions, 0.05, seed);
     return positions;
 }
 
-/// Beads swing about where they started, each at its own pace, and the chains drift apart and together: ghosts come and go.
+/// Beads swing about where they started, each at its own pace, and the chains drift apart and
+/// together: ghosts come and go.
 std::vector<Vec3> moved(std::vector<Vec3> const& start, BeadSystem const& beads, int step) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> pace(0.01, 0.03), phase(0, 6.28);
     std::vector<Vec3> positions = start;
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
         for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k) {
-            for (double& x : positions[k].data) x += 0.12 * std::sin(pace(random) * step + phase(random));
+            for (double& x : positions[k].data)
+                x += 0.12 * std::sin(pace(random) * step + phase(random));
             positions[k][0] += static_cast<double>(c) * std::sin(0.01 * step);
         }
     return positions;
@@ -75,7 +79,8 @@ void walk(OpenMmSpec const& spec, BeadSystem const& all_beads) {
 }
 
 BeadSystem three_chains(std::optional<Vec3> const& box = std::nullopt) {
-    return proteins({random_sequence(60, 1), random_sequence(25, 2), random_sequence(15, 3)}, 1, box);
+    return proteins({random_sequence(60, 1), random_sequence(25, 2), random_sequence(15, 3)}, 1,
+                    box);
 }
 
 TEST(Steps, FoldedChains) { walk(on_reference(), three_chains()); }
@@ -90,14 +95,16 @@ TEST(Steps, EveryForce) {
 }
 
 TEST(Steps, EveryForceInABoxOnAWorkerThread) {
-    BeadSystem const beads = proteins({random_sequence(40, 7), random_sequence(20, 8)}, 1, Vec3{{34, 6, 6}});
+    BeadSystem const beads =
+        proteins({random_sequence(40, 7), random_sequence(20, 8)}, 1, Vec3{{34, 6, 6}});
     OpenMmSpec spec = on_reference("");
     spec.system = scratch_file("steps-box.xml", xml_of(*every_force(beads)));
     spec.path = "host";
     walk(spec, beads);
 }
 
-/// Pair forces whose particles can be exchanged, unlike those of interaction groups: few Contexts for many lists.
+/// Pair forces whose particles can be exchanged, unlike those of interaction groups: few Contexts
+/// for many lists.
 TEST(Steps, ContextsLastLongerThanLists) {
     BeadSystem const all_beads = three_chains(Vec3{{30, 9, 9}});
     on_ranks([&](Communicator const& communicator) {

@@ -18,7 +18,9 @@ double switched(double r, double cutoff, double width) {
     return 1 - x * x * x * (10 - x * (15 - 6 * x));
 }
 
-double lennard_jones(double r, double sigma) { return 4 * 0.8368 * (std::pow(sigma / r, 12) - std::pow(sigma / r, 6)); }
+double lennard_jones(double r, double sigma) {
+    return 4 * 0.8368 * (std::pow(sigma / r, 12) - std::pow(sigma / r, 6));
+}
 
 double distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const& box) {
     Vec3 d = a - b;
@@ -29,7 +31,8 @@ double distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const& box) {
 
 }  // namespace
 
-PairEnergies pair_sum(BeadSystem const& beads, OpenMmSpec const& spec, std::vector<Vec3> const& positions) {
+PairEnergies pair_sum(BeadSystem const& beads, OpenMmSpec const& spec,
+                      std::vector<Vec3> const& positions) {
     std::vector<double> charge;
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
         std::int64_t const n = beads.chain_offset[c + 1] - beads.chain_offset[c];
@@ -48,10 +51,13 @@ PairEnergies pair_sum(BeadSystem const& beads, OpenMmSpec const& spec, std::vect
         for (std::int64_t j = i + 1; j < beads.size(); ++j) {
             if (linked.count({i, j}) > 0) continue;
             double const r = distance(positions[i], positions[j], beads.box);
-            auto const &a = *find_calvados2(std::string_view(beads.residue[i])), &b = *find_calvados2(std::string_view(beads.residue[j]));
-            double const s = (a.sigma + b.sigma) / 2, l = (a.lambda + b.lambda) / 2, edge = lennard_jones(2, s);
-            double const contact =
-                r < std::pow(2, 1.0 / 6) * s ? lennard_jones(r, s) - l * edge + 0.8368 * (1 - l) : l * (lennard_jones(r, s) - edge);
+            auto const &a = *find_calvados2(std::string_view(beads.residue[i])),
+                       &b = *find_calvados2(std::string_view(beads.residue[j]));
+            double const s = (a.sigma + b.sigma) / 2, l = (a.lambda + b.lambda) / 2,
+                         edge = lennard_jones(2, s);
+            double const contact = r < std::pow(2, 1.0 / 6) * s
+                                       ? lennard_jones(r, s) - l * edge + 0.8368 * (1 - l)
+                                       : l * (lennard_jones(r, s) - edge);
             sum.ashbaugh_hatch += switched(r, 2, spec.switch_width) * contact;
             sum.yukawa += switched(r, 4, spec.switch_width) * charge[i] * charge[j] * y.prefactor *
                           (std::exp(-y.kappa * r) / r - std::exp(-4 * y.kappa) / 4);

@@ -13,6 +13,7 @@ struct PairEnergies {
     double ashbaugh_hatch = 0, yukawa = 0;
 };
 
-PairEnergies pair_sum(BeadSystem const& beads, OpenMmSpec const& spec, std::vector<Vec3> const& positions);
+PairEnergies pair_sum(BeadSystem const& beads, OpenMmSpec const& spec,
+                      std::vector<Vec3> const& positions);
 
 }  // namespace catena::testing

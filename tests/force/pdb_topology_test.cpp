@@ -9,8 +9,9 @@ namespace {
 
 std::string atom(int serial, std::string const& residue, char chain, double x) {
     char line[100];
-    std::snprintf(line, sizeof line, "ATOM  %5d  CA  %3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           C\n", serial, residue.c_str(),
-                  chain, serial, x, -1.5, 20.25);
+    std::snprintf(line, sizeof line,
+                  "ATOM  %5d  CA  %3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           C\n", serial,
+                  residue.c_str(), chain, serial, x, -1.5, 20.25);
     return line;
 }
 
@@ -19,8 +20,9 @@ std::vector<PdbChain> read(std::string const& text) {
 }
 
 TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
-    auto const chains = read("REMARK x\n" + atom(1, "MET", 'A', 1) + atom(2, "ALA", 'A', 2) + "TER\n" + atom(3, "GLY", 'A', 3) +
-                             atom(4, "LYS", 'B', 4) + atom(5, "TRP", ' ', 5) + "END\n");
+    auto const chains =
+        read("REMARK x\n" + atom(1, "MET", 'A', 1) + atom(2, "ALA", 'A', 2) + "TER\n" +
+             atom(3, "GLY", 'A', 3) + atom(4, "LYS", 'B', 4) + atom(5, "TRP", ' ', 5) + "END\n");
     ASSERT_EQ(chains.size(), 4u);
     EXPECT_EQ(chains[0].name, "A");
     EXPECT_EQ(chains[0].residue, (std::vector<std::string>{"MET", "ALA"}));
@@ -34,7 +36,8 @@ TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
 
 TEST(PdbTopology, NamesAreUniqueHoweverManyChains) {
     std::string text;
-    for (int k = 0; k < 200; ++k) text += atom(k, "GLY", static_cast<char>('A' + k % 26), k) + "TER\n";
+    for (int k = 0; k < 200; ++k)
+        text += atom(k, "GLY", static_cast<char>('A' + k % 26), k) + "TER\n";
     auto const chains = read(text);
     ASSERT_EQ(chains.size(), 200u);
     std::set<std::string> names;
@@ -57,15 +60,16 @@ TEST(PdbTopology, SegmentsTellChainsApart) {
 }
 
 TEST(PdbTopology, TheFirstModelAloneAndLinesOfOtherSystems) {
-    auto const chains =
-        read("MODEL 1\r\n" + atom(1, "GLY", 'A', 1) + "TER\r\n" + atom(2, "GLY", 'A', 2) + "ENDMDL\n" + atom(3, "GLY", 'A', 3));
+    auto const chains = read("MODEL 1\r\n" + atom(1, "GLY", 'A', 1) + "TER\r\n" +
+                             atom(2, "GLY", 'A', 2) + "ENDMDL\n" + atom(3, "GLY", 'A', 3));
     ASSERT_EQ(chains.size(), 2u);
     EXPECT_EQ(chains[1].size(), 1u);
 }
 
 TEST(PdbTopology, SerialAndResidueNumbersAreNotRead) {
     std::string text;
-    for (char const* const serial : {"99999", "A0000", "*****", "186a0"}) text += atom(1, "GLY", 'A', 1).replace(6, 5, serial);
+    for (char const* const serial : {"99999", "A0000", "*****", "186a0"})
+        text += atom(1, "GLY", 'A', 1).replace(6, 5, serial);
     text += atom(1, "GLY", 'A', 1).replace(22, 4, "****");
     EXPECT_EQ(read(text).at(0).size(), 5u);
 }
@@ -79,18 +83,28 @@ TEST(PdbTopology, ModelsAreNoted) {
 }
 
 TEST(PdbTopology, MmcifIsNamed) {
-    EXPECT_NE(complaint([] { read("data_x\n#\nloop_\n_atom_site.id\n1\n"); }).find("mmCIF is not read yet ("), std::string::npos);
+    EXPECT_NE(complaint([] {
+                  read("data_x\n#\nloop_\n_atom_site.id\n1\n");
+              }).find("mmCIF is not read yet ("),
+              std::string::npos);
 }
 
 TEST(PdbTopology, Messages) {
-    EXPECT_EQ(complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml: topology"); }),
-              "cannot open /nowhere/a.pdb (scene.yaml: topology): name a PDB file that can be read");
-    EXPECT_NE(complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml: topology): "), std::string::npos);
+    EXPECT_EQ(
+        complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml: topology"); }),
+        "cannot open /nowhere/a.pdb (scene.yaml: topology): name a PDB file that can be read");
+    EXPECT_NE(
+        complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml: topology): "),
+        std::string::npos);
     std::string broken = atom(1, "GLY", 'A', 1);
     broken.replace(30, 8, "   1.x  ");
-    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("`1.x` is not a number ("), std::string::npos);
-    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("topology.pdb: line 2): "), std::string::npos);
-    EXPECT_NE(complaint([&] { read(broken.substr(0, 30) + "\n"); }).find("the atom's line is cut short"), std::string::npos);
+    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("`1.x` is not a number ("),
+              std::string::npos);
+    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("topology.pdb: line 2): "),
+              std::string::npos);
+    EXPECT_NE(
+        complaint([&] { read(broken.substr(0, 30) + "\n"); }).find("the atom's line is cut short"),
+        std::string::npos);
 }
 
 }  // namespace

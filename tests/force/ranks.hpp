@@ -7,8 +7,9 @@
 
 namespace catena::testing {
 
-/// Runs `body` once a rank, all at the same time: with threads on 1, 2, 3, 4 and 6 ranks in turn, under mpirun on as many as there are.
-/// GoogleTest's EXPECT_ only: a rank that leaves early would leave the others waiting.
+/// Runs `body` once a rank, all at the same time: with threads on 1, 2, 3, 4 and 6 ranks in turn,
+/// under mpirun on as many as there are. GoogleTest's EXPECT_ only: a rank that leaves early would
+/// leave the others waiting.
 void on_ranks(std::function<void(Communicator const&)> const& body);
 
 }  // namespace catena::testing

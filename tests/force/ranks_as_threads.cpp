@@ -12,8 +12,9 @@ namespace catena::testing {
 
 namespace {
 
-/// What the threads see of each other. One runs at a time, until it waits for the others: OpenMM's set-up of expressions is not safe
-/// on several threads of a process at once (ranks of mpirun are processes).
+/// What the threads see of each other. One runs at a time, until it waits for the others: OpenMM's
+/// set-up of expressions is not safe on several threads of a process at once (ranks of mpirun are
+/// processes).
 struct Meeting {
     explicit Meeting(int ranks) : barrier(ranks), blocks(ranks), values(ranks), integers(ranks) {}
     std::barrier<> barrier;
@@ -32,7 +33,8 @@ class ThreadCommunicator final : public Communicator {
     int ranks_on_cores() const override { return size(); }
     int rank_on_host() const override { return rank(); }
 
-    void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const&) const override {
+    void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
+                    std::vector<std::int64_t> const&) const override {
         std::vector<std::byte> const copy(own.begin(), own.end());  // `own` may lie in `all`
         meeting_.blocks[rank_] = copy;
         barrier();
@@ -41,19 +43,23 @@ class ThreadCommunicator final : public Communicator {
             if (!all.empty()) to = std::copy(block.begin(), block.end(), to);
         barrier();
     }
-    void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const override {
+    void gather(std::span<std::byte const> own, std::span<std::byte> all,
+                std::vector<std::int64_t> const& bytes) const override {
         all_gather(own, rank_ == 0 ? all : std::span<std::byte>{}, bytes);
     }
     void broadcast(std::span<std::byte> data) const override {
         if (rank_ == 0) meeting_.blocks[0] = data;
         barrier();
-        if (rank_ != 0) std::copy(meeting_.blocks[0].begin(), meeting_.blocks[0].end(), data.begin());
+        if (rank_ != 0)
+            std::copy(meeting_.blocks[0].begin(), meeting_.blocks[0].end(), data.begin());
         barrier();
     }
-    void exchange(std::span<std::byte const> send, int, std::span<std::byte> receive, int from) const override {
+    void exchange(std::span<std::byte const> send, int, std::span<std::byte> receive,
+                  int from) const override {
         meeting_.blocks[rank_] = send;
         barrier();
-        if (from >= 0) std::copy(meeting_.blocks[from].begin(), meeting_.blocks[from].end(), receive.begin());
+        if (from >= 0)
+            std::copy(meeting_.blocks[from].begin(), meeting_.blocks[from].end(), receive.begin());
         barrier();
     }
     double max(double value) const override {

@@ -20,12 +20,15 @@ TEST(SharedParticles, PositionsGoFromArrayToArray) {
     EXPECT_EQ(second, first);
     ArrivedPositions const arrived{there.data(), received.data(), first.data()};
     for (std::int64_t i = 0; i < 6; ++i) arrived(i);
-    EXPECT_EQ(there, (std::vector<float>{12, 13, 14, -1, -1, -1, -1, -1, 4, 5, 6, -1, -1, -1, -1, -1}));  // charges stay
+    EXPECT_EQ(there, (std::vector<float>{12, 13, 14, -1, -1, -1, -1, -1, 4, 5, 6, -1, -1, -1, -1,
+                                         -1}));  // charges stay
 }
 
 struct Forces {
     std::vector<std::int64_t> force = std::vector<std::int64_t>(12, 0);  // of four places
-    ForcesOnBeads on(std::vector<std::int32_t> const& place) { return {force.data(), 4, place.data()}; }
+    ForcesOnBeads on(std::vector<std::int32_t> const& place) {
+        return {force.data(), 4, place.data()};
+    }
 };
 
 TEST(SharedParticles, PartsOfForcesGo) {
@@ -56,9 +59,11 @@ TEST(SharedParticles, PartsOfForcesComeBack) {
     std::vector<std::int64_t> arrived{1, 2, 3, 0, 5, 6, 100, 200, 300, 400, 500, 600};
     ReturnedForces<std::int64_t> const returned{f.on(own), arrived.data(), 2, 2};
     for (std::int64_t i = 0; i < 6; ++i) returned(i);
-    EXPECT_EQ(f.force, (std::vector<std::int64_t>{400, 10, 20 + 101, 30, 40 + 505, 50, 60 + 202, 70, 80 + 606, 90, 100 + 303, 110}));
-    EXPECT_EQ(arrived, std::vector<std::int64_t>(12, 0));  // for what comes next, of which zeros stay away
-    std::int64_t const none = INT64_MIN;                   // what OpenMM makes of NaN
+    EXPECT_EQ(f.force, (std::vector<std::int64_t>{400, 10, 20 + 101, 30, 40 + 505, 50, 60 + 202, 70,
+                                                  80 + 606, 90, 100 + 303, 110}));
+    EXPECT_EQ(arrived,
+              std::vector<std::int64_t>(12, 0));  // for what comes next, of which zeros stay away
+    std::int64_t const none = INT64_MIN;          // what OpenMM makes of NaN
     std::vector<std::int64_t> parts{none, 0, 0, 0, 0, 0, none, 0, 0, 0, 0, 0};
     ReturnedForces<std::int64_t> const without_sense{f.on(own), parts.data(), 2, 2};
     for (std::int64_t i = 0; i < 6; ++i) without_sense(i);
@@ -68,7 +73,8 @@ TEST(SharedParticles, PartsOfForcesComeBack) {
 TEST(SharedParticles, InSinglePrecision) {
     Forces here, there;
     here.force[0] = std::int64_t{3} << 40;
-    here.force[4] = -((std::int64_t{1} << 50) + 1);  // of which single precision has all but the last bit
+    here.force[4] =
+        -((std::int64_t{1} << 50) + 1);  // of which single precision has all but the last bit
     here.force[8] = INT64_MIN;
     here.force[1] = INT64_MAX;
     std::vector<std::int32_t> const place{0, 1};

@@ -69,7 +69,9 @@ TEST_P(Trouble, ComesOutOfFinish) {
         force->finish(forces.view());
         ADD_FAILURE() << "nothing was thrown";
     } catch (ComputationError const& e) {
-        EXPECT_STREQ(e.what(), "the position of bead 4 is not finite: take a smaller step, or a start without overlaps");
+        EXPECT_STREQ(e.what(),
+                     "the position of bead 4 is not finite: take a smaller step, or a start "
+                     "without overlaps");
     }
     EXPECT_EQ(norm(forces[0]), 0);
     EXPECT_EQ(difference(evaluate(*force, positions), good), 0);
@@ -122,7 +124,8 @@ TEST_P(Trouble, TheIntervalIsThatOfTheEvaluation) {
     EXPECT_LT(two.begin, two.end);
 }
 
-INSTANTIATE_TEST_SUITE_P(On, Trouble, ::testing::Values("host", "inline"), [](auto const& i) { return i.param; });
+INSTANTIATE_TEST_SUITE_P(On, Trouble, ::testing::Values("host", "inline"),
+                         [](auto const& i) { return i.param; });
 
 }  // namespace
 }  // namespace catena::testing

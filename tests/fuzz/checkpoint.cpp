@@ -1,7 +1,8 @@
-// Checkpoints: as they are, whose seal has to hold before HDF5 sees them, and with a new seal, as only intent can make it.
+// Checkpoints: as they are, whose seal has to hold before HDF5 sees them, and with a new seal, as
+// only intent can make it.
 #include "error.hpp"
-#include "io/output.hpp"
 #include "io/file_seal.hpp"
+#include "io/output.hpp"
 #include "io/trial.hpp"
 #include "tests/fuzz/own_fault.hpp"
 #include "tests/fuzz/target.hpp"

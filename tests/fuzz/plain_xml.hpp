@@ -1,4 +1,5 @@
-// A second reader of XML, far simpler than the scanner and written apart from it: what both say of a System must agree.
+// A second reader of XML, far simpler than the scanner and written apart from it: what both say of
+// a System must agree.
 #pragma once
 
 #include <string>
@@ -7,7 +8,8 @@
 
 namespace catena::fuzz {
 
-/// Types of the elements in the <Forces> of the root, in order, of a text that is well-formed XML without document types and sections.
+/// Types of the elements in the <Forces> of the root, in order, of a text that is well-formed XML
+/// without document types and sections.
 inline std::vector<std::string> plain_forces(std::string_view text) {
     std::vector<std::string> forces;
     std::vector<std::string_view> path;
@@ -28,9 +30,11 @@ inline std::vector<std::string> plain_forces(std::string_view text) {
             } else if (c == quote) {
                 if (key == "type") type = word;
                 quote = '\0', word.clear();
-            } else if (quote != '\0' || std::string_view(" \t\r\n=/").find(c) == std::string_view::npos) {
+            } else if (quote != '\0' ||
+                       std::string_view(" \t\r\n=/").find(c) == std::string_view::npos) {
                 word += c;
-            } else if (c != '=' && to + 1 < text.size() && std::string_view(" \t\r\n=").find(text[to + 1]) == std::string_view::npos) {
+            } else if (c != '=' && to + 1 < text.size() &&
+                       std::string_view(" \t\r\n=").find(text[to + 1]) == std::string_view::npos) {
                 word.clear();
             }
         }

@@ -1,8 +1,8 @@
 // A serialised System, through the scanner and OpenMM's own reader.
 #include <OpenMM.h>
 
-#include "systems/model.hpp"
 #include "force/platform.hpp"
+#include "systems/model.hpp"
 #include "tests/fuzz/plain_xml.hpp"
 #include "tests/fuzz/target.hpp"
 
@@ -16,5 +16,6 @@ void catena::fuzz::read(std::string_view bytes) {
     auto const system = read_openmm_system(MemoryFile(bytes).path(), "scene.yaml: forces.system");
     std::vector<std::string> const forces = plain_forces(bytes);
     require(static_cast<std::size_t>(system->getNumForces()) == forces.size());
-    for (int i = 0; i < system->getNumForces(); ++i) require(kind_of(system->getForce(i)) == forces[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < system->getNumForces(); ++i)
+        require(kind_of(system->getForce(i)) == forces[static_cast<std::size_t>(i)]);
 }

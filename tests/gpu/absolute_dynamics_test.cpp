@@ -1,14 +1,15 @@
-// Chains in absolute coordinates whose state stays on the GPU: each operation of a step, and whole runs, leave the bits of the host's.
+// Chains in absolute coordinates whose state stays on the GPU: each operation of a step, and whole
+// runs, leave the bits of the host's.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "cuda/dynamics.hpp"
 #include "integrate/stepper.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -24,22 +25,26 @@ auto const name_of_scene = [](auto const& scene) { return scene.param.name; };
 std::string sizes_of(std::string const& generator, char const* base) {
     std::string chains;
     for (int const bodies : {1, 17, 300})
-        chains += (chains.empty() ? "" : ", ") + ("{name: a" + std::to_string(bodies)) + ", base: " + base +
-                  ", generator: {random: {bodies: " + std::to_string(bodies) + ", seed: 1, " + generator + "}}}";
+        chains += (chains.empty() ? "" : ", ") + ("{name: a" + std::to_string(bodies)) +
+                  ", base: " + base + ", generator: {random: {bodies: " + std::to_string(bodies) +
+                  ", seed: 1, " + generator + "}}}";
     return "chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}";
 }
 Scene scene_from(std::string const& yaml) { return parse_scene(yaml, "scene.yaml"); }
 Scene scene_of(std::vector<ChainSpec> const& chains) {
     Scene scene;
     scene.chains = chains;
-    for (std::size_t i = 0; i < chains.size(); ++i) scene.chains[i].name = std::string(1, static_cast<char>('a' + i));
+    for (std::size_t i = 0; i < chains.size(); ++i)
+        scene.chains[i].name = std::string(1, static_cast<char>('a' + i));
     scene.forces.gravity = {{1, 2, -9.81}};
     return scene;
 }
-/// Bodies on spherical joints with springs, torques and wrenches; every third one carries nothing, the others one or two beads.
+/// Bodies on spherical joints with springs, torques and wrenches; every third one carries nothing,
+/// the others one or two beads.
 Scene carrying_bodies() {
     Random random(11);
-    ChainSpec chain = random_chain(5, {.bodies = 60, .joints = RandomJoints::spherical, .base = Base::free, .springs = true});
+    ChainSpec chain = random_chain(
+        5, {.bodies = 60, .joints = RandomJoints::spherical, .base = Base::free, .springs = true});
     chain.bodies.damping.clear();
     chain.bodies.carried.offset = {0};
     for (std::size_t k = 0; k < chain.size(); ++k) {
@@ -48,39 +53,49 @@ Scene carrying_bodies() {
             chain.bodies.carried.mass.push_back(1);
             chain.bodies.carried.residue.emplace_back("UNK");
         }
-        chain.bodies.carried.offset.push_back(static_cast<std::int64_t>(chain.bodies.carried.size()));
+        chain.bodies.carried.offset.push_back(
+            static_cast<std::int64_t>(chain.bodies.carried.size()));
     }
     return scene_of({chain});
 }
 Scene free_beads() {
     return scene_from(
-        "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: {beads: 100, length: 0.38}}}]\n"
+        "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: "
+        "{beads: 100, length: 0.38}}}]\n"
         "dynamics: {integrator: rattle, step: 0.001, temperature: 300}");
 }
 Scene ring_of_beads() { return scene_of({closed(random_bead_chain(3, 150, Base::free))}); }
 Scene ring_of_domains() { return scene_of({closed(random_linked_chain(4, 60, Base::free))}); }
 Scene ring_of_bodies() {
-    return scene_of({random_chain(
-        5, {.bodies = 50, .joints = RandomJoints::spherical, .base = Base::free, .tip = JointType::spherical, .ring = true})});
+    return scene_of({random_chain(5, {.bodies = 50,
+                                      .joints = RandomJoints::spherical,
+                                      .base = Base::free,
+                                      .tip = JointType::spherical,
+                                      .ring = true})});
 }
-/// More chains than a GPU has multiprocessors, several in a block of threads, with parts of every length.
+/// More chains than a GPU has multiprocessors, several in a block of threads, with parts of every
+/// length.
 Scene many_beads() {
     std::string chains;
     for (int const beads : {1, 2, 16, 17, 33, 140})
         chains += (chains.empty() ? "" : ", ") +
-                  ("{count: 400, base: free, generator: {freely_jointed: {length: 0.38, beads: " + std::to_string(beads) + "}}}");
+                  ("{count: 400, base: free, generator: {freely_jointed: {length: 0.38, beads: " +
+                   std::to_string(beads) + "}}}");
     return scene_from("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}");
 }
 /// As long as one block takes, and one bead longer.
 Scene beads_of_a_block(int beads) {
-    return scene_from("chains: [{base: fixed, generator: {random: {joint: link, seed: 4, bodies: " + std::to_string(beads) +
-                      "}}}, {base: free, generator: {random: {joint: link, seed: 5, bodies: 50}}}]\nforces: {gravity: [1, 2, -9.81]}");
+    return scene_from("chains: [{base: fixed, generator: {random: {joint: link, seed: 4, bodies: " +
+                      std::to_string(beads) +
+                      "}}}, {base: free, generator: {random: {joint: link, seed: 5, bodies: "
+                      "50}}}]\nforces: {gravity: [1, 2, -9.81]}");
 }
 Scene longest_beads() { return beads_of_a_block(1024); }
 Scene longer_beads() { return beads_of_a_block(1025); }
 Scene held_beads() {
     return scene_from(
-        "chains: [{name: a, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 60, joint: link, "
+        "chains: [{name: a, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: "
+        "{random: {bodies: 60, joint: link, "
         "seed: "
         "4}}}]");
 }
@@ -88,14 +103,24 @@ Scene hanging_beads() { return scene_from(sizes_of("joint: link", "fixed")); }
 Scene free_bodies() { return scene_from(sizes_of("joint: spherical", "free")); }
 Scene hanging_bodies() { return scene_from(sizes_of("joint: spherical", "fixed")); }
 Scene held_bodies() {
-    return scene_of({random_chain(7, {.bodies = 40, .joints = RandomJoints::spherical, .base = Base::fixed, .tip = JointType::spherical}),
-                     random_chain(8, {.bodies = 9, .joints = RandomJoints::spherical, .base = Base::free, .tip = JointType::spherical})});
+    return scene_of({random_chain(7, {.bodies = 40,
+                                      .joints = RandomJoints::spherical,
+                                      .base = Base::fixed,
+                                      .tip = JointType::spherical}),
+                     random_chain(8, {.bodies = 9,
+                                      .joints = RandomJoints::spherical,
+                                      .base = Base::free,
+                                      .tip = JointType::spherical})});
 }
 /// Rigid domains, which carry beads, among point beads.
-Scene free_domains() { return scene_of({random_linked_chain(3, 70, Base::free), random_linked_chain(4, 33, Base::free)}); }
+Scene free_domains() {
+    return scene_of(
+        {random_linked_chain(3, 70, Base::free), random_linked_chain(4, 33, Base::free)});
+}
 Scene hanging_domains() { return scene_from(sizes_of("joint: link, rigid: 0.4", "fixed")); }
 Scene held_domains() {
-    return scene_of({random_linked_chain(5, 40, Base::fixed, Tip::jointed), random_linked_chain(6, 20, Base::free, Tip::jointed)});
+    return scene_of({random_linked_chain(5, 40, Base::fixed, Tip::jointed),
+                     random_linked_chain(6, 20, Base::free, Tip::jointed)});
 }
 
 class GpuAbsolute : public ::testing::TestWithParam<AbsoluteScene> {
@@ -109,19 +134,24 @@ class GpuAbsolute : public ::testing::TestWithParam<AbsoluteScene> {
         ASSERT_EQ(groups_.size(), 1);
         bool const beads = groups_[0]->beads;
         auto solver = make_tree_solver(*groups_[0], *executor_, *communicator_);
-        host_ = beads ? make_bead_dynamics(*groups_[0], scene_, *executor_, *communicator_, std::move(solver))
-                      : make_rigid_dynamics(*groups_[0], scene_, *executor_, *communicator_, std::move(solver));
-        device_ = (beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics)(*groups_[0], scene_, *executor_, *communicator_);
+        host_ = beads ? make_bead_dynamics(*groups_[0], scene_, *executor_, *communicator_,
+                                           std::move(solver))
+                      : make_rigid_dynamics(*groups_[0], scene_, *executor_, *communicator_,
+                                            std::move(solver));
+        device_ = (beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics)(
+            *groups_[0], scene_, *executor_, *communicator_);
     }
     template <class Operation>
     void both(char const* name, Operation const& operation) {
         operation(*host_);
         operation(*device_);
-        for (auto const& [host, device] :
-             {std::pair{host_->state(), device_->state()}, {host_->observed_state(), device_->observed_state()}})
+        for (auto const& [host, device] : {std::pair{host_->state(), device_->state()},
+                                           {host_->observed_state(), device_->observed_state()}})
             for (std::size_t i = 0; i < host.size(); ++i) {
-                EXPECT_TRUE(same_bits(host[i].values, device[i].values)) << name << ": " << host[i].name;
-                for (double const v : host[i].values) ASSERT_TRUE(std::isfinite(v)) << name << ": " << host[i].name;
+                EXPECT_TRUE(same_bits(host[i].values, device[i].values))
+                    << name << ": " << host[i].name;
+                for (double const v : host[i].values)
+                    ASSERT_TRUE(std::isfinite(v)) << name << ": " << host[i].name;
             }
         EXPECT_EQ(host_->constraint_error(), device_->constraint_error()) << name;
     }
@@ -141,12 +171,14 @@ TEST_P(GpuAbsolute, EachOperationLeavesTheBitsOfTheHost) {
             d.set_simple_forces();
         });
         if (step == 0)
-            both("drawn velocities",
-                 [](AbsoluteDynamics& d) { d.draw_velocities(2.5, 7, std::vector<bool>(d.group().chain.size(), true)); });
+            both("drawn velocities", [](AbsoluteDynamics& d) {
+                d.draw_velocities(2.5, 7, std::vector<bool>(d.group().chain.size(), true));
+            });
         both("forces from outside", [](AbsoluteDynamics& d) {
             ConstView<3> const position = d.bead_positions();
             View<3> const force = d.bead_forces();
-            for (std::int64_t k = 0; k < force.size; ++k) force.store(k, plus_scaled(force.load(k), -0.5, position.load(k)));
+            for (std::int64_t k = 0; k < force.size; ++k)
+                force.store(k, plus_scaled(force.load(k), -0.5, position.load(k)));
             d.take_bead_forces();
         });
         both("kick", [](AbsoluteDynamics& d) { d.kick(0.0005); });
@@ -179,22 +211,28 @@ TEST_P(GpuAbsolute, EachOperationLeavesTheBitsOfTheHost) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, GpuAbsolute,
-    ::testing::Values(AbsoluteScene{"hanging_beads", hanging_beads}, AbsoluteScene{"hanging_beads_full", hanging_beads, Handles::full},
-                      AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"held_beads", held_beads},
-                      AbsoluteScene{"many_beads", many_beads}, AbsoluteScene{"longest_beads", longest_beads},
-                      AbsoluteScene{"longer_beads", longer_beads}, AbsoluteScene{"free_bodies", free_bodies},
-                      AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full}, AbsoluteScene{"held_bodies", held_bodies},
-                      AbsoluteScene{"carrying_bodies", carrying_bodies}, AbsoluteScene{"free_domains", free_domains},
-                      AbsoluteScene{"hanging_domains_full", hanging_domains, Handles::full}, AbsoluteScene{"held_domains", held_domains},
-                      AbsoluteScene{"ring_of_beads", ring_of_beads}, AbsoluteScene{"ring_of_domains", ring_of_domains},
-                      AbsoluteScene{"ring_of_bodies_full", ring_of_bodies, Handles::full}),
+    ::testing::Values(
+        AbsoluteScene{"hanging_beads", hanging_beads},
+        AbsoluteScene{"hanging_beads_full", hanging_beads, Handles::full},
+        AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"held_beads", held_beads},
+        AbsoluteScene{"many_beads", many_beads}, AbsoluteScene{"longest_beads", longest_beads},
+        AbsoluteScene{"longer_beads", longer_beads}, AbsoluteScene{"free_bodies", free_bodies},
+        AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
+        AbsoluteScene{"held_bodies", held_bodies},
+        AbsoluteScene{"carrying_bodies", carrying_bodies},
+        AbsoluteScene{"free_domains", free_domains},
+        AbsoluteScene{"hanging_domains_full", hanging_domains, Handles::full},
+        AbsoluteScene{"held_domains", held_domains}, AbsoluteScene{"ring_of_beads", ring_of_beads},
+        AbsoluteScene{"ring_of_domains", ring_of_domains},
+        AbsoluteScene{"ring_of_bodies_full", ring_of_bodies, Handles::full}),
     name_of_scene);
 
 class GpuConstrained : public ::testing::TestWithParam<AbsoluteScene> {
   protected:
     void SetUp() override { need_gpu(); }
     /// State, what is observed, and joint forces after some steps.
-    std::map<std::string, std::vector<double>> after_steps(Backend backend, Integrator integrator) const {
+    std::map<std::string, std::vector<double>> after_steps(Backend backend,
+                                                           Integrator integrator) const {
         Scene scene = GetParam().make();
         scene.solver.backend = backend;
         scene.solver.handles = GetParam().handles;
@@ -219,10 +257,12 @@ class GpuConstrained : public ::testing::TestWithParam<AbsoluteScene> {
         EXPECT_LE(arrays["errors"][0], dynamics.constraint_tolerance);
         EXPECT_LE(arrays["errors"][1], system.residual_bound());
         arrays["sweeps"] = {stepper->describe()["sweeps_a_drift"].get<double>()};
-        for (EnergyTerm const& term : system.potential_energy()) arrays["energy"].push_back(term.value);
+        for (EnergyTerm const& term : system.potential_energy())
+            arrays["energy"].push_back(term.value);
         ChainSystem::Accelerations const a = system.accelerations();
         auto const add = [&arrays](char const* name, auto const& values) {
-            for (auto const& v : values) arrays[name].insert(arrays[name].end(), std::begin(v.data), std::end(v.data));
+            for (auto const& v : values)
+                arrays[name].insert(arrays[name].end(), std::begin(v.data), std::end(v.data));
         };
         add("observed velocity", system.snapshot().velocity);
         add("acceleration", a.acceleration);
@@ -236,28 +276,36 @@ class GpuConstrained : public ::testing::TestWithParam<AbsoluteScene> {
 
 TEST_P(GpuConstrained, AHundredStepsLeaveTheBitsOfTheHost) {
     for (Integrator const integrator : {Integrator::rattle, Integrator::g_baoab}) {
-        auto const host = after_steps(Backend::segments, integrator), device = after_steps(Backend::cuda, integrator);
+        auto const host = after_steps(Backend::segments, integrator),
+                   device = after_steps(Backend::cuda, integrator);
         ASSERT_EQ(device.size(), host.size());
         for (auto const& [name, values] : host) {
             EXPECT_TRUE(same_bits(device.at(name), values)) << name << ", " << name_of(integrator);
             for (double const v : values) ASSERT_TRUE(std::isfinite(v)) << name;
         }
-        EXPECT_EQ(after_steps(Backend::cuda, integrator), device) << "a second time, " << name_of(integrator);
+        EXPECT_EQ(after_steps(Backend::cuda, integrator), device)
+            << "a second time, " << name_of(integrator);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GpuConstrained,
-                         ::testing::Values(AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"many_beads", many_beads},
-                                           AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"free_bodies", free_bodies},
-                                           AbsoluteScene{"hanging_bodies", hanging_bodies},
-                                           AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
-                                           AbsoluteScene{"held_bodies", held_bodies}, AbsoluteScene{"carrying_bodies", carrying_bodies},
-                                           AbsoluteScene{"free_domains", free_domains}, AbsoluteScene{"hanging_domains", hanging_domains},
-                                           AbsoluteScene{"held_domains", held_domains},
-                                           AbsoluteScene{"held_domains_full", held_domains, Handles::full},
-                                           AbsoluteScene{"ring_of_beads", ring_of_beads}, AbsoluteScene{"ring_of_domains", ring_of_domains},
-                                           AbsoluteScene{"ring_of_bodies", ring_of_bodies}),
-                         name_of_scene);
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, GpuConstrained,
+    ::testing::Values(AbsoluteScene{"free_beads", free_beads},
+                      AbsoluteScene{"many_beads", many_beads},
+                      AbsoluteScene{"longest_beads", longest_beads},
+                      AbsoluteScene{"free_bodies", free_bodies},
+                      AbsoluteScene{"hanging_bodies", hanging_bodies},
+                      AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
+                      AbsoluteScene{"held_bodies", held_bodies},
+                      AbsoluteScene{"carrying_bodies", carrying_bodies},
+                      AbsoluteScene{"free_domains", free_domains},
+                      AbsoluteScene{"hanging_domains", hanging_domains},
+                      AbsoluteScene{"held_domains", held_domains},
+                      AbsoluteScene{"held_domains_full", held_domains, Handles::full},
+                      AbsoluteScene{"ring_of_beads", ring_of_beads},
+                      AbsoluteScene{"ring_of_domains", ring_of_domains},
+                      AbsoluteScene{"ring_of_bodies", ring_of_bodies}),
+    name_of_scene);
 
 }  // namespace
 }  // namespace catena::test

@@ -1,4 +1,5 @@
-// Ranks that have a GPU each write to each other's memory, and what comes out has the bits of exchanges by the host.
+// Ranks that have a GPU each write to each other's memory, and what comes out has the bits of
+// exchanges by the host.
 #include <cstdlib>
 
 #include "cuda/device/clusters.hpp"
@@ -6,9 +7,9 @@
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "measure/solution.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/gpu.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -18,17 +19,22 @@ Scene scene_of(std::vector<std::string> const& joints, int bodies) {
     std::string chains;
     for (std::string const& joint : joints)
         chains += (chains.empty() ? "{name: a" : ", {name: b") + std::to_string(chains.size()) +
-                  ", generator: {random: {bodies: " + std::to_string(bodies) + ", seed: 5, joint: " + joint + "}}}";
-    Scene scene = parse_scene("units: si\nchains: [" + chains + "]\nforces: {gravity: [0, 1, -2]}\n", "scene.yaml");
+                  ", generator: {random: {bodies: " + std::to_string(bodies) +
+                  ", seed: 5, joint: " + joint + "}}}";
+    Scene scene = parse_scene(
+        "units: si\nchains: [" + chains + "]\nforces: {gravity: [0, 1, -2]}\n", "scene.yaml");
     scene.solver.backend = Backend::cuda;
     return scene;
 }
 void ask(char const* way) { ::setenv("CATENA_GPU_EXCHANGE", way, 1); }
-bool is_direct(ChainSystem const& system) { return system.solver_reports().front().direct_exchange; }
+bool is_direct(ChainSystem const& system) {
+    return system.solver_reports().front().direct_exchange;
+}
 
-/// Places to be filled come round every second time: what is there from before must not be taken for what is to come.
-/// `sweeps`, `scans`: whether each chain's go up and down in one launch with what ranks show each other. `times`: matrices and biases one
-/// after the other, then as often all at once.
+/// Places to be filled come round every second time: what is there from before must not be taken
+/// for what is to come. `sweeps`, `scans`: whether each chain's go up and down in one launch with
+/// what ranks show each other. `times`: matrices and biases one after the other, then as often all
+/// at once.
 void expect_the_bits_of_the_hosts(Scene const& scene, bool sweeps, bool scans, int times = 4) {
     Communicator const& world = catena::testing::world();
     ask("direct");
@@ -36,7 +42,8 @@ void expect_the_bits_of_the_hosts(Scene const& scene, bool sweeps, bool scans, i
     ask("host");
     ChainSystem host(scene, Axes::joint, world);
     EXPECT_FALSE(is_direct(host));
-    if (!is_direct(direct)) GTEST_SKIP() << "NOT RUN: ranks do not have a GPU each that reaches the others'";
+    if (!is_direct(direct))
+        GTEST_SKIP() << "NOT RUN: ranks do not have a GPU each that reaches the others'";
     std::int64_t const turns = cuda::turns_shared, turns_of_scans = cuda::scans_shared;
     int const chains_alike = static_cast<int>(scene.chains.size());
     std::vector<double> last;
@@ -47,7 +54,8 @@ void expect_the_bits_of_the_hosts(Scene const& scene, bool sweeps, bool scans, i
         }
         std::vector<double> const found = solution_of(direct).acceleration;
         EXPECT_EQ(found, solution_of(host).acceleration);
-        EXPECT_TRUE(direct.joint().empty() || world.rank() != 0 || found != last);  // rank 0 has them
+        EXPECT_TRUE(direct.joint().empty() || world.rank() != 0 ||
+                    found != last);  // rank 0 has them
         last = found;
     }
     if (sweeps) {
@@ -70,11 +78,13 @@ class GpuExchange : public ::testing::TestWithParam<char const*> {
 TEST_P(GpuExchange, HasTheBitsOfTheHosts) {
     std::int64_t const before = cuda::shared_scans_by_bodies;
     expect_the_bits_of_the_hosts(scene_, false, GetParam() != std::string("link"));
-    bool const on_hinges = GetParam() == std::string("revolute") && cuda::knows_clusters();
-    EXPECT_TRUE(IsSkipped() || !on_hinges || cuda::shared_scans_by_bodies > before);
+    bool const on_revolutes = GetParam() == std::string("revolute") && cuda::knows_clusters();
+    EXPECT_TRUE(IsSkipped() || !on_revolutes || cuda::shared_scans_by_bodies > before);
 }
 /// Several blocks below the one that speaks to other ranks.
-TEST_P(GpuExchange, OfLongChains) { expect_the_bits_of_the_hosts(scene_of({GetParam()}, 50021), true, false); }
+TEST_P(GpuExchange, OfLongChains) {
+    expect_the_bits_of_the_hosts(scene_of({GetParam()}, 50021), true, false);
+}
 /// Two groups' launches do not stand in each other's way, which other GPUs wait for.
 TEST_P(GpuExchange, OfTwoKinds) {
     std::string const other = GetParam() == std::string("link") ? "spherical" : GetParam();
@@ -88,8 +98,10 @@ class GpuExchangeOfGroups : public ::testing::Test {
     Communicator const& world_ = catena::testing::world();
 };
 TEST_F(GpuExchangeOfGroups, HasTheBitsOfTheHosts) {
-    std::int64_t const before = cuda::launches_by_groups, of_rank = cuda::fewest_groups_below_stages * 9 / 8 * cuda::bodies_of_group;
-    expect_the_bits_of_the_hosts(scene_of({"link"}, static_cast<int>(world_.size() * of_rank + 300)), true, false, 2);
+    std::int64_t const before = cuda::launches_by_groups,
+                       of_rank = cuda::fewest_groups_below_stages * 9 / 8 * cuda::bodies_of_group;
+    expect_the_bits_of_the_hosts(
+        scene_of({"link"}, static_cast<int>(world_.size() * of_rank + 300)), true, false, 2);
     EXPECT_TRUE(IsSkipped() || cuda::launches_by_groups > before);
 }
 /// A sweep of matrices, and one of biases.
@@ -102,7 +114,8 @@ TEST_P(GpuExchange, InSweepsApart) {
         ChainSystem direct(scene, Axes::joint, world_);
         ask("host");
         ChainSystem host(scene, Axes::joint, world_);
-        if (!is_direct(direct)) GTEST_SKIP() << "NOT RUN: ranks do not have a GPU each that reaches the others'";
+        if (!is_direct(direct))
+            GTEST_SKIP() << "NOT RUN: ranks do not have a GPU each that reaches the others'";
         for (int i = 0; i < 3; ++i) {
             for (ChainSystem* const system : {&direct, &host})
                 for (auto const& chains : system->joint()) {
@@ -120,7 +133,8 @@ TEST_P(GpuExchange, InSweepsApart) {
 class GpuExchangeInGraphs : public GpuExchange {};
 TEST_P(GpuExchangeInGraphs, GoesOnWithoutTheHost) {
     ChainSystem system(scene_, Axes::world, world_);
-    if (!is_direct(system)) GTEST_SKIP() << "NOT RUN: ranks do not have a GPU each that reaches the others'";
+    if (!is_direct(system))
+        GTEST_SKIP() << "NOT RUN: ranks do not have a GPU each that reaches the others'";
     system.evaluate();
     system.evaluate(false);
     std::vector<double> const before = solution_of(system).acceleration;
@@ -134,9 +148,12 @@ TEST_P(GpuExchange, RefusesAWayThatThereIsNot) {
 }
 
 auto const name_of_joint = [](auto const& joint) { return std::string(joint.param); };
-INSTANTIATE_TEST_SUITE_P(Joints, GpuExchange, ::testing::Values("link", "planar", "spherical", "universal", "revolute", "helical"),
+INSTANTIATE_TEST_SUITE_P(Joints, GpuExchange,
+                         ::testing::Values("link", "planar", "spherical", "universal", "revolute",
+                                           "helical"),
                          name_of_joint);
-INSTANTIATE_TEST_SUITE_P(Joints, GpuExchangeInGraphs, ::testing::Values("link", "spherical"), name_of_joint);
+INSTANTIATE_TEST_SUITE_P(Joints, GpuExchangeInGraphs, ::testing::Values("link", "spherical"),
+                         name_of_joint);
 
 }  // namespace
 }  // namespace catena::test

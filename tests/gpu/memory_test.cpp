@@ -4,8 +4,8 @@
 #include "cuda/space/memory.hpp"
 #include "integrate/chain_system.hpp"
 #include "plan/family.hpp"
-#include "tests/support/gpu.hpp"
 #include "reader/load_scene.hpp"
+#include "tests/support/gpu.hpp"
 
 namespace catena::test {
 namespace {
@@ -28,10 +28,12 @@ class GpuMemoryTaken : public ::testing::Test {
         system.evaluate();
         system.wait();
         cuda::DeviceMemory counted;
-        for (auto const& group : system.groups()) counted += cuda::memory_needed(*group, scene, scene.solver.backend, alone);
+        for (auto const& group : system.groups())
+            counted += cuda::memory_needed(*group, scene, scene.solver.backend, alone);
         std::int64_t const taken = before - cuda::free_memory(alone);
-        // The driver gives memory in pages of 2 MiB, which small allocations share; what passed through may stay with the stream. Block
-        // ranges and items on their way are counted by their bounds.
+        // The driver gives memory in pages of 2 MiB, which small allocations share; what passed
+        // through may stay with the stream. Block ranges and items on their way are counted by
+        // their bounds.
         std::int64_t const pages = std::int64_t{counted.allocations} << 21;
         EXPECT_LE(taken, counted.sum() + pages);
         EXPECT_GE(taken, counted.bytes - counted.bytes / 20 - pages);
@@ -56,13 +58,20 @@ TEST_F(GpuMemoryTaken, IsWhatWasCountedOfAlikeBodies) {
     std::int64_t bytes[2] = {};
     for (char const* const mass : {"2", "{uniform: [1, 2]}"}) {
         Scene scene = parse_scene(
-            std::string("chains: [{base: fixed, generator: {coil: {bodies: 300000, length: 1, mass: ") + mass + "}}}]", "rods.yaml");
+            std::string(
+                "chains: [{base: fixed, generator: {coil: {bodies: 300000, length: 1, mass: ") +
+                mass + "}}}]",
+            "rods.yaml");
         scene.solver.backend = Backend::cuda;
         expect_taken(scene, Axes::joint, *alone);
         ChainSystem const system(scene, Axes::joint, *alone);
-        bytes[mass[0] == '{'] = cuda::memory_needed(*system.groups().front(), scene, scene.solver.backend, *alone).bytes;
+        bytes[mass[0] == '{'] =
+            cuda::memory_needed(*system.groups().front(), scene, scene.solver.backend, *alone)
+                .bytes;
     }
-    EXPECT_GE(bytes[1] - bytes[0], 300000 * (1 + 6) * std::int64_t{sizeof(double)});  // inverse masses and inertias at least
+    EXPECT_GE(
+        bytes[1] - bytes[0],
+        300000 * (1 + 6) * std::int64_t{sizeof(double)});  // inverse masses and inertias at least
 }
 
 }  // namespace

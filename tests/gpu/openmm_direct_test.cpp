@@ -1,5 +1,6 @@
-// Where pairs are shared out and GPUs write to each other's memory, single precision's positions and forces go from array to array. Once
-// a process: memory of another GPU that one CUDA context of a process has opened need not open for the next.
+// Where pairs are shared out and GPUs write to each other's memory, single precision's positions
+// and forces go from array to array. Once a process: memory of another GPU that one CUDA context of
+// a process has opened need not open for the next.
 #include "cuda/device/gpu.hpp"
 #include "neighbours/device_path.hpp"
 #include "tests/gpu/openmm_ranks.hpp"
@@ -27,12 +28,14 @@ TEST_P(DirectPairs, AfterManySteps) {
     expect_close(direct, by_host, tolerance("mixed"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scene, DirectPairs,
-                         ::testing::Values(Case{"long_box",
-                                                "{name: a, count: 120, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: "
-                                                "self_avoiding, velocities: thermal}",
-                                                "box: {periodic: [90, 13, 12]}", 90}),
-                         [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Scene, DirectPairs,
+    ::testing::Values(Case{
+        "long_box",
+        "{name: a, count: 120, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: "
+        "self_avoiding, velocities: thermal}",
+        "box: {periodic: [90, 13, 12]}", 90}),
+    [](auto const& scene) { return scene.param.name; });
 
 }  // namespace
 }  // namespace catena::test

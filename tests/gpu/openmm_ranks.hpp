@@ -1,4 +1,5 @@
-// Scenes whose beads are on the GPUs of several ranks, and what is found there beside what one Context of the whole System finds.
+// Scenes whose beads are on the GPUs of several ranks, and what is found there beside what one
+// Context of the whole System finds.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,10 +10,10 @@
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
 #include "mpi/first_rank.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/gpu/openmm_scene.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/gpu.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 
@@ -28,8 +29,9 @@ struct Case {
 /// What one way of computing found, and where it stood then.
 struct Found {
     std::int64_t step = 0;
-    Checkpoint checkpoint;       // with the state, on every rank
-    std::vector<Vec3> own, all;  // forces on this rank's beads, gravity among them; OpenMM's on all, on rank 0
+    Checkpoint checkpoint;  // with the state, on every rank
+    std::vector<Vec3> own,
+        all;  // forces on this rank's beads, gravity among them; OpenMM's on all, on rank 0
     std::vector<EnergyTerm> energies;
     GhostTraffic traffic;
     std::int64_t contexts = 0;
@@ -42,14 +44,18 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         need_gpu(world_);
         if (IsSkipped() || HasFatalFailure()) return;
         if (world_.max(cuda::why_no_device_path().empty() ? 0 : 1) == 0) return;
-        if (std::getenv("CATENA_NEEDS_GPU") != nullptr) FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
+        if (std::getenv("CATENA_NEEDS_GPU") != nullptr)
+            FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
         GTEST_SKIP() << "NOT RUN: " << cuda::why_no_device_path();
     }
     void TearDown() override {
-        given_way_.empty() ? ::unsetenv("CATENA_GPU_EXCHANGE") : ::setenv("CATENA_GPU_EXCHANGE", given_way_.c_str(), 1);
+        given_way_.empty() ? ::unsetenv("CATENA_GPU_EXCHANGE")
+                           : ::setenv("CATENA_GPU_EXCHANGE", given_way_.c_str(), 1);
     }
-    std::string given_way_ = std::getenv("CATENA_GPU_EXCHANGE") ? std::getenv("CATENA_GPU_EXCHANGE") : "";
-    static Scene scene_with(std::string const& precision, bool on_device, char const* split = "ghosts") {
+    std::string given_way_ =
+        std::getenv("CATENA_GPU_EXCHANGE") ? std::getenv("CATENA_GPU_EXCHANGE") : "";
+    static Scene scene_with(std::string const& precision, bool on_device,
+                            char const* split = "ghosts") {
         Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest), "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->precision = precision;
@@ -59,8 +65,10 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         scene.forces.openmm->replicate = !on_device;  // the oracle
         return scene;
     }
-    /// At step `last`, from the scene's start or from where another stood. `asks`: for energies at every step.
-    Found found(Scene const& scene, std::int64_t last, Found const* start = nullptr, bool asks = false) {
+    /// At step `last`, from the scene's start or from where another stood. `asks`: for energies at
+    /// every step.
+    Found found(Scene const& scene, std::int64_t last, Found const* start = nullptr,
+                bool asks = false) {
         ChainSystem system(scene, Axes::world, world_);
         EXPECT_EQ(system.openmm()->path(), scene.forces.openmm->path);
         auto stepper = make_stepper(system, scene.dynamics);
@@ -87,12 +95,14 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         f.checkpoint.arrays = system.state();
         f.traffic = system.openmm()->traffic();
         f.contexts = system.openmm()->contexts();
-        if (DevicePath const* const path = system.openmm()->device_path()) f.lists = path->pair_lists();
+        if (DevicePath const* const path = system.openmm()->device_path())
+            f.lists = path->pair_lists();
         return f;
     }
     static std::int64_t scene_beads(Scene const& scene) {
         std::int64_t beads = 0;
-        for (auto const& chain : scene.chains) beads += static_cast<std::int64_t>(chain.bead_count());
+        for (auto const& chain : scene.chains)
+            beads += static_cast<std::int64_t>(chain.bead_count());
         return beads;
     }
     double largest(std::vector<Vec3> const& of_rank) const {
@@ -103,7 +113,8 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
     static double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
         EXPECT_EQ(a.size(), b.size());
         double value = 0;
-        for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) value = larger(value, norm(a[k] - b[k]));
+        for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+            value = larger(value, norm(a[k] - b[k]));
         return value;
     }
     void expect_close(Found const& a, Found const& b, double tolerance) const {
@@ -115,7 +126,8 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         for (std::size_t i = 0; i < a.energies.size(); ++i) {
             EXPECT_EQ(a.energies[i].name, b.energies[i].name);
             EXPECT_TRUE(std::isfinite(a.energies[i].value));
-            EXPECT_NEAR(a.energies[i].value, b.energies[i].value, tolerance * (1 + std::abs(b.energies[i].value)));
+            EXPECT_NEAR(a.energies[i].value, b.energies[i].value,
+                        tolerance * (1 + std::abs(b.energies[i].value)));
         }
     }
     /// When somebody asks for them, wherever beads are.
@@ -141,13 +153,16 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         system.set_state(arrays);
         EXPECT_THROW(system.evaluate(), SharedError);
     }
-    /// OpenMM's pair forces take positions x from some origin and out of some cell, which differ, with a rounding of eps x of their
-    /// precision: 1e-6 nm at 20 nm in single and mixed. Overlaps of 0.05 nm make forces change by all of themselves: 2e-5 of the largest.
+    /// OpenMM's pair forces take positions x from some origin and out of some cell, which differ,
+    /// with a rounding of eps x of their precision: 1e-6 nm at 20 nm in single and mixed. Overlaps
+    /// of 0.05 nm make forces change by all of themselves: 2e-5 of the largest.
     static double tolerance(std::string const& precision) {
-        double const eps = precision == "double" ? 0x1p-53 : 0x1p-24, overlap = 0.05, at_least = 1e-12;
+        double const eps = precision == "double" ? 0x1p-53 : 0x1p-24, overlap = 0.05,
+                     at_least = 1e-12;
         return std::max(at_least, eps * GetParam().edge / overlap);
     }
-    /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the order of its particles.
+    /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the
+    /// order of its particles.
     static constexpr double rounding = 16.0 / 4294967296.0;
     Communicator const& world_ = catena::testing::world();
 };

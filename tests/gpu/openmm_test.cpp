@@ -7,9 +7,9 @@
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/gpu/openmm_scene.hpp"
 #include "tests/support/gpu.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -36,12 +36,16 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
         need_gpu();
         if (IsSkipped() || HasFatalFailure()) return;
         if (cuda::why_no_device_path().empty()) return;
-        if (std::getenv("CATENA_NEEDS_GPU") != nullptr) FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
+        if (std::getenv("CATENA_NEEDS_GPU") != nullptr)
+            FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
         GTEST_SKIP() << "NOT RUN: " << cuda::why_no_device_path();
     }
     /// At step `last`, from the scene's start or from where another stood.
-    Found found(std::string const& path, std::string const& precision, std::int64_t last, Found const* start = nullptr) {
-        Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: " + precision), "scene.yaml");
+    Found found(std::string const& path, std::string const& precision, std::int64_t last,
+                Found const* start = nullptr) {
+        Scene scene = parse_scene(
+            openmm_scene(GetParam().chains, GetParam().rest, ", precision: " + precision),
+            "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->path = path;
         ChainSystem system(scene, Axes::world, *communicator_);
@@ -71,7 +75,8 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
         f.energies = system.potential_energy();
         f.again = system.bead_forces();
         f.state = system.state();
-        if (DevicePath const* const device = system.openmm()->device_path()) f.lists = device->pair_lists();
+        if (DevicePath const* const device = system.openmm()->device_path())
+            f.lists = device->pair_lists();
         if (steps > 0) {
             EXPECT_GT(system.matrix_seconds(), 0);
             EXPECT_LE(system.hidden_seconds(), system.matrix_seconds() * (1 + 1e-12));
@@ -96,10 +101,12 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
         ASSERT_EQ(a.energies.size(), b.energies.size());
         for (std::size_t i = 0; i < a.energies.size(); ++i) {
             EXPECT_EQ(a.energies[i].name, b.energies[i].name);
-            EXPECT_NEAR(a.energies[i].value, b.energies[i].value, tolerance * (1 + std::abs(b.energies[i].value)));
+            EXPECT_NEAR(a.energies[i].value, b.energies[i].value,
+                        tolerance * (1 + std::abs(b.energies[i].value)));
         }
     }
-    /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the order of its particles.
+    /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the
+    /// order of its particles.
     static constexpr double rounding = 16.0 / 4294967296.0;
     std::unique_ptr<Communicator> communicator_ = serial_communicator();
 };
@@ -112,7 +119,8 @@ TEST_P(OpenMmOnGpu, ForcesAndEnergiesAreThoseThroughTheHost) {
 
 TEST_P(OpenMmOnGpu, AHundredSteps) {
     Found const device = found("device", "double", 100), host = found("host", "double", 100);
-    EXPECT_LE(difference(device.positions, host.positions), 1e-7);  // rounding, grown by the chains' own chaos
+    EXPECT_LE(difference(device.positions, host.positions),
+              1e-7);  // rounding, grown by the chains' own chaos
     expect_close(device, host, 1e-5);
 }
 
@@ -123,8 +131,9 @@ TEST_P(OpenMmOnGpu, ARestartGoesOn) {
     expect_close(rest, whole, 1e-8);
 }
 
-/// OpenMM's order and the cells are those of an earlier step. In mixed precision beads 0.4 nm apart have places rounded to 2^-24 of up to
-/// 40 nm, each of them in another cell than afresh, and their force goes with the 13th power of the distance.
+/// OpenMM's order and the cells are those of an earlier step. In mixed precision beads 0.4 nm apart
+/// have places rounded to 2^-24 of up to 40 nm, each of them in another cell than afresh, and their
+/// force goes with the 13th power of the distance.
 TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
     constexpr double of_places = 14 * 40 / 0.4 * 0x1p-24;
     for (auto const& [precision, tolerance] : {std::pair{"double", 1e-12}, {"mixed", of_places}}) {
@@ -139,10 +148,13 @@ TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
     }
 }
 
-/// Where they stand after many steps comes between two evaluations: no list of pairs is kept across that.
+/// Where they stand after many steps comes between two evaluations: no list of pairs is kept across
+/// that.
 TEST_P(OpenMmOnGpu, BeadsThatAreSetElsewhere) {
-    Found const there = found("host", "double", 300), expected = found("host", "double", 300, &there);
-    Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
+    Found const there = found("host", "double", 300),
+                expected = found("host", "double", 300, &there);
+    Scene scene = parse_scene(
+        openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
     scene.solver.backend = Backend::cuda;
     scene.forces.openmm->path = "device";
     ChainSystem system(scene, Axes::world, *communicator_);
@@ -150,14 +162,16 @@ TEST_P(OpenMmOnGpu, BeadsThatAreSetElsewhere) {
     for (int i = 0; i < 4; ++i) system.evaluate();
     system.set_state(there.state);
     system.evaluate();
-    EXPECT_LE(difference(system.bead_forces(), expected.again), 1e-12 * largest(expected.again) + rounding);
+    EXPECT_LE(difference(system.bead_forces(), expected.again),
+              1e-12 * largest(expected.again) + rounding);
     system.set_state(start);
     system.evaluate();
     EXPECT_GT(difference(system.bead_forces(), expected.again), 1e-3 * largest(expected.again));
 }
 
 TEST_P(OpenMmOnGpu, ABeadAtNoFinitePlaceEndsTheRun) {
-    Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: mixed"), "scene.yaml");
+    Scene scene = parse_scene(
+        openmm_scene(GetParam().chains, GetParam().rest, ", precision: mixed"), "scene.yaml");
     scene.solver.backend = Backend::cuda;
     scene.forces.openmm->path = "device";
     ChainSystem system(scene, Axes::world, *communicator_);
@@ -176,7 +190,8 @@ TEST_P(OpenMmOnGpu, ABeadAtNoFinitePlaceEndsTheRun) {
 
 /// Nor does its list of pairs.
 TEST_P(OpenMmOnGpu, ARunDoesNotDependOnEnergiesAskedFor) {
-    Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
+    Scene scene = parse_scene(
+        openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
     scene.solver.backend = Backend::cuda;
     scene.forces.openmm->path = "device";
     auto const run = [&](bool with_energies) {
@@ -196,24 +211,33 @@ TEST_P(OpenMmOnGpu, ARunDoesNotDependOnEnergiesAskedFor) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, OpenMmOnGpu,
-    ::testing::Values(Case{"periodic",
-                           "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
-                           "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
-                           "box: {periodic: [16, 17, 18]}"},
-                      // So many that OpenMM keeps a list of pairs.
-                      Case{"many",
-                           "{name: a, count: 40, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}",
-                           "box: {periodic: [36, 30, 28]}"},
-                      // Half an edge is a cutoff and half of a block of 32 beads: what has moved must not be taken from another cell.
-                      Case{"narrow",
-                           "{name: a, count: 110, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
-                           "velocities: thermal}",
-                           "box: {periodic: [11.2, 11, 42]}"},
-                      Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""},
-                      Case{"held",
-                           "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
-                           "thermal}",
-                           "box: {periodic: [40, 40, 40]}"}),
+    ::testing::Values(
+        Case{"periodic",
+             "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: "
+             "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
+             "box: {periodic: [16, 17, 18]}"},
+        // So many that OpenMM keeps a list of pairs.
+        Case{"many",
+             "{name: a, count: 40, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: thermal}",
+             "box: {periodic: [36, 30, 28]}"},
+        // Half an edge is a cutoff and half of a block of 32 beads: what has moved must not be
+        // taken from another cell.
+        Case{"narrow",
+             "{name: a, count: 110, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, "
+             "conformation: self_avoiding, "
+             "velocities: thermal}",
+             "box: {periodic: [11.2, 11, 42]}"},
+        Case{"open",
+             "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: thermal}",
+             ""},
+        Case{"held",
+             "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: "
+             "thermal}",
+             "box: {periodic: [40, 40, 40]}"}),
     [](auto const& scene) { return scene.param.name; });
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Quotients and roots without branches (cuda/sweeps/branchless_math.cuh) of many numbers, on the GPU.
+// Quotients and roots without branches (cuda/sweeps/branchless_math.cuh) of many numbers, on the
+// GPU.
 #pragma once
 
 #include <vector>

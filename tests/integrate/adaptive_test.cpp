@@ -1,18 +1,18 @@
-// The Dormand-Prince pair and the choice of its steps: orders, errors in proportion to the tolerance, fewer evaluations than steps of one
-// length, rejected steps without a trace.
+// The Dormand-Prince pair and the choice of its steps: orders, errors in proportion to the
+// tolerance, fewer evaluations than steps of one length, rejected steps without a trace.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "error.hpp"
 #include "dynamics/joint/embedded_steps.hpp"
+#include "error.hpp"
 #include "integrate/step_control.hpp"
 #include "integrate/stepper.hpp"
+#include "reader/load_scene.hpp"
 #include "scene/pose.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/random_chain.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -35,13 +35,15 @@ Ended end_of(Scene scene, Integrator integrator, double tolerance, double time, 
         stepper->prepare(nullptr);
         stepper->step(n, nullptr);
     }
-    Ended end{system.snapshot().position, 4 * steps, stepper->inner_steps(), stepper->constraint_error()};
+    Ended end{system.snapshot().position, 4 * steps, stepper->inner_steps(),
+              stepper->constraint_error()};
     if (!end.inner.is_null()) end.evaluations = end.inner.at("evaluations").get<std::int64_t>();
     return end;
 }
 double distance(Ended const& a, Ended const& b) {
     double worst = 0;
-    for (std::size_t i = 0; i < a.position.size(); ++i) worst = std::max(worst, norm(a.position[i] - b.position[i]));
+    for (std::size_t i = 0; i < a.position.size(); ++i)
+        worst = std::max(worst, norm(a.position[i] - b.position[i]));
     return worst;
 }
 
@@ -60,15 +62,18 @@ Scene swinging(RandomJoints joints, Base base) {
     scene.forces.gravity = {{0, 1, -2}};
     return scene;
 }
-RandomJoints const every_kind[] = {RandomJoints::revolute,  RandomJoints::spherical, RandomJoints::universal,
-                                   RandomJoints::prismatic, RandomJoints::helical,   RandomJoints::mixed};
+RandomJoints const every_kind[] = {RandomJoints::revolute,  RandomJoints::spherical,
+                                   RandomJoints::universal, RandomJoints::prismatic,
+                                   RandomJoints::helical,   RandomJoints::mixed};
 
-/// Links of a plane, folded back upon themselves at their middle: what falls speeds up as it gets short.
+/// Links of a plane, folded back upon themselves at their middle: what falls speeds up as it gets
+/// short.
 Scene whip(int links) {
     std::string text = "units: si\nchains:\n  - base: fixed\n    bodies:\n";
     for (int k = 0; k < links; ++k)
         text +=
-            "      - {mass: 0.1, com: [0.05, 0, 0], inertia: [1e-5, 1e-4, 1e-4], joint: {type: revolute, axis: [0, 1, 0], translation: [" +
+            "      - {mass: 0.1, com: [0.05, 0, 0], inertia: [1e-5, 1e-4, 1e-4], joint: {type: "
+            "revolute, axis: [0, 1, 0], translation: [" +
             std::string(k == 0 ? "0" : "0.1") + ", 0, 0], q: " +
             std::string(k == 0           ? "0"
                         : k == links / 2 ? "3"
@@ -78,20 +83,28 @@ Scene whip(int links) {
 }
 
 TEST(DormandPrince, IsOfFifthOrder) {
-    for (std::string const joint : {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
+    for (std::string const joint :
+         {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
         for (std::string const base : {"fixed", "free"}) {
-            if (joint == "prismatic" && base == "fixed") continue;  // slides in a constant field: without error
-            Scene const scene = parse_scene("units: si\nforces: {gravity: [0, 1, -2]}\nchains: [{base: " + base +
-                                                ", generator: {random: {bodies: 3, joint: " + joint + ", seed: 1, loads: false}}}]\n",
-                                            "moving.yaml");
-            auto const end = [&](int steps) { return end_of(scene, Integrator::dormand_prince, 0, 0.8, steps); };
+            if (joint == "prismatic" && base == "fixed")
+                continue;  // slides in a constant field: without error
+            Scene const scene =
+                parse_scene("units: si\nforces: {gravity: [0, 1, -2]}\nchains: [{base: " + base +
+                                ", generator: {random: {bodies: 3, joint: " + joint +
+                                ", seed: 1, loads: false}}}]\n",
+                            "moving.yaml");
+            auto const end = [&](int steps) {
+                return end_of(scene, Integrator::dormand_prince, 0, 0.8, steps);
+            };
             Ended const exact = end(1280);
-            EXPECT_NEAR(std::log2(distance(end(20), exact) / distance(end(40), exact)), 5.0, 0.2) << joint << ' ' << base;
+            EXPECT_NEAR(std::log2(distance(end(20), exact) / distance(end(40), exact)), 5.0, 0.2)
+                << joint << ' ' << base;
         }
 }
 
-/// The difference of the orders, C h^5, is kept to the tolerance, and the fifth goes on, whose errors add up to h^5. C is another one on
-/// every path of steps: the slope over five decades is that of many scenes.
+/// The difference of the orders, C h^5, is kept to the tolerance, and the fifth goes on, whose
+/// errors add up to h^5. C is another one on every path of steps: the slope over five decades is
+/// that of many scenes.
 TEST(Adaptive, ErrorsAreInProportionToTheTolerance) {
     double sum = 0;
     int scenes = 0;
@@ -101,11 +114,14 @@ TEST(Adaptive, ErrorsAreInProportionToTheTolerance) {
             Scene const scene = swinging(joints, base);
             Ended const exact = end_of(scene, Integrator::dormand_prince, 1e-13, time, 1);
             auto const error = [&](double tolerance) {
-                return distance(end_of(scene, Integrator::dormand_prince, tolerance, time, 1), exact);
+                return distance(end_of(scene, Integrator::dormand_prince, tolerance, time, 1),
+                                exact);
             };
-            double const wide = error(1e-6), narrow = error(1e-11), slope = std::log10(wide / narrow) / 5;
+            double const wide = error(1e-6), narrow = error(1e-11),
+                         slope = std::log10(wide / narrow) / 5;
             EXPECT_LE(wide, 1e-6) << static_cast<int>(joints) << ' ' << static_cast<int>(base);
-            EXPECT_NEAR(slope, 1.0, 0.25) << static_cast<int>(joints) << ' ' << static_cast<int>(base);
+            EXPECT_NEAR(slope, 1.0, 0.25)
+                << static_cast<int>(joints) << ' ' << static_cast<int>(base);
             sum += slope, ++scenes;
         }
     RecordProperty("slope", std::to_string(sum / scenes));
@@ -131,7 +147,8 @@ TEST(Adaptive, TakesFarFewerEvaluationsThanStepsOfOneLengthWhereAWhipCracks) {
     RecordProperty("evaluations", std::to_string(adaptive.evaluations));
     RecordProperty("evaluations_of_rk4", std::to_string(4 * steps));
     EXPECT_GT(4 * steps / 2, 3 * adaptive.evaluations) << error;  // half of the steps were too few
-    EXPECT_GT(adaptive.inner.at("longest").get<double>(), 10 * adaptive.inner.at("shortest").get<double>());
+    EXPECT_GT(adaptive.inner.at("longest").get<double>(),
+              10 * adaptive.inner.at("shortest").get<double>());
 }
 
 TEST(Adaptive, RejectedStepsLeaveNoTrace) {
@@ -145,7 +162,8 @@ TEST(Adaptive, RejectedStepsLeaveNoTrace) {
                 for (JointDynamics* const group : system.joint()) group->carry_rates();
                 auto const step = [&](InnerStep const& s) {
                     for (int stage = 0; stage < DormandPrince::stages; ++stage) {
-                        for (JointDynamics* const group : system.joint()) group->embedded_stage(stage, s);
+                        for (JointDynamics* const group : system.joint())
+                            group->embedded_stage(stage, s);
                         system.solve_joint_groups();
                     }
                 };
@@ -156,38 +174,46 @@ TEST(Adaptive, RejectedStepsLeaveNoTrace) {
                 step({0.01, 0.01, rejected});
                 auto arrays = system.state();
                 for (JointDynamics* const group : system.joint())
-                    arrays["error"].push_back(group->embedded_error(0.01, {1e-6, 1e-6, {1e-6, 1e-6}}));
+                    arrays["error"].push_back(
+                        group->embedded_error(0.01, {1e-6, 1e-6, {1e-6, 1e-6}}));
                 return arrays;
             };
-            EXPECT_EQ(after(true), after(false)) << static_cast<int>(joints) << ' ' << static_cast<int>(base);
+            EXPECT_EQ(after(true), after(false))
+                << static_cast<int>(joints) << ' ' << static_cast<int>(base);
         }
 }
 
-/// The same times are hit whatever the steps in between: what is driven is where its course says, and all else as far as the tolerance
-/// goes.
+/// The same times are hit whatever the steps in between: what is driven is where its course says,
+/// and all else as far as the tolerance goes.
 TEST(Adaptive, EndsAtTheTimesOfTheSteps) {
     Scene scene = swinging(RandomJoints::revolute, Base::fixed);
-    scene.chains[0].bodies.driven = {DrivenJoint{2, {Course{0.3, 2.5, 0.4, 3, 0.2}, Course{}}}};
-    scene.dynamics = {.given = true, .integrator = Integrator::dormand_prince, .step = 0.1, .tolerance = 1e-9};
+    scene.chains[0].bodies.driven = {
+        DrivenJoint{2, {PrescribedMotion{0.3, 2.5, 0.4, 3, 0.2}, PrescribedMotion{}}}};
+    scene.dynamics = {
+        .given = true, .integrator = Integrator::dormand_prince, .step = 0.1, .tolerance = 1e-9};
     auto const communicator = serial_communicator();
     ChainSystem system(scene, Axes::joint, *communicator);
     auto const stepper = make_stepper(system, scene.dynamics);
     for (int n = 0; n < 20; ++n) {
         stepper->prepare(nullptr);
         stepper->step(n, nullptr);
-        double const expected = scene::value_at(scene.chains[0].bodies.driven[0].course[0], n * 0.1 + 0.1);
+        double const expected =
+            scene::value_at(scene.chains[0].bodies.driven[0].course[0], n * 0.1 + 0.1);
         EXPECT_EQ(system.state().at("q")[4 * 2], expected) << n;
     }
     EXPECT_GT(stepper->inner_steps().at("taken").get<int>(), 20);
-    Ended const many = end_of(scene, Integrator::dormand_prince, 1e-9, 2, 20), few = end_of(scene, Integrator::dormand_prince, 1e-9, 2, 1);
+    Ended const many = end_of(scene, Integrator::dormand_prince, 1e-9, 2, 20),
+                few = end_of(scene, Integrator::dormand_prince, 1e-9, 2, 1);
     EXPECT_LE(distance(many, few), 1e-6);
     EXPECT_GT(distance(many, few), 0);
 }
 
 /// Rounding is no error that shorter steps could make smaller.
 TEST(Adaptive, WhatHangsAtRestTakesOneStepAStep) {
-    Scene const scene =
-        parse_scene("units: si\nchains: [{generator: {pendulum: {links: 30}}}]\nforces: {gravity: [9.81, 0, 0]}\n", "rest.yaml");
+    Scene const scene = parse_scene(
+        "units: si\nchains: [{generator: {pendulum: {links: 30}}}]\nforces: {gravity: [9.81, 0, "
+        "0]}\n",
+        "rest.yaml");
     Ended const end = end_of(scene, Integrator::dormand_prince, 1e-12, 0.1, 100);
     EXPECT_EQ(end.inner.at("taken"), 100);
     EXPECT_EQ(end.inner.at("rejected"), 0);
@@ -216,15 +242,21 @@ forces: {gravity: [0, 0, -5]}
 
 TEST(Adaptive, EndsInOneLineWhereNoStepIsShortEnough) {
     auto const line = [](char const* stiffness, double tolerance) {
-        Scene const scene = parse_scene(
-            std::string("units: si\nchains: [{base: fixed, bodies: [{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: "
-                        "revolute, axis: [0, 1, 0], q: 1, stiffness: ") +
-                stiffness + "}}]}]\n",
-            "stiff.yaml");
+        Scene const scene =
+            parse_scene(std::string("units: si\nchains: [{base: fixed, bodies: [{mass: 1, com: "
+                                    "[0.1, 0, 0], inertia: [1, 1, 1], joint: {type: "
+                                    "revolute, axis: [0, 1, 0], q: 1, stiffness: ") +
+                            stiffness + "}}]}]\n",
+                        "stiff.yaml");
         return message_of([&] { end_of(scene, Integrator::dormand_prince, tolerance, 1, 1); });
     };
-    EXPECT_TRUE(line("1e40", 1e-8).starts_with("no shorter step is a step for dynamics.tolerance 1e-08 at time 0 (")) << line("1e40", 1e-8);
-    EXPECT_TRUE(line("1e16", 1e-8).starts_with("100,000 inner steps are not enough for dynamics.tolerance 1e-08 at time "))
+    EXPECT_TRUE(
+        line("1e40", 1e-8)
+            .starts_with("no shorter step is a step for dynamics.tolerance 1e-08 at time 0 ("))
+        << line("1e40", 1e-8);
+    EXPECT_TRUE(line("1e16", 1e-8)
+                    .starts_with(
+                        "100,000 inner steps are not enough for dynamics.tolerance 1e-08 at time "))
         << line("1e16", 1e-8);
     EXPECT_EQ(line("1e4", 1e-8), "nothing was thrown");
 }

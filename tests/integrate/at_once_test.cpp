@@ -1,11 +1,12 @@
-// Matrices and biases in one sweep: as good a solution as by one sweep after the other, and the same one.
+// Matrices and biases in one sweep: as good a solution as by one sweep after the other, and the
+// same one.
 #include <gtest/gtest.h>
 
-#include "math/simd_level.hpp"
 #include "integrate/chain_system.hpp"
+#include "math/simd_level.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/same_bits.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -15,30 +16,41 @@ struct Case {
     char const* chains;
 };
 Case const cases[] = {
-    {"free_beads", "{velocities: thermal, generator: {freely_jointed: {beads: 333, length: 0.38}}}"},
+    {"free_beads",
+     "{velocities: thermal, generator: {freely_jointed: {beads: 333, length: 0.38}}}"},
     {"short_runs", "{velocities: thermal, generator: {freely_jointed: {beads: 17, length: 0.38}}}"},
     {"one_bead", "{velocities: thermal, generator: {freely_jointed: {beads: 1, length: 0.38}}}"},
-    {"hanging_beads", "{base: fixed, velocities: thermal, generator: {random: {bodies: 200, joint: link, seed: 2}}}"},
+    {"hanging_beads",
+     "{base: fixed, velocities: thermal, generator: {random: {bodies: 200, joint: link, seed: "
+     "2}}}"},
     {"held_beads",
-     "{base: fixed, velocities: thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, generator: {freely_jointed: {beads: 70, length: "
+     "{base: fixed, velocities: thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, generator: "
+     "{freely_jointed: {beads: 70, length: "
      "0.38}}}"},
     {"many_beads",
-     "{count: 5, velocities: thermal, generator: {freely_jointed: {beads: 23, length: 0.38}}}, {velocities: thermal, generator: "
+     "{count: 5, velocities: thermal, generator: {freely_jointed: {beads: 23, length: 0.38}}}, "
+     "{velocities: thermal, generator: "
      "{freely_jointed: {beads: 129, length: 0.38}}}"},
-    {"free_bodies", "{base: free, velocities: thermal, generator: {random: {bodies: 301, joint: spherical, seed: 1}}}"},
-    {"hanging_bodies", "{base: fixed, velocities: thermal, generator: {random: {bodies: 50, joint: spherical, seed: 4}}}"},
+    {"free_bodies",
+     "{base: free, velocities: thermal, generator: {random: {bodies: 301, joint: spherical, seed: "
+     "1}}}"},
+    {"hanging_bodies",
+     "{base: fixed, velocities: thermal, generator: {random: {bodies: 50, joint: spherical, seed: "
+     "4}}}"},
     {"held_bodies",
-     "{base: free, velocities: thermal, tip: {joint: {type: spherical}}, generator: {random: {bodies: 40, joint: spherical, seed: 3}}}"},
-    {"bodies_on_links", "{velocities: thermal, generator: {random: {bodies: 60, joint: link, rigid: 0.5, seed: 8}}}"},
+     "{base: free, velocities: thermal, tip: {joint: {type: spherical}}, generator: {random: "
+     "{bodies: 40, joint: spherical, seed: 3}}}"},
+    {"bodies_on_links",
+     "{velocities: thermal, generator: {random: {bodies: 60, joint: link, rigid: 0.5, seed: 8}}}"},
 };
 
 class AtOnce : public ::testing::TestWithParam<Case> {
   protected:
     static Scene scene(Backend backend) {
-        Scene s =
-            parse_scene(std::string("chains: [") + GetParam().chains +
-                            "]\nforces: {gravity: [1, 2, -9.81]}\ndynamics: {integrator: rattle, step: 0.002, temperature: 300, seed: 5}",
-                        "scene.yaml");
+        Scene s = parse_scene(std::string("chains: [") + GetParam().chains +
+                                  "]\nforces: {gravity: [1, 2, -9.81]}\ndynamics: {integrator: "
+                                  "rattle, step: 0.002, temperature: 300, seed: 5}",
+                              "scene.yaml");
         s.solver.backend = backend;
         return s;
     }
@@ -58,11 +70,13 @@ double largest(std::vector<Vec3> const& a) {
 
 std::vector<Vec3> halves(std::vector<Vector<double, 6>> const& wrenches) {
     std::vector<Vec3> all;
-    for (auto const& w : wrenches) all.insert(all.end(), {Vec3{{w[0], w[1], w[2]}}, Vec3{{w[3], w[4], w[5]}}});
+    for (auto const& w : wrenches)
+        all.insert(all.end(), {Vec3{{w[0], w[1], w[2]}}, Vec3{{w[3], w[4], w[5]}}});
     return all;
 }
 
-/// Ranks may not matter to a bit; how the sweeps are put together matters in the last ones, which a chain of n bodies lets grow like n.
+/// Ranks may not matter to a bit; how the sweeps are put together matters in the last ones, which a
+/// chain of n bodies lets grow like n.
 TEST_P(AtOnce, IsTheSolution) {
     for (Backend const backend : {Backend::serial, Backend::segments}) {
         Scene const s = scene(backend);
@@ -76,7 +90,9 @@ TEST_P(AtOnce, IsTheSolution) {
         double const tolerance = 64 * static_cast<double>(s.bodies()) * 0x1p-53;
         ASSERT_EQ(apart.acceleration.size(), at_once.acceleration.size());
         for (std::size_t k = 0; k < apart.acceleration.size(); ++k)
-            EXPECT_LE(norm(apart.acceleration[k] - at_once.acceleration[k]), tolerance * largest(apart.acceleration)) << "body " << k;
+            EXPECT_LE(norm(apart.acceleration[k] - at_once.acceleration[k]),
+                      tolerance * largest(apart.acceleration))
+                << "body " << k;
         if (testing::world().rank() > 0) continue;
         auto const one_rank = serial_communicator();
         ChainSystem alone(s, Axes::world, *one_rank);
@@ -90,14 +106,19 @@ TEST_P(AtOnce, IsTheSolution) {
 
 /// In joint coordinates: by the residual, and the same on one rank and on all.
 TEST(AtOnceInJoints, IsASolution) {
-    for (char const* const joint : {"planar", "spherical", "universal", "revolute", "helical", "mixed", "weld"})
+    for (char const* const joint :
+         {"planar", "spherical", "universal", "revolute", "helical", "mixed", "weld"})
         for (int const bodies : {1, 5, 16, 70, 333})
             for (char const* const tip : {"", ", tip: {joint: {type: spherical}}"}) {
-                if (*tip && (bodies < 5 || joint == std::string("planar") || joint == std::string("weld"))) continue;
+                if (*tip &&
+                    (bodies < 5 || joint == std::string("planar") || joint == std::string("weld")))
+                    continue;
                 SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies) + tip);
-                Scene s = parse_scene(std::string("chains: [{base: fixed, generator: {random: {seed: 3, joint: ") + joint +
-                                          ", bodies: " + std::to_string(bodies) + "}}" + tip + "}]\nforces: {gravity: [1, 2, -9.81]}",
-                                      "scene.yaml");
+                Scene s = parse_scene(
+                    std::string("chains: [{base: fixed, generator: {random: {seed: 3, joint: ") +
+                        joint + ", bodies: " + std::to_string(bodies) + "}}" + tip +
+                        "}]\nforces: {gravity: [1, 2, -9.81]}",
+                    "scene.yaml");
                 s.solver.backend = Backend::segments;
                 ChainSystem system(s, Axes::joint, testing::world());
                 system.evaluate(false);
@@ -107,48 +128,61 @@ TEST(AtOnceInJoints, IsASolution) {
                 auto const one_rank = serial_communicator();
                 ChainSystem alone(s, Axes::joint, *one_rank);
                 alone.evaluate(false);
-                EXPECT_TRUE(same_bits(alone.accelerations().joint_acceleration, at_once.joint_acceleration));
+                EXPECT_TRUE(same_bits(alone.accelerations().joint_acceleration,
+                                      at_once.joint_acceleration));
                 EXPECT_TRUE(same_bits(alone.accelerations().joint_force, at_once.joint_force));
             }
 }
 
-/// Whose first body then has two hinges, and meets the ground where that moves.
+/// Whose first body then has two revolute joints, and meets the ground where that moves.
 void begin_on_universal(BodyArrays& b) {
     b.joint[0] = JointType::universal;
     if (b.first_axis.empty()) b.first_axis.assign(b.joint.size(), Vec3{{1, 0, 0}});
     Vec3 const across = cross(b.axis[0], Vec3{{1, 2, 3}});
     b.first_axis[0] = (1 / norm(across)) * across;
 }
-/// What chains on hinges leave to their solver, and take from it, is what bodies' loads and accelerations say; no rank matters to a bit.
-TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
+/// What chains on revolute joints leave to their solver, and take from it, is what bodies' loads
+/// and accelerations say; no rank matters to a bit.
+TEST(RevoluteChains, MayLeaveTheirLoadsToTheSolver) {
     struct Loads {
         char const* name;
         void (*set)(BodyArrays&);  // beside random torques and wrenches
     };
     Vec3 static const ones{{1, 2, 3}};
-    Loads const loads[] = {{"as they are", [](BodyArrays&) {}},
-                           {"dampers", [](BodyArrays& b) { b.damping.assign(b.joint.size(), ones); }},
-                           {"more wrenches", [](BodyArrays& b) { b.wrench.assign(b.joint.size(), {ones, ones}); }},
-                           {"torques alone", [](BodyArrays& b) { b.wrench.clear(); }},
-                           {"wrenches alone", [](BodyArrays& b) { b.torque.clear(); }},
-                           {"none", [](BodyArrays& b) { b.wrench.clear(), b.torque.clear(); }},
-                           {"springs and dampers", [](BodyArrays& b) {
-                                b.wrench.clear(), b.torque.clear();
-                                b.stiffness.assign(b.joint.size(), ones), b.damping.assign(b.joint.size(), ones);
-                            }}};
+    Loads const loads[] = {
+        {"as they are", [](BodyArrays&) {}},
+        {"dampers", [](BodyArrays& b) { b.damping.assign(b.joint.size(), ones); }},
+        {"more wrenches", [](BodyArrays& b) { b.wrench.assign(b.joint.size(), {ones, ones}); }},
+        {"torques alone", [](BodyArrays& b) { b.wrench.clear(); }},
+        {"wrenches alone", [](BodyArrays& b) { b.torque.clear(); }},
+        {"none", [](BodyArrays& b) { b.wrench.clear(), b.torque.clear(); }},
+        {"springs and dampers", [](BodyArrays& b) {
+             b.wrench.clear(), b.torque.clear();
+             b.stiffness.assign(b.joint.size(), ones), b.damping.assign(b.joint.size(), ones);
+         }}};
     for (char const* const base : {"base: free, ", "base: fixed, ", "universal"}) {
         bool const on_universal = base == std::string("universal");
-        for (auto const& [bodies, next] :
-             std::vector<std::pair<int, int>>{{1, 16}, {2, 17}, {4, 5}, {9, 15}, {16, 33}, {17, 1}, {35, 35}, {70, 2}, {333, 129}})
+        for (auto const& [bodies, next] : std::vector<std::pair<int, int>>{{1, 16},
+                                                                           {2, 17},
+                                                                           {4, 5},
+                                                                           {9, 15},
+                                                                           {16, 33},
+                                                                           {17, 1},
+                                                                           {35, 35},
+                                                                           {70, 2},
+                                                                           {333, 129}})
             for (Loads const& of : loads) {
-                SCOPED_TRACE(std::string(base) + std::to_string(bodies) + ", " + std::to_string(next) + ", " + of.name);
+                SCOPED_TRACE(std::string(base) + std::to_string(bodies) + ", " +
+                             std::to_string(next) + ", " + of.name);
                 auto const chain = [&](int seed, int length) {
                     return std::string("{") + (on_universal ? "base: fixed, " : base) +
-                           "generator: {random: {seed: " + std::to_string(seed) + ", joint: revolute, bodies: " + std::to_string(length) +
-                           "}}}";
+                           "generator: {random: {seed: " + std::to_string(seed) +
+                           ", joint: revolute, bodies: " + std::to_string(length) + "}}}";
                 };
-                std::string const chains = chain(3, bodies) + ", " + chain(4, next) + ", " + chain(5, 40);
-                Scene s = parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
+                std::string const chains =
+                    chain(3, bodies) + ", " + chain(4, next) + ", " + chain(5, 40);
+                Scene s = parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}",
+                                      "scene.yaml");
                 for (ChainSpec& spec : s.chains) {
                     of.set(spec.bodies);
                     if (on_universal) begin_on_universal(spec.bodies);
@@ -156,22 +190,25 @@ TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
                 s.solver.backend = Backend::segments;
                 auto const accelerations = [&](Communicator const& communicator, bool leaves) {
                     ChainSystem system(s, Axes::joint, communicator);
-                    bool by_hinges = false;  // a chain of one body is of another group
+                    bool by_revolutes = false;  // a chain of one body is of another group
                     for (JointDynamics* const group : system.joint()) {
-                        by_hinges = by_hinges || group->solver().goes_by_hinges();
+                        by_revolutes = by_revolutes || group->solver().goes_by_revolutes();
                         leaves ? group->update_to_solve_once() : group->update_configuration();
                         group->solve_once();
                         group->set_rates();
                     }
-                    EXPECT_TRUE(by_hinges);
+                    EXPECT_TRUE(by_revolutes);
                     EXPECT_LE(system.residual(), system.residual_bound());
                     return system.accelerations();
                 };
-                auto const left = accelerations(testing::world(), true), told = accelerations(testing::world(), false);
+                auto const left = accelerations(testing::world(), true),
+                           told = accelerations(testing::world(), false);
                 double const tolerance = 64 * static_cast<double>(s.bodies()) * 0x1p-53;
-                auto const expect_near = [tolerance](std::vector<Vec3> const& a, std::vector<Vec3> const& b, char const* what) {
+                auto const expect_near = [tolerance](std::vector<Vec3> const& a,
+                                                     std::vector<Vec3> const& b, char const* what) {
                     ASSERT_EQ(a.size(), b.size());
-                    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_LE(norm(a[k] - b[k]), tolerance * largest(b)) << what << k;
+                    for (std::size_t k = 0; k < a.size(); ++k)
+                        EXPECT_LE(norm(a[k] - b[k]), tolerance * largest(b)) << what << k;
                 };
                 expect_near(left.joint_acceleration, told.joint_acceleration, "joint ");
                 expect_near(left.base_acceleration, told.base_acceleration, "base ");
@@ -192,10 +229,12 @@ TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
     }
 }
 /// Whatever is asked for after a step, and how often.
-TEST(HingedChains, AreFoundAsOftenAsTheyAreAskedFor) {
+TEST(RevoluteChains, AreFoundAsOftenAsTheyAreAskedFor) {
     for (SimdLevel const level : simd_levels()) {
         SCOPED_TRACE(name_of(level));
-        Scene s = parse_scene("chains: [{base: fixed, generator: {random: {seed: 3, joint: revolute, bodies: 51}}}]", "scene.yaml");
+        Scene s = parse_scene(
+            "chains: [{base: fixed, generator: {random: {seed: 3, joint: revolute, bodies: 51}}}]",
+            "scene.yaml");
         s.solver.backend = Backend::segments;
         s.solver.simd = level;
         begin_on_universal(s.chains.front().bodies);
@@ -257,12 +296,14 @@ TEST_P(AtOnce, DriftsGoOnByASweep) {
             EXPECT_EQ(group->constraint_error(), error);
             auto const found = group->state();
             ASSERT_EQ(found.size(), expected.size());
-            for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].values, expected[i].values) << found[i].name;
+            for (std::size_t i = 0; i < found.size(); ++i)
+                EXPECT_EQ(found[i].values, expected[i].values) << found[i].name;
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Chains, AtOnce, ::testing::ValuesIn(cases), [](auto const& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(Chains, AtOnce, ::testing::ValuesIn(cases),
+                         [](auto const& each) { return each.param.name; });
 
 }  // namespace
 }  // namespace catena::test

@@ -1,10 +1,11 @@
-// OpenMM's forces on beads that bodies carry: mapped to wrenches as the oracle maps them, whatever the coordinates and the ranks.
+// OpenMM's forces on beads that bodies carry: mapped to wrenches as the oracle maps them, whatever
+// the coordinates and the ranks.
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
+#include "oracle/oracle.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 
@@ -34,13 +35,16 @@ CarriedBeads beads_on(std::size_t bodies, std::uint64_t seed) {
     return carried;
 }
 
-/// Beads, bodies with beads, linked bodies with and without, a body without: side by side, near enough to feel each other.
+/// Beads, bodies with beads, linked bodies with and without, a body without: side by side, near
+/// enough to feel each other.
 Scene mixed_scene() {
     Scene scene;
     scene.chains.push_back(random_bead_chain(1, 12, Base::free));
-    scene.chains.push_back(random_chain(2, {.bodies = 9, .joints = RandomJoints::spherical, .base = Base::free, .loaded = false}));
+    scene.chains.push_back(random_chain(
+        2, {.bodies = 9, .joints = RandomJoints::spherical, .base = Base::free, .loaded = false}));
     scene.chains.push_back(random_linked_chain(3, 14, Base::fixed));
-    scene.chains.push_back(random_chain(4, {.bodies = 3, .joints = RandomJoints::spherical, .base = Base::fixed}));
+    scene.chains.push_back(
+        random_chain(4, {.bodies = 3, .joints = RandomJoints::spherical, .base = Base::fixed}));
     char const* const names[] = {"beads", "bodies", "linked", "bare"};
     for (std::size_t i = 0; i < scene.chains.size(); ++i) scene.chains[i].name = names[i];
     scene.chains[1].bodies.carried = beads_on(9, 5);
@@ -53,7 +57,8 @@ Scene mixed_scene() {
     return scene;
 }
 
-double difference(std::vector<Vec3> const& found, std::vector<Vector<long double, 3>> const& expected, std::size_t first) {
+double difference(std::vector<Vec3> const& found,
+                  std::vector<Vector<long double, 3>> const& expected, std::size_t first) {
     long double worst = 0, largest = 0;
     for (std::size_t k = 0; k < expected.size(); ++k) {
         Vec3 const f = found[first + k];
@@ -80,14 +85,18 @@ TEST(CarriedBeads, ForcesOnThemAreWrenchesOfTheirBodies) {
         std::size_t body = 0, bead = 0;
         double largest = 0;
         for (Vec3 const& f : expected_force) largest = std::max(largest, norm(f));
-        for (std::size_t i = 0; i < expected_force.size(); ++i)  // sums of the same doubles in another order
+        for (std::size_t i = 0; i < expected_force.size();
+             ++i)  // sums of the same doubles in another order
             EXPECT_LE(norm(a.bead_force[i] - expected_force[i]), 1e-12 * largest) << i;
         for (ChainSpec const& chain : scene.chains) {
             oracle::Loads loads{scene.forces.gravity, {}};
-            loads.bead_forces.assign(a.bead_force.begin() + bead, a.bead_force.begin() + bead + chain.bead_count());
+            loads.bead_forces.assign(a.bead_force.begin() + bead,
+                                     a.bead_force.begin() + bead + chain.bead_count());
             auto const exact = oracle::aba<long double>(chain, loads);
-            // Forces of 1e6 and more from overlaps: conditions of these short chains are some hundreds.
-            EXPECT_LE(difference(a.acceleration, exact.com_acceleration, body), 1e-11) << chain.name;
+            // Forces of 1e6 and more from overlaps: conditions of these short chains are some
+            // hundreds.
+            EXPECT_LE(difference(a.acceleration, exact.com_acceleration, body), 1e-11)
+                << chain.name;
             if (!chain.is_beads()) {
                 EXPECT_LE(difference(a.alpha, exact.alpha, body), 1e-11) << chain.name;
             }

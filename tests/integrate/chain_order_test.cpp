@@ -44,13 +44,15 @@ TEST(CompactOrder, FollowsTheRanksShares) {
     std::int64_t all = 0, first = 0;
     for (PlacedChain const& chain : chains) all += chain.bodies;
     std::size_t cut = 0;  // an ascending row a rank
-    while (order[cut] < order[cut + 1]) first += chains[static_cast<std::size_t>(order[cut++])].bodies;
+    while (order[cut] < order[cut + 1])
+        first += chains[static_cast<std::size_t>(order[cut++])].bodies;
     first += chains[static_cast<std::size_t>(order[cut])].bodies;
     EXPECT_NEAR(static_cast<double>(first), 0.75 * static_cast<double>(all), 11);
     EXPECT_TRUE(std::is_sorted(order.begin() + static_cast<std::ptrdiff_t>(cut) + 1, order.end()));
 }
 
-/// Eight ranks get an eighth of a cube each, six parts of two shapes: sides follow, to a few chains' distance.
+/// Eight ranks get an eighth of a cube each, six parts of two shapes: sides follow, to a few
+/// chains' distance.
 TEST(CompactOrder, RanksGetBlocksOfSpace) {
     double constexpr edge = 10, a_few_chains = 0.15 * edge;
     for (auto const& [ranks, longest] : {std::pair{2, edge}, {4, edge}, {6, edge}, {8, edge / 2}}) {
@@ -59,11 +61,13 @@ TEST(CompactOrder, RanksGetBlocksOfSpace) {
         std::vector<int> const order = compact_order(chains, ranks);
         std::int64_t all = 0, before = 0;
         for (PlacedChain const& chain : chains) all += chain.bodies;
-        std::vector<Vec3> least(static_cast<std::size_t>(ranks), Vec3{{edge, edge, edge}}), most(least.size(), Vec3::zero());
+        std::vector<Vec3> least(static_cast<std::size_t>(ranks), Vec3{{edge, edge, edge}}),
+            most(least.size(), Vec3::zero());
         std::vector<std::int64_t> share(least.size(), 0);
         for (int const k : order) {
             PlacedChain const& chain = chains[static_cast<std::size_t>(k)];
-            auto const rank = static_cast<std::size_t>((2 * before + chain.bodies) * ranks / (2 * all));
+            auto const rank =
+                static_cast<std::size_t>((2 * before + chain.bodies) * ranks / (2 * all));
             before += chain.bodies;
             share[rank] += chain.bodies;
             for (int i = 0; i < 3; ++i) {

@@ -14,14 +14,16 @@ namespace catena::test {
 /// A constrained run without output.
 class Constrained {
   public:
-    Constrained(std::string const& text, double step, Integrator kind = Integrator::rattle, double friction = 0, double kt = 0)
+    Constrained(std::string const& text, double step, Integrator kind = Integrator::rattle,
+                double friction = 0, double kt = 0)
         : scene_(quiet(parse_scene(text, "scene.yaml"))),
           system_(scene_, Axes::world, *communicator_),
           integrator_({kind, step, friction, kt, 1, 1e-12}, system_.absolute()) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             group->update_configuration();
             group->assemble_matrices();
-            group->draw_velocities(scene_.boltzmann() * 300, 7, std::vector<bool>(scene_.chains.size(), true));
+            group->draw_velocities(scene_.boltzmann() * 300, 7,
+                                   std::vector<bool>(scene_.chains.size(), true));
         }
         system_.forces_and_matrices(nullptr);
         integrator_.choose_sweeps();
@@ -44,7 +46,8 @@ class Constrained {
     }
     double constraint_error() {
         double worst = 0;
-        for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
+        for (AbsoluteDynamics* group : system_.absolute())
+            worst = larger(worst, group->constraint_error());
         return worst;
     }
     Scene const& scene() const { return scene_; }
@@ -76,11 +79,15 @@ inline Momenta momenta(Scene const& scene, ChainSystem::Snapshot const& s) {
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 0; k < chain.size(); ++k, ++i) {
             bool const linked = chain.is_linked();
-            std::vector<double> const& masses = chain.is_beads() ? chain.beads.mass : linked ? chain.linked.mass : chain.bodies.mass;
+            std::vector<double> const& masses = chain.is_beads() ? chain.beads.mass
+                                                : linked         ? chain.linked.mass
+                                                                 : chain.bodies.mass;
             Vec3 const p = masses[k] * s.velocity[i];
             m.linear = m.linear + p;
             m.angular = m.angular + cross(s.position[i], p);
-            Sym3 const inertia = chain.is_beads() ? Sym3::zero() : linked ? chain.linked.inertia[k] : chain.bodies.inertia[k];
+            Sym3 const inertia = chain.is_beads() ? Sym3::zero()
+                                 : linked         ? chain.linked.inertia[k]
+                                                  : chain.bodies.inertia[k];
             m.angular = m.angular + to_matrix(s.orientation[i]) * (inertia * s.omega[i]);
             m.size += norm(p) * (1 + norm(s.position[i]));
         }

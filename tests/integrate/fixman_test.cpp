@@ -1,4 +1,5 @@
-// The Fixman potential of chains of point beads against a matrix of links written down in extended precision, on however many ranks.
+// The Fixman potential of chains of point beads against a matrix of links written down in extended
+// precision, on however many ranks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +33,8 @@ Links links_of(ChainSpec const& chain) {
     BeadArrays const& beads = chain.beads;
     if (chain.base == Base::fixed) add(beads.anchor, 0);
     links.first_bead = links.point.size();
-    for (std::size_t k = 0; k < beads.size(); ++k) add(beads.position[k], 1 / static_cast<Real>(beads.mass[k]));
+    for (std::size_t k = 0; k < beads.size(); ++k)
+        add(beads.position[k], 1 / static_cast<Real>(beads.mass[k]));
     if (chain.tip == Tip::jointed) add(*chain.tip_joint.anchor, 0);
     return links;
 }
@@ -44,7 +46,8 @@ Real log_determinant(Links const& links) {
     for (std::size_t k = 1; k < links.point.size(); ++k) {
         Point const d = links.point[k] - links.point[k - 1], u = (1 / std::sqrt(dot(d, d))) * d;
         Real const beside = k == 1 ? 0 : -dot(before, u) * links.inverse_mass[k - 1];
-        pivot = links.inverse_mass[k - 1] + links.inverse_mass[k] - (k == 1 ? 0 : beside * beside / pivot);
+        pivot = links.inverse_mass[k - 1] + links.inverse_mass[k] -
+                (k == 1 ? 0 : beside * beside / pivot);
         sum += std::log(pivot);
         before = u;
     }
@@ -106,7 +109,8 @@ TEST_P(Fixman, IsTheLogDeterminantAndItsForceTheSlope) {
     }
     double constexpr eps = 0x1p-53;
     if (world.rank() == 0) {
-        EXPECT_NEAR(terms.back().value, static_cast<double>(expected), 100 * eps * static_cast<double>(size));
+        EXPECT_NEAR(terms.back().value, static_cast<double>(expected),
+                    100 * eps * static_cast<double>(size));
     }
 
     AbsoluteDynamics& beads = *system.absolute().front();
@@ -117,19 +121,25 @@ TEST_P(Fixman, IsTheLogDeterminantAndItsForceTheSlope) {
         std::int64_t first = 0;
         for (int c = 0; c < beads.group().scene_chain(k); ++c)
             first += static_cast<std::int64_t>(scene.chains[static_cast<std::size_t>(c)].size());
-        Point const slope = downhill(links_of(chain), static_cast<std::size_t>(beads.group().scene_index(k) - first));
-        for (int c = 0; c < 3; ++c) worst = larger(worst, std::abs(force.at(k, c) - static_cast<double>(kt * slope[c])) / kt);
+        Point const slope = downhill(
+            links_of(chain), static_cast<std::size_t>(beads.group().scene_index(k) - first));
+        for (int c = 0; c < 3; ++c)
+            worst =
+                larger(worst, std::abs(force.at(k, c) - static_cast<double>(kt * slope[c])) / kt);
     }
-    // Differences err by h^2 and eps / h, eps of extended precision: some 1e-12 of a slope of the order of 1 / length.
+    // Differences err by h^2 and eps / h, eps of extended precision: some 1e-12 of a slope of the
+    // order of 1 / length.
     EXPECT_LE(worst, 1e-9);
 }
 
-/// Over a fixed time, halving the step. Ten times as hot as the chain, so that the potential counts.
+/// Over a fixed time, halving the step. Ten times as hot as the chain, so that the potential
+/// counts.
 TEST(FixmanEnergy, IsKeptToSecondOrder) {
     if (catena::testing::world().rank() != 0) return;
     auto const wander = [](double step) {
         Constrained run(
-            "chains: [{name: a, generator: {freely_jointed: {beads: 12, length: 0.38, mass: 100}}}]\n"
+            "chains: [{name: a, generator: {freely_jointed: {beads: 12, length: 0.38, mass: "
+            "100}}}]\n"
             "dynamics: {integrator: rattle, step: 1, temperature: 3000, fixman: true}\n",
             step);
         double const start = run.energy();

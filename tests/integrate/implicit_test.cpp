@@ -1,18 +1,19 @@
-// Joints whose springs and dampers stand in the matrices: against a dense solve, in order, in stability, in equilibrium.
+// Joints whose springs and dampers stand in the matrices: against a dense solve, in order, in
+// stability, in equilibrium.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "oracle/oracle.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "observe/observables.hpp"
+#include "oracle/oracle.hpp"
+#include "reader/load_scene.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/variants.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -38,7 +39,9 @@ struct Coordinate {
 std::vector<Coordinate> resisting(BodyArrays const& bodies) {
     std::vector<Coordinate> all;
     for (std::size_t k = 0; k < bodies.size(); ++k)
-        for (int i = 0; scene::resists(bodies, k) && i < scene::coordinates_of(bodies.joint[k]); ++i) all.push_back({k, i});
+        for (int i = 0; scene::resists(bodies, k) && i < scene::coordinates_of(bodies.joint[k]);
+             ++i)
+            all.push_back({k, i});
     return all;
 }
 
@@ -48,7 +51,8 @@ DenseMatrix mobility(ChainSpec const& chain, std::vector<Coordinate> const& at) 
     auto const answer = [&](ChainSpec const& loaded) {
         auto const qdd = oracle::aba<Real>(loaded, loads).qdd;
         DenseVector v(static_cast<Eigen::Index>(at.size()));
-        for (std::size_t i = 0; i < at.size(); ++i) v[static_cast<Eigen::Index>(i)] = qdd[at[i].body][at[i].number];
+        for (std::size_t i = 0; i < at.size(); ++i)
+            v[static_cast<Eigen::Index>(i)] = qdd[at[i].body][at[i].number];
         return v;
     };
     ChainSpec still = chain;
@@ -56,7 +60,8 @@ DenseMatrix mobility(ChainSpec const& chain, std::vector<Coordinate> const& at) 
     b.qd.assign(b.size(), Vec3::zero());
     b.stiffness.clear(), b.damping.clear(), b.wrench.clear();
     for (DrivenJoint& driven : b.driven)
-        for (Course& course : driven.course) course = {scene::value_at(course, 0), 0, 0, 0, 0};
+        for (PrescribedMotion& course : driven.course)
+            course = {scene::value_at(course, 0), 0, 0, 0, 0};
     b.free_velocity = Vec3::zero();
     b.torque.assign(b.size(), Vec3::zero());
     auto const n = static_cast<Eigen::Index>(at.size());
@@ -73,7 +78,8 @@ double inertia(BodyArrays const& b, Coordinate const& c, double h) {
     return 0.5 * h * h * b.stiffness[c.body][c.number] + 0.5 * h * b.damping[c.body][c.number];
 }
 
-/// (M + B) u' = M a, a the accelerations of forward dynamics; spherical joints keep B in the outboard body, as a rotor.
+/// (M + B) u' = M a, a the accelerations of forward dynamics; spherical joints keep B in the
+/// outboard body, as a rotor.
 DenseVector expected_rates(ChainSpec const& chain, std::vector<Coordinate> const& at, double h) {
     ChainSpec turning = chain;
     BodyArrays& b = turning.bodies;
@@ -108,7 +114,8 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
         options.springs = true;
         options.driven = seed % 5 == 0 ? 0.2 : 0;
         ChainSpec chain = random_chain(seed, options);
-        double const h = std::pow(10.0, static_cast<double>(seed % 13) - 6);  // B from far below M to far above
+        double const h =
+            std::pow(10.0, static_cast<double>(seed % 13) - 6);  // B from far below M to far above
         Scene const scene = with_backend(scene_of(chain));
         ChainSystem system(scene, Axes::joint, *communicator_, h);
         system.joint().front()->drift(0.0);  // whose velocities are those before a kick
@@ -125,19 +132,24 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
         for (Vec3 const& qd : chain.bodies.qd) speed += norm(qd);
         size = speed * speed;  // of the velocities' terms, which may cancel
         for (std::size_t i = 0; i < at.size(); ++i)
-            error = std::max(error, std::abs(found[at[i].body][at[i].number] - static_cast<double>(exact[static_cast<Eigen::Index>(i)])));
-        for (std::size_t k = 0; k < chain.size(); ++k) size = std::max({size, norm(alpha[k]), norm(found[k])});
-        // Rates are differences of bodies' accelerations; those go through n eliminations, whose pivots differ by what masses do.
+            error =
+                std::max(error, std::abs(found[at[i].body][at[i].number] -
+                                         static_cast<double>(exact[static_cast<Eigen::Index>(i)])));
+        for (std::size_t k = 0; k < chain.size(); ++k)
+            size = std::max({size, norm(alpha[k]), norm(found[k])});
+        // Rates are differences of bodies' accelerations; those go through n eliminations, whose
+        // pivots differ by what masses do.
         double const bound = 1e4 * static_cast<double>(options.bodies) * 0x1p-53 * size;
-        EXPECT_LE(error, bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints)
-                                << ", h " << h;
+        EXPECT_LE(error, bound) << "seed " << seed << ", " << options.bodies << " bodies, joints "
+                                << static_cast<int>(options.joints) << ", h " << h;
         EXPECT_LE(system.residual(), system.residual_bound()) << "seed " << seed;
         worst = std::max(worst, error / bound);
     }
     RecordProperty("worst_error_over_bound", std::to_string(worst));
 }
 
-/// Springs and dampers of spherical, universal, revolute, prismatic and helical joints, with loads and a start in motion.
+/// Springs and dampers of spherical, universal, revolute, prismatic and helical joints, with loads
+/// and a start in motion.
 Scene swinging(RandomJoints joints, Base base, bool damped) {
     RandomChainOptions options;
     options.bodies = 6;
@@ -152,7 +164,9 @@ Scene swinging(RandomJoints joints, Base base, bool damped) {
 }
 
 using Make = std::unique_ptr<JointIntegrator> (*)(ChainSystem&);
-std::unique_ptr<JointIntegrator> make_staggered(ChainSystem& system) { return make_kicks(system, {}); }
+std::unique_ptr<JointIntegrator> make_staggered(ChainSystem& system) {
+    return make_kicks(system, {});
+}
 
 /// Positions after `time` in so many steps.
 std::vector<Vec3> end_of(Scene const& scene, Make make, double time, int steps) {
@@ -170,14 +184,17 @@ double distance(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
 }
 
 TEST(Staggered, IsOfSecondOrder) {
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::prismatic,
-                                      RandomJoints::helical, RandomJoints::mixed})
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal,
+          RandomJoints::prismatic, RandomJoints::helical, RandomJoints::mixed})
         for (Base const base : {Base::fixed, Base::free})
             for (bool const damped : {false, true}) {
                 double constexpr time = 0.2;
                 Scene const scene = swinging(joints, base, damped);
                 auto const exact = end_of(scene, make_runge_kutta4, time, 1600);
-                auto const error = [&](int steps) { return distance(end_of(scene, make_staggered, time, steps), exact); };
+                auto const error = [&](int steps) {
+                    return distance(end_of(scene, make_staggered, time, steps), exact);
+                };
                 EXPECT_NEAR(std::log2(error(200) / error(400)), 2.0, 0.1)
                     << static_cast<int>(joints) << ' ' << static_cast<int>(base) << ' ' << damped;
             }
@@ -208,8 +225,8 @@ Scene plucked(RandomJoints joints, double off) {
         b.stiffness[k] = b.joint[k] == JointType::spherical ? Vec3{{3, 4, 5}} : b.stiffness[k];
         b.rest[k] = b.q[k];
         if (b.joint[k] == JointType::spherical) {
-            Quat const q =
-                Quat{b.rest[k][0], b.rest[k][1], b.rest[k][2], b.rest[k][3]} * from_rotation_vector(off * Vec3{{0.5, -0.6, 0.7}});
+            Quat const q = Quat{b.rest[k][0], b.rest[k][1], b.rest[k][2], b.rest[k][3]} *
+                           from_rotation_vector(off * Vec3{{0.5, -0.6, 0.7}});
             b.q[k] = {q.w, q.x, q.y, q.z};
         } else {
             b.q[k][0] += off;
@@ -224,11 +241,12 @@ double energy_of(Scene const& scene, ChainSystem& system) {
     return sum;
 }
 
-/// Velocities at whole steps are those of the chain with its rotors, slower than the chain's alone: the energy falls from where it starts
-/// at rest and comes back to it.
+/// Velocities at whole steps are those of the chain with its rotors, slower than the chain's alone:
+/// the energy falls from where it starts at rest and comes back to it.
 TEST(Staggered, IsStableHoweverStiff) {
     auto const communicator = serial_communicator();
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::mixed})
+    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical,
+                                      RandomJoints::universal, RandomJoints::mixed})
         for (double const times : {1e1, 1e3, 1e4, 1e6}) {  // omega h
             Scene const scene = plucked(joints, 0.01);
             double const h = times / stiffest(scene.chains[0]);
@@ -244,21 +262,25 @@ TEST(Staggered, IsStableHoweverStiff) {
         }
 }
 
-/// Copies of a chain of three bodies with stiff springs, far from friction's and the step's small limits: the mean square of every
-/// coordinate over kt / K, which is 1 whatever the step (BAOAB is exact for harmonic springs, and a rotor changes no equilibrium).
+/// Copies of a chain of three bodies with stiff springs, far from friction's and the step's small
+/// limits: the mean square of every coordinate over kt / K, which is 1 whatever the step (BAOAB is
+/// exact for harmonic springs, and a rotor changes no equilibrium).
 TEST(Staggered, SamplesHarmonicSpringsExactly) {
     double constexpr stiffness = 4e4, kt = 2.5;
     std::string const joint = "stiffness: 4e4";
     std::string const scene_text =
         "chains: [{name: a, count: 100, base: fixed, bodies: ["
-        "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], " +
-        joint +
-        "}},"
-        "{mass: 2, com: [0.1, 0, 0], inertia: [1, 2, 2], joint: {type: universal, axes: [[1, 0, 0], [0, 1, 0]], translation: [0.3, 0, "
+        "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, "
         "0], " +
         joint +
         "}},"
-        "{mass: 1, com: [0, 0.1, 0], inertia: [1, 1, 1.5], joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0], " +
+        "{mass: 2, com: [0.1, 0, 0], inertia: [1, 2, 2], joint: {type: universal, axes: [[1, 0, "
+        "0], [0, 1, 0]], translation: [0.3, 0, "
+        "0], " +
+        joint +
+        "}},"
+        "{mass: 1, com: [0, 0.1, 0], inertia: [1, 1, 1.5], joint: {type: revolute, axis: [0, 0, "
+        "1], translation: [0.5, 0, 0], " +
         joint +
         "}}]}]\n"
         "dynamics: {integrator: implicit-baoab, step: 1, steps: 1}\n";
@@ -275,7 +297,8 @@ TEST(Staggered, SamplesHarmonicSpringsExactly) {
             integrator->step(h);
             if (i < 100 || i % 10 != 0) continue;
             JointState const state = system.joint().front()->state();
-            for (std::int64_t k = 0; k < state.q.size(); ++k, ++samples) sum += state.q[k][0] * state.q[k][0] * stiffness / kt;
+            for (std::int64_t k = 0; k < state.q.size(); ++k, ++samples)
+                sum += state.q[k][0] * state.q[k][0] * stiffness / kt;
         }
         // Ten steps at this friction apart they are all but independent: half the samples at worst.
         double const error = std::sqrt(2.0 / (0.5 * static_cast<double>(samples)));
@@ -287,7 +310,8 @@ TEST(Staggered, SamplesHarmonicSpringsExactly) {
 TEST(ImplicitLangevin, IsOfSecondOrderWithoutFriction) {
     auto const communicator = serial_communicator();
     Scene const scene = parse_scene(
-        "chains: [{generator: {elastic_rod: {bodies: 12, mass: 6500, length: 3.4, radius: 1, bend: 50, twist: 100, seed: 2}}}]\n"
+        "chains: [{generator: {elastic_rod: {bodies: 12, mass: 6500, length: 3.4, radius: 1, bend: "
+        "50, twist: 100, seed: 2}}}]\n"
         "dynamics: {integrator: implicit-g-baoab, step: 1, steps: 1}\n",
         "scene.yaml");
     auto const end = [&](Integrator kind, int steps) {
@@ -305,14 +329,16 @@ TEST(ImplicitLangevin, IsOfSecondOrderWithoutFriction) {
         return system.snapshot().position;
     };
     auto const exact = end(Integrator::rattle, 3200);
-    double const slope =
-        std::log2(distance(end(Integrator::implicit_g_baoab, 100), exact) / distance(end(Integrator::implicit_g_baoab, 200), exact));
+    double const slope = std::log2(distance(end(Integrator::implicit_g_baoab, 100), exact) /
+                                   distance(end(Integrator::implicit_g_baoab, 200), exact));
     EXPECT_NEAR(slope, 2.0, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Implicit,
-                         testing::Values(Variant{Backend::serial, Handles::projected}, Variant{Backend::segments, Handles::projected},
-                                         Variant{Backend::openmp, Handles::projected}, Variant{Backend::cuda, Handles::projected}),
+                         testing::Values(Variant{Backend::serial, Handles::projected},
+                                         Variant{Backend::segments, Handles::projected},
+                                         Variant{Backend::openmp, Handles::projected},
+                                         Variant{Backend::cuda, Handles::projected}),
                          name_of_variant);
 
 }  // namespace

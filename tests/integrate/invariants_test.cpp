@@ -2,26 +2,34 @@
 #include <gtest/gtest.h>
 
 #include "integrate/joint_integrators.hpp"
-#include "tests/integrate/constrained_run.hpp"
 #include "reader/load_scene.hpp"
+#include "tests/integrate/constrained_run.hpp"
 
 namespace catena::test {
 namespace {
 
-std::string const bodies = "chains: [{name: a, base: free, generator: {random: {bodies: 12, joint: spherical, seed: 1}}}]\n";
-std::string const beads = "chains: [{name: a, generator: {freely_jointed: {beads: 30, length: 0.38}}}]\n";
+std::string const bodies =
+    "chains: [{name: a, base: free, generator: {random: {bodies: 12, joint: spherical, seed: "
+    "1}}}]\n";
+std::string const beads =
+    "chains: [{name: a, generator: {freely_jointed: {beads: 30, length: 0.38}}}]\n";
 std::string const hanging =
-    "chains: [{name: a, base: fixed, generator: {random: {bodies: 8, joint: spherical, seed: 4}}}]\nforces: {gravity: [0, 0, -5]}\n";
+    "chains: [{name: a, base: fixed, generator: {random: {bodies: 8, joint: spherical, seed: "
+    "4}}}]\nforces: {gravity: [0, 0, -5]}\n";
 
-std::string const linked = "chains: [{name: a, base: free, generator: {random: {bodies: 14, joint: link, rigid: 0.5, seed: 2}}}]\n";
+std::string const linked =
+    "chains: [{name: a, base: free, generator: {random: {bodies: 14, joint: link, rigid: 0.5, "
+    "seed: 2}}}]\n";
 std::string const held =
-    "chains: [{name: a, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 8, joint: spherical, seed: 4}}},"
-    " {name: b, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 9, joint: link, rigid: 0.5, seed: "
+    "chains: [{name: a, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: "
+    "8, joint: spherical, seed: 4}}},"
+    " {name: b, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: "
+    "{bodies: 9, joint: link, rigid: 0.5, seed: "
     "4}}}]\n"
     "forces: {gravity: [0, 0, -5]}\n";
 
-// Impulses act equal and opposite at one point, up to the joints' closing: eps a step from rounding and the constraint error from
-// the point's two places.
+// Impulses act equal and opposite at one point, up to the joints' closing: eps a step from rounding
+// and the constraint error from the point's two places.
 TEST(Rattle, FreeChainsKeepTheirMomenta) {
     for (std::string const& text : {bodies, beads, linked}) {
         Constrained run(text, 0.004);
@@ -48,7 +56,8 @@ TEST(Rattle, EnergyErrorFallsByFourWhenTheStepIsHalved) {
             }
             double mean = 0, square = 0;
             for (double const e : energies) mean += e / static_cast<double>(energies.size());
-            for (double const e : energies) square += (e - mean) * (e - mean) / static_cast<double>(energies.size());
+            for (double const e : energies)
+                square += (e - mean) * (e - mean) / static_cast<double>(energies.size());
             rms[half] = std::sqrt(square);
         }
         EXPECT_NEAR(rms[0] / rms[1], 4.0, 0.5) << text;
@@ -63,11 +72,15 @@ TEST(Langevin, HeatsAColdChainToItsTemperature) {
         int const samples = 400;
         for (int i = 0; i < samples; ++i) {
             run.run(10);
-            mean += 2 * kinetic_energy(run.scene(), run.snapshot()) /
-                    (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) / samples;
+            mean +=
+                2 * kinetic_energy(run.scene(), run.snapshot()) /
+                (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) /
+                samples;
         }
-        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 squares and more.
-        double const error = 150 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom(run.scene())) / 100);
+        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100
+        // independent ones of 39 squares and more.
+        double const error =
+            150 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom(run.scene())) / 100);
         EXPECT_NEAR(mean, 150, 4 * error) << text;
         EXPECT_LE(run.constraint_error(), 1e-10);
     }
@@ -80,7 +93,8 @@ double order_of(Scene const& scene, bool fourth) {
     auto const end_of = [&](int steps, bool reference) {
         ChainSystem system(scene, Axes::joint, *communicator);
         JointDynamics& dynamics = *system.joint().front();
-        auto const integrator = reference || fourth ? make_runge_kutta4(system) : make_velocity_verlet(system);
+        auto const integrator =
+            reference || fourth ? make_runge_kutta4(system) : make_velocity_verlet(system);
         system.close_tips();
         for (int i = 0; i < steps; ++i) {
             dynamics.set_time(i * time / steps);
@@ -102,11 +116,14 @@ double order_of(Scene const& scene, bool fourth) {
 }
 
 TEST(JointIntegrators, HaveTheirOrderForEveryJoint) {
-    for (char const* joint : {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
+    for (char const* joint :
+         {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
         for (char const* base : {"free", "fixed"}) {
             Scene const scene =
-                parse_scene(std::string("chains: [{name: a, base: ") + base + ", generator: {random: {bodies: 5, joint: " + joint +
-                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2], drag: {linear: 0.3, angular: 0.1}}\n",
+                parse_scene(std::string("chains: [{name: a, base: ") + base +
+                                ", generator: {random: {bodies: 5, joint: " + joint +
+                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2], drag: {linear: 0.3, "
+                                "angular: 0.1}}\n",
                             "scene.yaml");
             EXPECT_NEAR(order_of(scene, true), 4.0, 0.4) << joint << " " << base;
             EXPECT_NEAR(order_of(scene, false), 2.0, 0.3) << joint << " " << base;

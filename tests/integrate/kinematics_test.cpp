@@ -1,10 +1,11 @@
-// The scan along chains: the way from joint to joint, and the same bits on any number of ranks and by the GPU's kernels.
+// The scan along chains: the way from joint to joint, and the same bits on any number of ranks and
+// by the GPU's kernels.
 #include <gtest/gtest.h>
 
 #include <bit>
 
-#include "kinematics/joint_kinematics.hpp"
 #include "dynamics/joint/revolute_scan.hpp"
+#include "kinematics/joint_kinematics.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/scan_space.hpp"
@@ -28,7 +29,9 @@ class MovedIn {
     /// Everything about a body.
     std::vector<double> of(std::int64_t k) const {
         std::vector<double> all;
-        auto const add = [&](auto const& v) { all.insert(all.end(), std::begin(v.data), std::end(v.data)); };
+        auto const add = [&](auto const& v) {
+            all.insert(all.end(), std::begin(v.data), std::end(v.data));
+        };
         add(motion_.joint_turn[k]);
         add(motion_.orientation[k]);
         add(motion_.omega[k]);
@@ -41,7 +44,8 @@ class MovedIn {
         return all;
     }
     Motion motion(std::int64_t k) const {
-        return {as_quaternion(motion_.orientation[k]), motion_.omega[k], motion_.origin[k], motion_.velocity[k]};
+        return {as_quaternion(motion_.orientation[k]), motion_.omega[k], motion_.origin[k],
+                motion_.velocity[k]};
     }
     /// Without positions, the rest must be the same.
     void expect_the_same_without_positions() {
@@ -67,8 +71,9 @@ Scene two_chains(RandomJoints joints, std::size_t bodies, Base base) {
     return scene;
 }
 
-constexpr RandomJoints all_joints[] = {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::weld,
-                                       RandomJoints::helical,  RandomJoints::planar,    RandomJoints::any};
+constexpr RandomJoints all_joints[] = {
+    RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::weld,
+    RandomJoints::helical,  RandomJoints::planar,    RandomJoints::any};
 
 TEST(Kinematics, GoesFromJointToJoint) {
     auto const alone = serial_communicator();
@@ -80,13 +85,17 @@ TEST(Kinematics, GoesFromJointToJoint) {
                 double const eps = 1e-14 * static_cast<double>(bodies);
                 for (std::int64_t k = 0; k < moved.group().size; ++k) {
                     if (moved.group().is_first[static_cast<std::size_t>(k)]) at = Motion::none();
-                    at = compose<true>(at, moved.joints().motion(moved.state(), k, moved.joints().turn_of(moved.state(), k)));
+                    at = compose<true>(
+                        at, moved.joints().motion(moved.state(), k,
+                                                  moved.joints().turn_of(moved.state(), k)));
                     at.rotation = normalized(at.rotation);
                     Motion const found = moved.motion(k);
                     EXPECT_NEAR(norm(as_vector(found.rotation) - as_vector(at.rotation)), 0, eps);
                     EXPECT_NEAR(norm(found.omega - at.omega), 0, eps * (1 + norm(at.omega)));
-                    EXPECT_NEAR(norm(found.translation - at.translation), 0, eps * (1 + norm(at.translation)));
-                    EXPECT_NEAR(norm(found.velocity - at.velocity), 0, eps * (1 + norm(at.velocity) + norm(at.omega)));
+                    EXPECT_NEAR(norm(found.translation - at.translation), 0,
+                                eps * (1 + norm(at.translation)));
+                    EXPECT_NEAR(norm(found.velocity - at.velocity), 0,
+                                eps * (1 + norm(at.velocity) + norm(at.omega)));
                     if (::testing::Test::HasFailure()) FAIL() << "body " << k << " of " << bodies;
                 }
                 moved.expect_the_same_without_positions();
@@ -104,18 +113,23 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
         MovedIn<ScanSpace> by_kernels(scene, false, world);
         ScanSpace::most = dca::most_of_scan;
         std::int64_t different = 0;
-        for (std::int64_t k = 0; k < by_loops.group().size; ++k) different += by_kernels.of(k) != by_loops.of(k) ? 1 : 0;
-        EXPECT_EQ(different, 0) << "of " << by_loops.group().size << " bodies, " << most << " items a block";
+        for (std::int64_t k = 0; k < by_loops.group().size; ++k)
+            different += by_kernels.of(k) != by_loops.of(k) ? 1 : 0;
+        EXPECT_EQ(different, 0) << "of " << by_loops.group().size << " bodies, " << most
+                                << " items a block";
         by_kernels.expect_the_same_without_positions();
     };
     for (RandomJoints const joints : all_joints)
         for (std::size_t const bodies : {1, 16, 17, 300, 1031, 2000, 5000})
             for (std::int64_t const most : {2, 8, 256})
                 if (bodies <= 1031 || (most > 2 && joints == RandomJoints::helical))
-                    expect_the_same(two_chains(joints, bodies, bodies % 2 == 0 ? Base::free : Base::fixed), most);
+                    expect_the_same(
+                        two_chains(joints, bodies, bodies % 2 == 0 ? Base::free : Base::fixed),
+                        most);
     Scene many;
     for (std::size_t bodies = 1; bodies <= 40; ++bodies)
-        many.chains.push_back(random_chain(bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
+        many.chains.push_back(random_chain(
+            bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
     for (std::int64_t const most : {2, 8, 256}) expect_the_same(many, most);
     EXPECT_EQ(ScanSpace::shared_turns > 0, world.size() > 1);
     if (world.size() > 1) return;
@@ -123,11 +137,12 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
 }
 
-/// What a HingeScan leaves to solvers and steps, of chains that begin with whatever joint and go on with hinges.
+/// What a RevoluteScan leaves to solvers and steps, of chains that begin with whatever joint and go
+/// on with revolute joints.
 template <class Space>
-class HingesIn {
+class RevolutesIn {
   public:
-    HingesIn(Scene const& scene, Communicator const& communicator)
+    RevolutesIn(Scene const& scene, Communicator const& communicator)
         : groups_(make_groups(scene, Axes::joint, Handles::projected, false, communicator)),
           state_(make_joint_state(*groups_[0], scene)),
           kinematics_(*groups_[0], Space(*executor_), communicator),
@@ -138,11 +153,13 @@ class HingesIn {
           inertia_(group().inertia),
           bias_(group().size + 1, group().directions),
           in_run_(static_cast<std::size_t>(group().size), 0) {
-        for (std::int64_t k = 0; k < group().size; ++k) given_.view().at(k, 0) = 0.1 * static_cast<double>(k % 7);
+        for (std::int64_t k = 0; k < group().size; ++k)
+            given_.view().at(k, 0) = 0.1 * static_cast<double>(k % 7);
         for (dca::Run const& run : group().schedule.runs)
             for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
                 if (!group().is_first[static_cast<std::size_t>(k)])
-                    in_run_[static_cast<std::size_t>(k)] = k == run.body ? HingesInRuns::first : HingesInRuns::within;
+                    in_run_[static_cast<std::size_t>(k)] =
+                        k == run.body ? RevolutesInRuns::first : RevolutesInRuns::within;
     }
     ChainGroup const& group() const { return *groups_[0]; }
     bool has_threads_for_bodies() const { return kinematics_.has_threads_for_bodies(); }
@@ -150,7 +167,8 @@ class HingesIn {
     std::vector<std::uint64_t> find(bool joint_loads, bool all_turns) {
         for (std::int64_t k = 0; k < group().size; ++k) {
             state_.view().qd.at(k, 0) = 1.1 * state_.view().qd.at(k, 0) + 0.01;
-            if (group().joint[static_cast<std::size_t>(k)] == JointType::revolute) state_.view().q.at(k, 0) += 0.3;
+            if (group().joint[static_cast<std::size_t>(k)] == JointType::revolute)
+                state_.view().q.at(k, 0) += 0.3;
         }
         JointLoads loads;
         loads.scan = kinematics_.scan(state_.view(), motion_.view());
@@ -167,8 +185,9 @@ class HingesIn {
         loads.joint_load = joint_load_.view();
         loads.given.torque = given_.view();
         loads.given.joint_loads = joint_loads;
-        HingeScan const scan{loads, false, all_turns};
-        auto const beside = joint_loads ? from_outboard(group(), loads.joint_load) : BodyExchange<4>::none();
+        RevoluteScan const scan{loads, false, all_turns};
+        auto const beside =
+            joint_loads ? from_outboard(group(), loads.joint_load) : BodyExchange<4>::none();
         kinematics_.sweep_runs(scan, beside, [scan](dca::Run const& run) { scan.begin(run); });
         std::vector<std::uint64_t> all;
         auto const add = [&](auto const& v) {
@@ -181,7 +200,8 @@ class HingesIn {
             add(motion_.omega[k]);
             add(joint_load_.view().load(k));
             add(torque_.view().load(k));
-            for (int d = 0; d < group().directions; ++d) all.push_back(std::bit_cast<std::uint64_t>(bias_.view().at(k, d)));
+            for (int d = 0; d < group().directions; ++d)
+                all.push_back(std::bit_cast<std::uint64_t>(bias_.view().at(k, d)));
         }
         if (joint_loads) add(joint_load_.view().load(group().size));
         return all;
@@ -200,30 +220,35 @@ class HingesIn {
     std::vector<std::uint8_t> in_run_;
 };
 /// Alone, and where ranks share the chains.
-TEST(Kinematics, HasTheSameBitsOfHingesByTheKernelsOfAGpu) {
+TEST(Kinematics, HasTheSameBitsOfRevolutesByTheKernelsOfAGpu) {
     Communicator const& world = catena::testing::world();
     ScanSpace::blocks_of_clusters.clear();
     ScanSpace::shared_turns = 0;
     ScanSpace::ranks = &world;
     bool by_bodies = false, by_runs = false;
     auto const expect_the_same = [&](Scene const& scene) {
-        HingesIn<HostSpace> by_loops(scene, world);
-        HingesIn<ScanSpace> by_kernels(scene, world);
+        RevolutesIn<HostSpace> by_loops(scene, world);
+        RevolutesIn<ScanSpace> by_kernels(scene, world);
         std::int64_t const runs = std::ssize(by_loops.group().schedule.runs);
         bool const one_block = runs > 0 && runs <= dca::most_of_scan;
         EXPECT_TRUE(by_kernels.has_threads_for_bodies() == one_block || world.size() > 1);
-        EXPECT_TRUE(!by_kernels.has_threads_for_bodies() || one_block);  // a rank without a share of the chain has none
+        EXPECT_TRUE(!by_kernels.has_threads_for_bodies() ||
+                    one_block);  // a rank without a share of the chain has none
         (by_kernels.has_threads_for_bodies() ? by_bodies : by_runs) = true;
         for (bool const joint_loads : {false, true})
             for (bool const all_turns : {false, true})
                 for (int state = 0; state < 2; ++state)
-                    EXPECT_EQ(by_kernels.find(joint_loads, all_turns), by_loops.find(joint_loads, all_turns)) << by_loops.group().size;
+                    EXPECT_EQ(by_kernels.find(joint_loads, all_turns),
+                              by_loops.find(joint_loads, all_turns))
+                        << by_loops.group().size;
     };
     for (std::size_t const bodies : {1, 2, 15, 16, 17, 33, 300, 1031, 2048, 4080, 4083, 5000, 9001})
-        for (Base const base : {Base::fixed, Base::free}) expect_the_same(two_chains(RandomJoints::revolute, bodies, base));
+        for (Base const base : {Base::fixed, Base::free})
+            expect_the_same(two_chains(RandomJoints::revolute, bodies, base));
     Scene many;
     for (std::size_t bodies = 1; bodies <= 40; ++bodies)
-        many.chains.push_back(random_chain(bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
+        many.chains.push_back(random_chain(
+            bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
     expect_the_same(many);
     EXPECT_TRUE(by_bodies);
     EXPECT_TRUE(by_runs || world.size() > 2);
@@ -242,7 +267,9 @@ TEST(Kinematics, HasTheSameBitsOnAnyNumberOfRanks) {
             Scene const scene = two_chains(joints, bodies, Base::free);
             Moved const all(scene, false, *alone), part(scene, false, world);
             for (std::int64_t k = 0; k < part.group().size; ++k)
-                ASSERT_EQ(part.of(k), all.of(part.group().scene_index(k) - all.group().scene_index(0))) << "body " << k << " of " << bodies;
+                ASSERT_EQ(part.of(k),
+                          all.of(part.group().scene_index(k) - all.group().scene_index(0)))
+                    << "body " << k << " of " << bodies;
         }
 }
 

@@ -1,24 +1,28 @@
-// Whole runs with OpenMM's double-precision platform on several ranks: replicated they are the run on one rank, bit for bit; with ghosts
-// no pair is missed, and a restart is the undisturbed run.
+// Whole runs with OpenMM's double-precision platform on several ranks: replicated they are the run
+// on one rank, bit for bit; with ghosts no pair is missed, and a restart is the undisturbed run.
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "tests/integrate/whole_run.hpp"
 #include "reader/load_scene.hpp"
+#include "tests/integrate/whole_run.hpp"
 
 namespace catena::test {
 namespace {
 
 std::string scene_with(std::string const& box, std::string const& openmm) {
     return "units: md\n"
-           "chains: [{name: short, count: 9, sequence: MKDEGFYRSAKD, model: calvados2, conformation: self_avoiding, velocities: thermal},\n"
-           "         {name: long, sequence: MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHG, model: calvados2, conformation: "
+           "chains: [{name: short, count: 9, sequence: MKDEGFYRSAKD, model: calvados2, "
+           "conformation: self_avoiding, velocities: thermal},\n"
+           "         {name: long, sequence: MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHG, "
+           "model: calvados2, conformation: "
            "self_avoiding, velocities: thermal}]\n"
            "box: " +
-           box + "\nforces: {openmm: {builder: calvados2, platform: Reference, path: inline, " + openmm +
+           box + "\nforces: {openmm: {builder: calvados2, platform: Reference, path: inline, " +
+           openmm +
            "}}\n"
-           "dynamics: {integrator: g-baoab, step: 0.01, steps: 40, temperature: 300, friction: 0.1, seed: 4}\n"
+           "dynamics: {integrator: g-baoab, step: 0.01, steps: 40, temperature: 300, friction: "
+           "0.1, seed: 4}\n"
            "output: {every: 7, checkpoint_every: 10}\n";
 }
 
@@ -26,11 +30,15 @@ std::string const boxes[] = {"{periodic: [40, 14, 14]}", "none"};
 
 class OpenMmRuns : public WholeRun {
   protected:
-    nlohmann::json run_with(Communicator const& communicator, std::string const& name, std::string const& openmm, std::int64_t steps,
-                            std::string const& restart = "", std::vector<std::string> const& overrides = {}) {
+    nlohmann::json run_with(Communicator const& communicator, std::string const& name,
+                            std::string const& openmm, std::int64_t steps,
+                            std::string const& restart = "",
+                            std::vector<std::string> const& overrides = {}) {
         RunOptions options = options_of(name, steps, restart);
         options.own_costs = costs_;
-        return run_simulation(parse_scene(scene_with(GetParam().text, openmm), "scene.yaml", overrides), communicator, options);
+        return run_simulation(
+            parse_scene(scene_with(GetParam().text, openmm), "scene.yaml", overrides), communicator,
+            options);
     }
     Communicator const& world_ = catena::testing::world();
     MeasureOwnCosts costs_ = measure_own_costs;
@@ -71,7 +79,8 @@ TEST_P(OpenMmRuns, WithUnequalSharesARestartIsTheUndisturbedRun) {
     auto const whole = run_with(world_, "whole", "audit: true", 40, "", {"solver.balance=true"});
     run_with(world_, "parts", "audit: true", 20, "", {"solver.balance=true"});
     costs_ = measure_own_costs;  // not asked for
-    auto const rest = run_with(world_, "parts", "audit: true", 40, "parts/checkpoint.h5", {"solver.balance=true"});
+    auto const rest = run_with(world_, "parts", "audit: true", 40, "parts/checkpoint.h5",
+                               {"solver.balance=true"});
     if (world_.rank() != 0) return;
     EXPECT_EQ(arrays("whole"), arrays("parts"));
     if (world_.size() == 1) return;
@@ -83,7 +92,8 @@ TEST_P(OpenMmRuns, WithUnequalSharesARestartIsTheUndisturbedRun) {
 }
 
 TEST_P(OpenMmRuns, SharesAreMeasuredByTheChainsAlone) {
-    auto const summary = run_with(world_, "measured", "audit: true", 3, "", {"solver.balance=true"});
+    auto const summary =
+        run_with(world_, "measured", "audit: true", 3, "", {"solver.balance=true"});
     if (world_.rank() == 0 && world_.size() > 1) {
         EXPECT_EQ(summary.at("parallel").at("shares_from"), "measurement");
     }
@@ -92,11 +102,14 @@ TEST_P(OpenMmRuns, SharesAreMeasuredByTheChainsAlone) {
 TEST_P(OpenMmRuns, ARestartOnAnotherPlatformSaysSo) {
     run_with(world_, "parts", "threads: 1", 10);
     auto const same = run_with(world_, "parts", "threads: 1", 20, "parts/checkpoint.h5");
-    auto const other = run_with(world_, "parts", "threads: 1", 30, "parts/checkpoint.h5", {"forces.openmm.platform=CPU"});
+    auto const other = run_with(world_, "parts", "threads: 1", 30, "parts/checkpoint.h5",
+                                {"forces.openmm.platform=CPU"});
     if (world_.rank() != 0) return;
     EXPECT_TRUE(same.at("notes").empty()) << same.at("notes");
     ASSERT_EQ(other.at("notes").size(), 1U);
-    EXPECT_NE(other["notes"][0].get<std::string>().find("made on OpenMM's platform Reference, this run goes on on CPU"), std::string::npos);
+    EXPECT_NE(other["notes"][0].get<std::string>().find(
+                  "made on OpenMM's platform Reference, this run goes on on CPU"),
+              std::string::npos);
 }
 
 /// Forces differ by rounding, which 20 steps leave small.
@@ -105,33 +118,43 @@ TEST_P(OpenMmRuns, WithGhostsTheyAreTheRunOnOneRankButForRounding) {
     run_with(world_, "all", "threads: 1", 20);
     if (world_.rank() == 0) {
         run_with(*serial_communicator(), "one", "threads: 1", 20);
-        std::vector<double> const x = arrays("all").at("position"), expected = arrays("one").at("position");
+        std::vector<double> const x = arrays("all").at("position"),
+                                  expected = arrays("one").at("position");
         ASSERT_EQ(x.size(), expected.size());
-        for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], expected[i], growth * eps * (1 + std::abs(expected[i])));
+        for (std::size_t i = 0; i < x.size(); ++i)
+            EXPECT_NEAR(x[i], expected[i], growth * eps * (1 + std::abs(expected[i])));
     }
     world_.barrier();
 }
 
-/// Two chains of bodies in joint coordinates that fly past each other, so fast that lists last nine steps. Frames and checkpoints fall on
-/// different steps.
+/// Two chains of bodies in joint coordinates that fly past each other, so fast that lists last nine
+/// steps. Frames and checkpoints fall on different steps.
 std::string passing_bodies(std::string const& box) {
     auto const chain = [](char const* name, double y, double speed) {
         std::string bodies;
         for (int k = 0; k < 40; ++k) {
             bool const even = k % 2 == 0;
             std::string const joint =
-                k == 0 ? fmt::format("type: free, q: {{position: [0, {}, 0]}}, qd: {{velocity: [{}, 0, 0]}}", y, speed)
-                       : fmt::format("type: revolute, axis: [0, 0, 1], translation: [0.38, 0, 0], q: {}", even ? 0.4 : -0.4);
+                k == 0
+                    ? fmt::format(
+                          "type: free, q: {{position: [0, {}, 0]}}, qd: {{velocity: [{}, 0, 0]}}",
+                          y, speed)
+                    : fmt::format(
+                          "type: revolute, axis: [0, 0, 1], translation: [0.38, 0, 0], q: {}",
+                          even ? 0.4 : -0.4);
             bodies += fmt::format(
-                "{{mass: 100, com: [0.1, 0, 0], inertia: [2, 3, 4], joint: {{{}}}, beads: [{{residue: {}, position: [0, 0, 0], mass: "
+                "{{mass: 100, com: [0.1, 0, 0], inertia: [2, 3, 4], joint: {{{}}}, beads: "
+                "[{{residue: {}, position: [0, 0, 0], mass: "
                 "100}}]}}, ",
                 joint, even ? "LYS" : "GLU");
         }
         return fmt::format("{{name: {}, base: free, bodies: [{}]}}", name, bodies);
     };
     return fmt::format(
-        "chains: [{}, {}]\nbox: {}\nforces: {{openmm: {{builder: calvados2, platform: Reference, path: inline, audit: true}}}}\n"
-        "dynamics: {{integrator: velocity-verlet, step: 0.01, steps: 30}}\noutput: {{every: 7, checkpoint_every: 10}}\n",
+        "chains: [{}, {}]\nbox: {}\nforces: {{openmm: {{builder: calvados2, platform: Reference, "
+        "path: inline, audit: true}}}}\n"
+        "dynamics: {{integrator: velocity-verlet, step: 0.01, steps: 30}}\noutput: {{every: 7, "
+        "checkpoint_every: 10}}\n",
         chain("here", 0, 3), chain("there", 2.5, -3), box);
 }
 
@@ -144,7 +167,9 @@ TEST_P(VerletRuns, WithGhostsARestartIsTheUndisturbedRun) {
     if (world.rank() == 0) {
         EXPECT_EQ(arrays("whole"), arrays("parts"));
         EXPECT_EQ(rest.at("parallel").at("messages_a_step").at("ranks_that_differ"), 0);
-        auto const lists = [](nlohmann::json const& summary) { return summary.at("forces").at("ghosts").at("rebuilds").get<int>(); };
+        auto const lists = [](nlohmann::json const& summary) {
+            return summary.at("forces").at("ghosts").at("rebuilds").get<int>();
+        };
         if (world.size() > 1) {  // made at the same steps: both parts make those of the checkpoint
             EXPECT_EQ(lists(whole), lists(first) + lists(rest) - 1);
         }
@@ -156,10 +181,12 @@ TEST_P(VerletRuns, WithGhostsARestartIsTheUndisturbedRun) {
 TEST_P(VerletRuns, FramesEvaluateAnewForEnergiesAlone) {
     Communicator const& world = catena::testing::world();
     auto const run_with = [&](std::string const& name, std::string const& observables) {
-        Scene scene = parse_scene(GetParam().text, "scene.yaml", {"output.observables=[" + observables + "]"});
+        Scene scene = parse_scene(GetParam().text, "scene.yaml",
+                                  {"output.observables=[" + observables + "]"});
         return run_simulation(std::move(scene), world, options_of(name, 30, ""));
     };
-    nlohmann::json const with = run_with("with", "energy"), without = run_with("without", "radius_of_gyration");
+    nlohmann::json const with = run_with("with", "energy"),
+                         without = run_with("without", "radius_of_gyration");
     if (world.rank() == 0) {
         auto const state = [this](std::string const& name) {
             auto all = arrays(name);
@@ -168,7 +195,9 @@ TEST_P(VerletRuns, FramesEvaluateAnewForEnergiesAlone) {
         };
         EXPECT_EQ(state("with"), state("without"));
         if (world.size() > 1) {  // steps 7, 14, 21, 28 and the last one
-            auto const evaluations = [](nlohmann::json const& s) { return s.at("forces").at("ghosts").at("evaluations").get<int>(); };
+            auto const evaluations = [](nlohmann::json const& s) {
+                return s.at("forces").at("ghosts").at("evaluations").get<int>();
+            };
             EXPECT_EQ(evaluations(with) - evaluations(without), 5);
             EXPECT_GT(evaluations(without), 30);
         }
@@ -176,11 +205,14 @@ TEST_P(VerletRuns, FramesEvaluateAnewForEnergiesAlone) {
     world.barrier();
 }
 
-RunScene const passing[] = {{"InABox", passing_bodies(boxes[0])}, {"InTheOpen", passing_bodies(boxes[1])}};
-INSTANTIATE_TEST_SUITE_P(Boxes, VerletRuns, ::testing::ValuesIn(passing), [](auto const& scene) { return scene.param.name; });
+RunScene const passing[] = {{"InABox", passing_bodies(boxes[0])},
+                            {"InTheOpen", passing_bodies(boxes[1])}};
+INSTANTIATE_TEST_SUITE_P(Boxes, VerletRuns, ::testing::ValuesIn(passing),
+                         [](auto const& scene) { return scene.param.name; });
 
 RunScene const in_boxes[] = {{"InABox", boxes[0]}, {"InTheOpen", boxes[1]}};
-INSTANTIATE_TEST_SUITE_P(Boxes, OpenMmRuns, ::testing::ValuesIn(in_boxes), [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Boxes, OpenMmRuns, ::testing::ValuesIn(in_boxes),
+                         [](auto const& scene) { return scene.param.name; });
 
 }  // namespace
 }  // namespace catena::test

@@ -1,4 +1,5 @@
-// A run that is stopped and restarted is the undisturbed run, bit for bit: state, trajectory and table.
+// A run that is stopped and restarted is the undisturbed run, bit for bit: state, trajectory and
+// table.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -10,12 +11,12 @@
 #include <thread>
 
 #include "error.hpp"
-#include "run/simulation.hpp"
 #include "io/output.hpp"
+#include "reader/load_scene.hpp"
+#include "run/simulation.hpp"
 #include "tests/integrate/scenes.hpp"
 #include "tests/io/dataset_bits.hpp"
 #include "tests/io/temporary_folder.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -29,11 +30,12 @@ std::string text_of(std::string const& file) {
 
 class Restart : public testing::TestWithParam<RunScene> {
   protected:
-    nlohmann::json run(std::string const& output, std::int64_t steps, std::string const& restart = "", StopAgreement::Wish stop = {}) {
+    nlohmann::json run(std::string const& output, std::int64_t steps,
+                       std::string const& restart = "", StopAgreement::Wish stop = {}) {
         return run({}, output, steps, restart, std::move(stop));
     }
-    nlohmann::json run(RunOptions options, std::string const& output, std::int64_t steps, std::string const& restart = "",
-                       StopAgreement::Wish stop = {}) {
+    nlohmann::json run(RunOptions options, std::string const& output, std::int64_t steps,
+                       std::string const& restart = "", StopAgreement::Wish stop = {}) {
         options.output = folder_ / output;
         options.steps = steps;
         options.restart = restart;
@@ -49,14 +51,19 @@ TEST_P(Restart, IsTheUndisturbedRun) {
     EXPECT_TRUE(run("whole", 40)["valid"].get<bool>());
     run("parts", 20);
     EXPECT_TRUE(run("parts", 40, folder_ / "parts/checkpoint.h5")["valid"].get<bool>());
-    Checkpoint const whole = read_checkpoint(folder_ / "whole/checkpoint.h5"), parts = read_checkpoint(folder_ / "parts/checkpoint.h5");
+    Checkpoint const whole = read_checkpoint(folder_ / "whole/checkpoint.h5"),
+                     parts = read_checkpoint(folder_ / "parts/checkpoint.h5");
     EXPECT_EQ(whole.step, 40);
     EXPECT_EQ(parts.step, 40);
     EXPECT_EQ(whole.integers, parts.integers);
     ASSERT_FALSE(whole.arrays.empty());
-    EXPECT_EQ(whole.arrays, parts.arrays);  // doubles compared by value: equal means equal bits but for zeros' signs
-    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
-    EXPECT_EQ(text_of(folder_ / "whole/trajectory.h5md").size(), text_of(folder_ / "parts/trajectory.h5md").size());
+    EXPECT_EQ(
+        whole.arrays,
+        parts.arrays);  // doubles compared by value: equal means equal bits but for zeros' signs
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"),
+              text_of(folder_ / "parts/observables.csv"));
+    EXPECT_EQ(text_of(folder_ / "whole/trajectory.h5md").size(),
+              text_of(folder_ / "parts/trajectory.h5md").size());
 }
 
 /// Threads' stacks that no memory has room for.
@@ -88,7 +95,9 @@ TEST_P(Restart, WithFramesBesideTheSteps) {
         options.topology_beside = true;
         return options;
     };
-    auto const beside_steps = [](nlohmann::json const& summary) { return summary["parallel"]["frames_beside_steps"].get<int>(); };
+    auto const beside_steps = [](nlohmann::json const& summary) {
+        return summary["parallel"]["frames_beside_steps"].get<int>();
+    };
     EXPECT_EQ(beside_steps(run("one-after-the-other", 20)), 0);
     EXPECT_GT(beside_steps(run(beside(), "beside", 10)), 0);
     EXPECT_GT(beside_steps(run(beside(), "beside", 20, folder_ / "beside/checkpoint.h5")), 0);
@@ -101,10 +110,14 @@ TEST_P(Restart, WithFramesBesideTheSteps) {
         EXPECT_EQ(read_checkpoint(folder_ / (std::string(name) + "/checkpoint.h5")).arrays,
                   read_checkpoint(folder_ / "one-after-the-other/checkpoint.h5").arrays)
             << name;
-        EXPECT_EQ(text_of(folder_ / (std::string(name) + "/observables.csv")), text_of(folder_ / "one-after-the-other/observables.csv"))
+        EXPECT_EQ(text_of(folder_ / (std::string(name) + "/observables.csv")),
+                  text_of(folder_ / "one-after-the-other/observables.csv"))
             << name;
-        EXPECT_EQ(text_of(folder_ / (std::string(name) + "/topology.pdb")), text_of(folder_ / "one-after-the-other/topology.pdb")) << name;
-        EXPECT_EQ(bits_of(folder_ / (std::string(name) + "/trajectory.h5md")), bits_of(folder_ / "one-after-the-other/trajectory.h5md"))
+        EXPECT_EQ(text_of(folder_ / (std::string(name) + "/topology.pdb")),
+                  text_of(folder_ / "one-after-the-other/topology.pdb"))
+            << name;
+        EXPECT_EQ(bits_of(folder_ / (std::string(name) + "/trajectory.h5md")),
+                  bits_of(folder_ / "one-after-the-other/trajectory.h5md"))
             << name;
     }
 }
@@ -121,7 +134,8 @@ TEST_P(Restart, ATopologyThatCannotBeWrittenEndsTheRun) {
             run(options, output, 1000);
             ADD_FAILURE() << output;
         } catch (ComputationError const& error) {
-            EXPECT_NE(std::string(error.what()).find("topology.pdb"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("topology.pdb"), std::string::npos)
+                << error.what();
         }
         EXPECT_FALSE(std::filesystem::exists(made + "/topology.pdb.writing")) << output;
         EXPECT_FALSE(std::filesystem::exists(made + "/checkpoint.h5")) << output;
@@ -132,8 +146,10 @@ TEST_P(Restart, FromTheCheckpointBefore) {
     run("whole", 40);
     run("parts", 20);  // leaves checkpoints at 20 and, before it, 10
     run("parts", 40, folder_ / "parts/checkpoint.previous.h5");
-    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
-    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays,
+              read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"),
+              text_of(folder_ / "parts/observables.csv"));
 }
 
 TEST_P(Restart, WhereItWasAskedToStop) {
@@ -147,18 +163,22 @@ TEST_P(Restart, WhereItWasAskedToStop) {
     EXPECT_LT(step, 40);
     EXPECT_EQ(read_checkpoint(folder_ / "parts/checkpoint.h5").step, step);
     run("parts", 40, folder_ / "parts/checkpoint.h5");
-    Checkpoint const whole = read_checkpoint(folder_ / "whole/checkpoint.h5"), parts = read_checkpoint(folder_ / "parts/checkpoint.h5");
+    Checkpoint const whole = read_checkpoint(folder_ / "whole/checkpoint.h5"),
+                     parts = read_checkpoint(folder_ / "parts/checkpoint.h5");
     EXPECT_EQ(whole.integers, parts.integers);
     EXPECT_EQ(whole.arrays, parts.arrays);
-    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"),
+              text_of(folder_ / "parts/observables.csv"));
 }
 
 TEST_P(Restart, FromTheStart) {
     run("whole", 10);
     run("parts", 0);
     run("parts", 10, folder_ / "parts/checkpoint.h5");
-    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
-    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays,
+              read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"),
+              text_of(folder_ / "parts/observables.csv"));
 }
 
 TEST_P(Restart, RefusesAnotherScene) {
@@ -189,41 +209,52 @@ using FromRest = Restart;
 
 TEST_P(FromRest, TakesAwayTheDraftsOfAKilledRun) {
     run("parts", 20);
-    std::string const drafts[] = {folder_ / "parts/checkpoint.h5.writing", folder_ / "parts/checkpoint.previous.h5.writing"};
+    std::string const drafts[] = {folder_ / "parts/checkpoint.h5.writing",
+                                  folder_ / "parts/checkpoint.previous.h5.writing"};
     for (std::string const& draft : drafts) std::ofstream(draft) << "half";
-    EXPECT_NE(message_of([&] { run("parts", 5); }).find("the output folder exists"), std::string::npos);
-    for (std::string const& draft : drafts) EXPECT_TRUE(std::filesystem::exists(draft)) << draft << " of a folder that was refused";
+    EXPECT_NE(message_of([&] { run("parts", 5); }).find("the output folder exists"),
+              std::string::npos);
+    for (std::string const& draft : drafts)
+        EXPECT_TRUE(std::filesystem::exists(draft)) << draft << " of a folder that was refused";
     run("parts", 20, folder_ / "parts/checkpoint.h5");
     for (std::string const& draft : drafts) EXPECT_FALSE(std::filesystem::exists(draft)) << draft;
 }
 
-/// What starts at rest gains speed, and sweeps, at steps that nothing but the look at 1, 2, 4, ... falls on.
-RunScene const from_rest{"from_rest",
-                         "units: si\nforces: {gravity: [0, 0, -9.81]}\n"
-                         "chains:\n  - base: fixed\n    anchor: [0, 0, 2]\n    bodies:\n"
-                         "      - {mass: 0.1, position: [0.3, 0, 1.7], joint: {type: link}}\n"
-                         "      - {mass: 0.1, position: [0.7, 0, 1.5], joint: {type: link}}\n"
-                         "      - {mass: 0.1, position: [1.1, 0.1, 1.4], joint: {type: link}}\n"
-                         "      - {mass: 0.1, position: [1.5, 0, 1.5], joint: {type: link}}\n"
-                         "dynamics: {integrator: rattle, step: 1e-3, steps: 20}\noutput: {every: 1000}\n"};
+/// What starts at rest gains speed, and sweeps, at steps that nothing but the look at 1, 2, 4, ...
+/// falls on.
+RunScene const from_rest{
+    "from_rest",
+    "units: si\nforces: {gravity: [0, 0, -9.81]}\n"
+    "chains:\n  - base: fixed\n    anchor: [0, 0, 2]\n    bodies:\n"
+    "      - {mass: 0.1, position: [0.3, 0, 1.7], joint: {type: link}}\n"
+    "      - {mass: 0.1, position: [0.7, 0, 1.5], joint: {type: link}}\n"
+    "      - {mass: 0.1, position: [1.1, 0.1, 1.4], joint: {type: link}}\n"
+    "      - {mass: 0.1, position: [1.5, 0, 1.5], joint: {type: link}}\n"
+    "dynamics: {integrator: rattle, step: 1e-3, steps: 20}\noutput: {every: 1000}\n"};
 TEST_P(FromRest, SweepsAreAddedAsInTheUndisturbedRun) {
-    auto const sweeps = [](nlohmann::json const& summary) { return summary["solver"]["sweeps_a_drift"].get<int>(); };
+    auto const sweeps = [](nlohmann::json const& summary) {
+        return summary["solver"]["sweeps_a_drift"].get<int>();
+    };
     int const at_start = sweeps(run("start", 0)), at_end = sweeps(run("whole", 40));
     EXPECT_GT(at_end, at_start);
     for (int const stop : {4, 5, 8, 16}) {
         std::string const name = "parts-" + std::to_string(stop);
         run(name, stop);
         EXPECT_EQ(sweeps(run(name, 40, folder_ / (name + "/checkpoint.h5"))), at_end) << stop;
-        EXPECT_EQ(read_checkpoint(folder_ / (name + "/checkpoint.h5")).arrays, read_checkpoint(folder_ / "whole/checkpoint.h5").arrays)
+        EXPECT_EQ(read_checkpoint(folder_ / (name + "/checkpoint.h5")).arrays,
+                  read_checkpoint(folder_ / "whole/checkpoint.h5").arrays)
             << stop;
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, FromRest, testing::Values(from_rest), [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Integrators, FromRest, testing::Values(from_rest),
+                         [](auto const& scene) { return scene.param.name; });
 /// Whatever a thermostat does to what starts at rest.
 RunScene const heated{"heated",
-                      "chains: [{base: free, velocities: zero, count: 3, generator: {freely_jointed: {beads: 60, length: 0.38}}}]\n"
-                      "dynamics: {integrator: g-baoab, step: 0.01, steps: 200, temperature: 300, friction: 10}\noutput: {every: 200}\n"};
+                      "chains: [{base: free, velocities: zero, count: 3, generator: "
+                      "{freely_jointed: {beads: 60, length: 0.38}}}]\n"
+                      "dynamics: {integrator: g-baoab, step: 0.01, steps: 200, temperature: 300, "
+                      "friction: 10}\noutput: {every: 200}\n"};
 using Heated = Restart;
 
 TEST_P(Heated, JointsStayClosed) {
@@ -232,8 +263,10 @@ TEST_P(Heated, JointsStayClosed) {
     EXPECT_GT(summary["last_observables"]["temperature [K]"].get<double>(), 200);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Heated, testing::Values(heated), [](auto const& scene) { return scene.param.name; });
-INSTANTIATE_TEST_SUITE_P(Integrators, Restart, testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Integrators, Heated, testing::Values(heated),
+                         [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Integrators, Restart, testing::ValuesIn(run_scenes),
+                         [](auto const& scene) { return scene.param.name; });
 
 }  // namespace
 }  // namespace catena::test

@@ -16,7 +16,8 @@ Vec3 momentum_in_space(PrincipalFrame const& frame, RotorState const& state) {
 }
 double energy(PrincipalFrame const& frame, RotorState const& state) {
     Vec3 const w = transposed_times(to_matrix(frame.rotation), state.omega);
-    return 0.5 * (frame.moments[0] * w[0] * w[0] + frame.moments[1] * w[1] * w[1] + frame.moments[2] * w[2] * w[2]);
+    return 0.5 * (frame.moments[0] * w[0] * w[0] + frame.moments[1] * w[1] * w[1] +
+                  frame.moments[2] * w[2] * w[2]);
 }
 RotorState turned(PrincipalFrame const& frame, RotorState state, double time, int steps) {
     for (int i = 0; i < steps; ++i) state = free_rotor(frame, state, time / steps);
@@ -31,7 +32,8 @@ TEST(Rotor, KeepsMomentumInSpaceAndTurnsBack) {
         RotorState const start{random.orientation(), random.vector(3)};
         RotorState const end = turned(frame, start, 5.0, 1000);
         double const size = norm(momentum_in_space(frame, start));
-        EXPECT_LE(norm(momentum_in_space(frame, end) - momentum_in_space(frame, start)), 1000 * 40 * 0x1p-53 * size);
+        EXPECT_LE(norm(momentum_in_space(frame, end) - momentum_in_space(frame, start)),
+                  1000 * 40 * 0x1p-53 * size);
         RotorState const back = turned(frame, {end.orientation, -end.omega}, 5.0, 1000);
         EXPECT_LE(norm(back.omega + start.omega), 1000 * 400 * 0x1p-53 * norm(start.omega));
     }

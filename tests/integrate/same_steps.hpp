@@ -1,4 +1,5 @@
-// Steps that chains are carried through together leave the bits of steps part by part, loop after loop.
+// Steps that chains are carried through together leave the bits of steps part by part, loop after
+// loop.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +10,8 @@
 namespace catena::test {
 
 /// `carried` takes them in its own way. Configurations must be up to date.
-inline void expect_same_steps(AbsoluteDynamics& carried, AbsoluteDynamics& looped, bool langevin, std::uint64_t steps) {
+inline void expect_same_steps(AbsoluteDynamics& carried, AbsoluteDynamics& looped, bool langevin,
+                              std::uint64_t steps) {
     ConstrainedStep step;
     step.langevin = langevin;
     step.kick = step.drift = 0.005;
@@ -24,7 +26,8 @@ inline void expect_same_steps(AbsoluteDynamics& carried, AbsoluteDynamics& loope
         carried.step(step);
         looped.AbsoluteDynamics::step(step);
         auto const found = carried.state(), expected = looped.state();
-        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_TRUE(same_bits(found[i].values, expected[i].values)) << found[i].name;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            EXPECT_TRUE(same_bits(found[i].values, expected[i].values)) << found[i].name;
     }
     EXPECT_FALSE(same_bits(before[0].values, looped.state()[0].values)) << "nothing moved";
 }

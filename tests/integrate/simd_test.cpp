@@ -1,18 +1,19 @@
-// Runs side by side in a vector's lanes find what they find one after the other, whatever the ranks and threads.
+// Runs side by side in a vector's lanes find what they find one after the other, whatever the ranks
+// and threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "kinematics/joint_kinematics.hpp"
 #include "dca/simd/side_by_side.hpp"
+#include "dynamics/joint/joint_lanes.hpp"
 #include "error.hpp"
 #include "integrate/joint_integrators.hpp"
-#include "dynamics/joint/joint_lanes.hpp"
+#include "kinematics/joint_kinematics.hpp"
+#include "reader/load_scene.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -23,24 +24,27 @@ Scene scene_of(std::string const& chains) {
     return parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
 }
 std::string chain(std::string const& joint, int bodies) {
-    return std::string("{base: ") + (bodies % 2 == 1 ? "fixed" : "free") + ", generator: {random: {bodies: " + std::to_string(bodies) +
-           ", joint: " + joint + ", seed: 3}}}";
+    return std::string("{base: ") + (bodies % 2 == 1 ? "fixed" : "free") +
+           ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint +
+           ", seed: 3}}}";
 }
 
-Accelerations found(Scene scene, Axes axes, SimdLevel level, int threads, Communicator const& communicator) {
+Accelerations found(Scene scene, Axes axes, SimdLevel level, int threads,
+                    Communicator const& communicator) {
     scene.solver.backend = threads == 1 ? Backend::segments : Backend::openmp;
     scene.solver.threads = threads;
     scene.solver.simd = level;
     ChainSystem system(scene, axes, communicator);
     system.evaluate(false);
     EXPECT_LE(system.residual(), system.residual_bound());
-    for (SolverReport const& report : system.solver_reports()) EXPECT_TRUE(report.simd == level || report.simd == SimdLevel::off);
+    for (SolverReport const& report : system.solver_reports())
+        EXPECT_TRUE(report.simd == level || report.simd == SimdLevel::off);
     return system.accelerations();
 }
 
 bool same(Accelerations const& a, Accelerations const& b) {
-    return same_bits(a.acceleration, b.acceleration) && same_bits(a.alpha, b.alpha) && same_bits(a.joint_force, b.joint_force) &&
-           same_bits(a.tip_force, b.tip_force);
+    return same_bits(a.acceleration, b.acceleration) && same_bits(a.alpha, b.alpha) &&
+           same_bits(a.joint_force, b.joint_force) && same_bits(a.tip_force, b.tip_force);
 }
 
 /// Largest difference over the largest value.
@@ -51,8 +55,8 @@ double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     return worst == 0 ? 0 : worst / most;
 }
 
-/// The same operations in the same order, in vectors of any width. Where the rest of the program rounds products before it adds,
-/// a chain of n bodies lets the last digits of that grow like n.
+/// The same operations in the same order, in vectors of any width. Where the rest of the program
+/// rounds products before it adds, a chain of n bodies lets the last digits of that grow like n.
 void expect_found(Scene const& scene, Axes axes, std::string const& what) {
     auto const alone = serial_communicator();
     Communicator const& world = testing::world();
@@ -60,17 +64,22 @@ void expect_found(Scene const& scene, Axes axes, std::string const& what) {
     std::optional<Accelerations> narrow;  // in the first vectors
     for (SimdLevel const level : simd_levels()) {
         std::string const name = what + ", " + name_of(level);
-        Accelerations const one = found(scene, axes, level, 1, *alone), shared = found(scene, axes, level, 1, world);
+        Accelerations const one = found(scene, axes, level, 1, *alone),
+                            shared = found(scene, axes, level, 1, world);
         double const tolerance = 64 * static_cast<double>(scene.bodies()) * 0x1p-53;
         EXPECT_LE(difference(expected.acceleration, one.acceleration), tolerance) << name;
         EXPECT_LE(difference(expected.alpha, one.alpha), tolerance) << name;
         bool const as_one_by_one = rounds_as_vectors();
         EXPECT_TRUE(!as_one_by_one || same(expected, one)) << name;
         if (level != SimdLevel::off && !narrow) narrow = one;
-        EXPECT_TRUE(!rounds_as_vectors() || !narrow || same(*narrow, one)) << name << ", other vectors";
-        EXPECT_TRUE(world.rank() > 0 || same(one, shared)) << name << ", " << world.size() << " ranks";
+        EXPECT_TRUE(!rounds_as_vectors() || !narrow || same(*narrow, one))
+            << name << ", other vectors";
+        EXPECT_TRUE(world.rank() > 0 || same(one, shared))
+            << name << ", " << world.size() << " ranks";
         if (world.size() > 1 || !openmp_is_built()) continue;
-        for (int const threads : {2, 3}) EXPECT_TRUE(same(one, found(scene, axes, level, threads, *alone))) << name << ", " << threads;
+        for (int const threads : {2, 3})
+            EXPECT_TRUE(same(one, found(scene, axes, level, threads, *alone)))
+                << name << ", " << threads;
     }
 }
 
@@ -84,41 +93,51 @@ TEST_P(Simd, IsUsedWhereAChainHasRunsForIt) {
     for (SimdLevel const level : simd_levels()) {
         scene.solver.simd = level;
         ChainSystem const system(scene, Axes::joint, *alone);
-        EXPECT_EQ(system.solver_reports().front().simd, joint == "mixed" ? SimdLevel::off : level) << joint;
+        EXPECT_EQ(system.solver_reports().front().simd, joint == "mixed" ? SimdLevel::off : level)
+            << joint;
     }
 }
 
 TEST_P(Simd, FindsTheSame) {
     for (int const bodies : {1, 2, 3, 31, 32, 33, 34, 50, 51, 133, 255, 256, 257, 2047, 2048, 2049})
-        expect_found(scene_of(chain(GetParam(), bodies)), Axes::joint, std::string(GetParam()) + " " + std::to_string(bodies));
+        expect_found(scene_of(chain(GetParam(), bodies)), Axes::joint,
+                     std::string(GetParam()) + " " + std::to_string(bodies));
 }
 TEST_P(Simd, FindsTheSameInSeveralChains) {
     std::string const joint = GetParam();
-    expect_found(scene_of(chain(joint, 70) + ", " + chain(joint, 333) + ", " + chain(joint, 16) + ", " + chain("mixed", 80) +
-                          ", {count: 9, base: free, generator: {random: {bodies: 49, joint: " + joint + ", seed: 4}}}"),
+    expect_found(scene_of(chain(joint, 70) + ", " + chain(joint, 333) + ", " + chain(joint, 16) +
+                          ", " + chain("mixed", 80) +
+                          ", {count: 9, base: free, generator: {random: {bodies: 49, joint: " +
+                          joint + ", seed: 4}}}"),
                  Axes::joint, "several chains, " + joint);
 }
 INSTANTIATE_TEST_SUITE_P(Joints, Simd,
-                         ::testing::Values("link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "mixed"),
+                         ::testing::Values("link", "planar", "spherical", "universal", "revolute",
+                                           "prismatic", "helical", "mixed"),
                          [](auto const& each) { return std::string(each.param); });
 
 TEST(SimdInAbsoluteCoordinates, FindsTheSame) {
     for (char const* const joint : {"link", "spherical"})
         for (int const bodies : {1, 31, 48, 256, 257, 2049})
-            expect_found(scene_of(chain(joint, bodies)), Axes::world, std::string(joint) + " " + std::to_string(bodies));
-    expect_found(scene_of("{generator: {random: {bodies: 300, joint: link, rigid: 0.5, seed: 8}}}"), Axes::world, "bodies on links");
+            expect_found(scene_of(chain(joint, bodies)), Axes::world,
+                         std::string(joint) + " " + std::to_string(bodies));
+    expect_found(scene_of("{generator: {random: {bodies: 300, joint: link, rigid: 0.5, seed: 8}}}"),
+                 Axes::world, "bodies on links");
 }
 
 /// Whole runs up to where they are closed.
 TEST(SimdOfClosedChains, FindsTheSame) {
-    expect_found(scene_of("{base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 64, joint: spherical, seed: 4}}}"),
+    expect_found(scene_of("{base: fixed, tip: {joint: {type: spherical}}, generator: {random: "
+                          "{bodies: 64, joint: spherical, seed: 4}}}"),
                  Axes::joint, "jointed tip");
-    expect_found(scene_of("{base: free, tip: {ring: {type: spherical, translation: [1, 0, 0]}}, generator: {polygon: {bodies: 64, joint: "
+    expect_found(scene_of("{base: free, tip: {ring: {type: spherical, translation: [1, 0, 0]}}, "
+                          "generator: {polygon: {bodies: 64, joint: "
                           "spherical, spin: [1, 2, 3]}}}"),
                  Axes::joint, "ring");
 }
 
-/// Some joints restrict less than handles carry: their runs and merges go one by one among the others.
+/// Some joints restrict less than handles carry: their runs and merges go one by one among the
+/// others.
 TEST(SimdOfMixedJoints, FindsTheSame) {
     for (std::size_t const distance : {16, 24, 96}) {
         RandomChainOptions options;
@@ -132,15 +151,17 @@ TEST(SimdOfMixedJoints, FindsTheSame) {
             b.joint[k] = JointType::spherical;
             b.q[k] = {1, 0, 0, 0};
         }
-        expect_found(scene, Axes::joint, "a spherical joint after " + std::to_string(distance) + " bodies");
+        expect_found(scene, Axes::joint,
+                     "a spherical joint after " + std::to_string(distance) + " bodies");
     }
 }
 
 /// What a step moves and what it needs for that, with every kind of load, and angles of many turns.
 TEST(SimdOfSteps, FindTheSame) {
     auto const alone = serial_communicator();
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::prismatic,
-                                      RandomJoints::helical, RandomJoints::planar, RandomJoints::any})
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal,
+          RandomJoints::prismatic, RandomJoints::helical, RandomJoints::planar, RandomJoints::any})
         for (bool const springs : {false, true}) {
             RandomChainOptions options;
             options.bodies = 150;
@@ -152,24 +173,32 @@ TEST(SimdOfSteps, FindTheSame) {
             scene.chains[0].name = "chain";
             scene.forces.gravity = {{1, 2, -9.81}};
             if (!springs && (joints == RandomJoints::revolute || joints == RandomJoints::universal))
-                for (std::size_t k = 1; k < options.bodies; k += 3)  // where a cosine's argument is reduced in another way, and beyond
-                    scene.chains[0].bodies.q[k][0] += k % 2 == 1 ? 3e5 + 7.1 * static_cast<double>(k) : -1e12 * static_cast<double>(k);
-            auto const after_steps = [&](SimdLevel level, Communicator const& communicator, int threads = 1) {
+                for (std::size_t k = 1; k < options.bodies;
+                     k += 3)  // where a cosine's argument is reduced in another way, and beyond
+                    scene.chains[0].bodies.q[k][0] += k % 2 == 1
+                                                          ? 3e5 + 7.1 * static_cast<double>(k)
+                                                          : -1e12 * static_cast<double>(k);
+            auto const after_steps = [&](SimdLevel level, Communicator const& communicator,
+                                         int threads = 1) {
                 scene.solver.simd = level;
                 scene.solver.backend = threads == 1 ? Backend::segments : Backend::openmp;
                 scene.solver.threads = threads;
                 ChainSystem system(scene, Axes::joint, communicator);
-                auto const rk4 = make_runge_kutta4(system), pair = make_dormand_prince(system, 1e-6, 1e-4);
+                auto const rk4 = make_runge_kutta4(system),
+                           pair = make_dormand_prince(system, 1e-6, 1e-4);
                 for (int i = 0; i < 5; ++i) (i < 3 ? rk4 : pair)->step(1e-4);
                 return system.snapshot();
             };
             auto const expected = after_steps(SimdLevel::off, *alone);
             std::optional<ChainSystem::Snapshot> narrow;  // in the first vectors
             for (SimdLevel const level : simd_levels()) {
-                std::string const name = std::string(name_of(level)) + ", joints " + std::to_string(static_cast<int>(joints)) +
+                std::string const name = std::string(name_of(level)) + ", joints " +
+                                         std::to_string(static_cast<int>(joints)) +
                                          (springs ? ", springs" : ", many turns");
-                auto const found = after_steps(level, *alone), shared = after_steps(level, testing::world());
-                auto const same_state = [](ChainSystem::Snapshot const& a, ChainSystem::Snapshot const& b) {
+                auto const found = after_steps(level, *alone),
+                           shared = after_steps(level, testing::world());
+                auto const same_state = [](ChainSystem::Snapshot const& a,
+                                           ChainSystem::Snapshot const& b) {
                     return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&
                            same_bits(a.orientation, b.orientation);
                 };
@@ -179,15 +208,18 @@ TEST(SimdOfSteps, FindTheSame) {
                 EXPECT_LE(difference(expected.position, found.position), tolerance) << name;
                 EXPECT_LE(difference(expected.velocity, found.velocity), tolerance) << name;
                 if (level != SimdLevel::off && !narrow) narrow = found;
-                EXPECT_TRUE(!rounds_as_vectors() || !narrow || same_state(*narrow, found)) << name << ", other vectors";
-                EXPECT_TRUE(testing::world().rank() > 0 || same_state(found, shared)) << name << ", ranks";
+                EXPECT_TRUE(!rounds_as_vectors() || !narrow || same_state(*narrow, found))
+                    << name << ", other vectors";
+                EXPECT_TRUE(testing::world().rank() > 0 || same_state(found, shared))
+                    << name << ", ranks";
                 if (testing::world().size() > 1 || !openmp_is_built()) continue;
                 EXPECT_TRUE(same_state(found, after_steps(level, *alone, 2))) << name;
             }
         }
 }
 
-/// Of a chain's bodies all go side by side but those near its ends and near other joints, whose neighbours differ.
+/// Of a chain's bodies all go side by side but those near its ends and near other joints, whose
+/// neighbours differ.
 TEST(SimdOfSteps, DealOutBodiesOfOneType) {
     auto const alone = serial_communicator();
     Scene const scene = scene_of(chain("revolute", 100));
@@ -201,9 +233,11 @@ TEST(SimdOfSteps, DealOutBodiesOfOneType) {
         auto const executor = serial_executor(level);
         lanes.each(
             HostSpace(*executor), false,
-            [&](JointLoops const&, BodiesAbreast const& bodies, std::int64_t begin, std::int64_t end) {
+            [&](JointLoops const&, BodiesAbreast const& bodies, std::int64_t begin,
+                std::int64_t end) {
                 for (std::int64_t i = begin; i < end; ++i, ++several)
-                    for (int j = 0; j < lanes_of(level); ++j) ++seen[static_cast<std::size_t>(bodies.first[i] + j)];
+                    for (int j = 0; j < lanes_of(level); ++j)
+                        ++seen[static_cast<std::size_t>(bodies.first[i] + j)];
             },
             [&](std::int64_t k) { ++seen[static_cast<std::size_t>(k)]; });
         EXPECT_EQ(seen, std::vector<int>(100, 1));
@@ -230,7 +264,8 @@ void expect_followed(Scene const& scene, std::string const& what) {
             lanes.follow(space, positions, scan);
             kinematics.sweep<positions>(scan, lanes.tree(), BodyExchange<4>::none());
             for (std::int64_t k = 0; k < group->size; ++k) scan.set_motion<positions>(k);
-            std::string const name = what + ", " + name_of(level) + (positions ? ", positions" : "");
+            std::string const name =
+                what + ", " + name_of(level) + (positions ? ", positions" : "");
             auto const same_field = [](auto& a, auto& b) {
                 auto const x = a.storage(), y = b.storage();
                 return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
@@ -242,8 +277,9 @@ void expect_followed(Scene const& scene, std::string const& what) {
         }
 }
 TEST(SimdOfScans, FollowRunsAsOneByOne) {
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::helical,
-                                      RandomJoints::planar, RandomJoints::any})
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal,
+          RandomJoints::helical, RandomJoints::planar, RandomJoints::any})
         for (Base const base : {Base::fixed, Base::free})
             for (std::size_t const bodies : {96U, 303U}) {
                 RandomChainOptions options;
@@ -253,7 +289,8 @@ TEST(SimdOfScans, FollowRunsAsOneByOne) {
                 Scene scene;
                 scene.chains = {random_chain(11, options), random_chain(12, options)};
                 scene.chains[0].name = "one", scene.chains[1].name = "two";
-                std::string const what = "joints " + std::to_string(static_cast<int>(joints)) + ", " + std::to_string(bodies) + " bodies";
+                std::string const what = "joints " + std::to_string(static_cast<int>(joints)) +
+                                         ", " + std::to_string(bodies) + " bodies";
                 expect_followed<false>(scene, what);
                 expect_followed<true>(scene, what);
             }
@@ -261,8 +298,10 @@ TEST(SimdOfScans, FollowRunsAsOneByOne) {
 
 /// On one rank: the oracle of all ranks' is the same.
 TEST(SimdOfLongChains, FindsTheSame) {
-    if (testing::world().size() > 1) GTEST_SKIP() << "NOT RUN: its oracle of all ranks' chains is the same on one rank";
-    for (char const* const joint : {"link", "spherical", "revolute"}) expect_found(scene_of(chain(joint, 100001)), Axes::joint, joint);
+    if (testing::world().size() > 1)
+        GTEST_SKIP() << "NOT RUN: its oracle of all ranks' chains is the same on one rank";
+    for (char const* const joint : {"link", "spherical", "revolute"})
+        expect_found(scene_of(chain(joint, 100001)), Axes::joint, joint);
 }
 
 TEST(SimdLevels, AreNamedAndRefusedWhereTheyCannotRun) {
@@ -320,22 +359,38 @@ TEST(SimdLevels, DealOutShorterRuns) {
     // Not alone in a vector; with others of its kind.
     auto const left = [&](std::string const& chains) {
         Scene const scene = scene_of(chains);
-        return dca::deal_out_runs(*make_groups(scene, Axes::joint, Handles::projected, false, *alone).front(), 8, of_parts).others.size();
+        return dca::deal_out_runs(
+                   *make_groups(scene, Axes::joint, Handles::projected, false, *alone).front(), 8,
+                   of_parts)
+            .others.size();
     };
     EXPECT_EQ(left(chain("revolute", 16 * 8 + 5)), 1u);
     EXPECT_EQ(left(chain("revolute", 16 * 8 + 5) + ", " + chain("revolute", 16 * 8 + 7)), 2u);
-    EXPECT_EQ(left("{count: 3, base: free, generator: {random: {bodies: 133, joint: revolute, seed: 4}}}"), 0u);
+    EXPECT_EQ(
+        left(
+            "{count: 3, base: free, generator: {random: {bodies: 133, joint: revolute, seed: 4}}}"),
+        0u);
 }
 
 /// Nor one whose tip is joined to the ground, nor few.
 TEST(SimdLevels, LeaveJointedTipsAndShortChainsToOthers) {
     auto const alone = serial_communicator();
-    Scene const few = scene_of(chain("spherical", 32)), enough = scene_of(chain("spherical", 32) + ", " + chain("spherical", 16));
-    EXPECT_TRUE(dca::deal_out_runs(*make_groups(few, Axes::joint, Handles::projected, false, *alone).front(), 8, whole).items.empty());
-    EXPECT_EQ(dca::deal_out_runs(*make_groups(enough, Axes::joint, Handles::projected, false, *alone).front(), 8, whole).items.size(), 1u);
+    Scene const few = scene_of(chain("spherical", 32)),
+                enough = scene_of(chain("spherical", 32) + ", " + chain("spherical", 16));
+    EXPECT_TRUE(
+        dca::deal_out_runs(
+            *make_groups(few, Axes::joint, Handles::projected, false, *alone).front(), 8, whole)
+            .items.empty());
+    EXPECT_EQ(
+        dca::deal_out_runs(
+            *make_groups(enough, Axes::joint, Handles::projected, false, *alone).front(), 8, whole)
+            .items.size(),
+        1u);
     for (bool const jointed : {false, true}) {
         std::string const tip = jointed ? "tip: {joint: {type: spherical}}, " : "";
-        Scene const scene = scene_of("{base: fixed, " + tip + "generator: {random: {bodies: 48, joint: spherical, seed: 4}}}");
+        Scene const scene =
+            scene_of("{base: fixed, " + tip +
+                     "generator: {random: {bodies: 48, joint: spherical, seed: 4}}}");
         auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
         EXPECT_EQ(dca::deal_out_runs(*groups.front(), 8, whole).others.size(), jointed ? 1u : 0u);
     }

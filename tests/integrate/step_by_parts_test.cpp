@@ -1,4 +1,5 @@
-// A step by teams of threads that keep their beads in registers leaves the bits of one over arrays. The teams here are threads of the host.
+// A step by teams of threads that keep their beads in registers leaves the bits of one over arrays.
+// The teams here are threads of the host.
 #include <gtest/gtest.h>
 
 #include <barrier>
@@ -11,8 +12,8 @@
 #include "dynamics/absolute_dynamics.hpp"
 #include "dynamics/bead_dynamics.hpp"
 #include "mpi/communicator.hpp"
-#include "tests/integrate/same_steps.hpp"
 #include "reader/load_scene.hpp"
+#include "tests/integrate/same_steps.hpp"
 
 namespace catena::test {
 namespace {
@@ -46,7 +47,9 @@ class HostTeam {
         return passed(value, part() + 1 == dca::parts_of_run ? 0 : 1);
     }
     Vec3 from_before(Vec3 const& value) const { return passed(value, thread_ == 0 ? 0 : -1); }
-    Vec3 from_after(Vec3 const& value) const { return passed(value, thread_ + 1 == std::ssize(shared_.passed) ? 0 : 1); }
+    Vec3 from_after(Vec3 const& value) const {
+        return passed(value, thread_ + 1 == std::ssize(shared_.passed) ? 0 : 1);
+    }
     template <class Segment>
     void put(int slot, Segment const& segment) const {
         keep(shared_.segment, slot, segment);
@@ -55,7 +58,9 @@ class HostTeam {
     Segment get(int slot) const {
         return kept<Segment>(shared_.segment, slot);
     }
-    void put_force(int slot, Vector<double, 1> const& force) const { keep(shared_.force, slot, force); }
+    void put_force(int slot, Vector<double, 1> const& force) const {
+        keep(shared_.force, slot, force);
+    }
     template <int K>
     Vector<double, K> force(int slot) const {
         return kept<Vector<double, K>>(shared_.force, slot);
@@ -113,7 +118,8 @@ class TeamSpace : public HostSpace {
             std::vector<std::jthread> threads;
             for (int t = 0; t < plan.threads; ++t)
                 threads.emplace_back([&, t] {
-                    std::size_t const at = team * static_cast<std::size_t>(plan.threads) + static_cast<std::size_t>(t);
+                    std::size_t const at =
+                        team * static_cast<std::size_t>(plan.threads) + static_cast<std::size_t>(t);
                     action(HostTeam(shared, plan.place[at], t, plan.levels[team]));
                 });
         }
@@ -138,7 +144,8 @@ class StepByParts : public ::testing::TestWithParam<bool> {
         Space const space(*executor_);
         auto d = std::make_unique<BeadDynamics<Space>>(
             *groups_[0], scene_, space, *communicator_,
-            std::make_unique<dca::TreeSolver<dca::BeadLeaf<1>, Space>>(*groups_[0], space, *communicator_));
+            std::make_unique<dca::TreeSolver<dca::BeadLeaf<1>, Space>>(*groups_[0], space,
+                                                                       *communicator_));
         d->update_configuration();
         d->assemble_matrices();
         d->draw_velocities(2.5, 7, std::vector<bool>(scene_.chains.size(), true));
@@ -146,13 +153,18 @@ class StepByParts : public ::testing::TestWithParam<bool> {
     }
     std::unique_ptr<Communicator> communicator_ = serial_communicator();
     std::unique_ptr<Executor> executor_ = serial_executor();
-    Scene scene_ = parse_scene(std::string("chains: [") + chains + "]\nforces: {gravity: [0.5, 0, -9.81]}", "scene.yaml");
-    std::vector<std::unique_ptr<ChainGroup>> groups_ = make_groups(scene_, Axes::world, Handles::projected, false, *communicator_);
+    Scene scene_ = parse_scene(
+        std::string("chains: [") + chains + "]\nforces: {gravity: [0.5, 0, -9.81]}", "scene.yaml");
+    std::vector<std::unique_ptr<ChainGroup>> groups_ =
+        make_groups(scene_, Axes::world, Handles::projected, false, *communicator_);
 };
 
-TEST_P(StepByParts, LeavesTheSameBits) { expect_same_steps(*dynamics<TeamSpace>(), *dynamics<HostSpace>(), GetParam(), 3); }
-INSTANTIATE_TEST_SUITE_P(Steps, StepByParts, ::testing::Bool(),
-                         [](auto const& each) { return std::string(each.param ? "langevin" : "rattle"); });
+TEST_P(StepByParts, LeavesTheSameBits) {
+    expect_same_steps(*dynamics<TeamSpace>(), *dynamics<HostSpace>(), GetParam(), 3);
+}
+INSTANTIATE_TEST_SUITE_P(Steps, StepByParts, ::testing::Bool(), [](auto const& each) {
+    return std::string(each.param ? "langevin" : "rattle");
+});
 
 }  // namespace
 }  // namespace catena::test

@@ -1,4 +1,5 @@
-// When a run takes one sweep more: above what is allowed, but not again and again where no sweep helps.
+// When a run takes one sweep more: above what is allowed, but not again and again where no sweep
+// helps.
 #include "integrate/sweep_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,8 @@ TEST(SweepWatch, FewAreAddedInVain) {
     SweepWatch watch;
     int added = 0;
     for (int look = 0; look < 1000; ++look) {
-        double const error = 3e-12 * (1 + 0.3 * std::sin(look));  // as far from the origin as rounding takes it
+        double const error =
+            3e-12 * (1 + 0.3 * std::sin(look));  // as far from the origin as rounding takes it
         if (!watch.is_due(error, allowed, tolerance)) continue;
         watch.added(error);
         ++added;
@@ -60,7 +62,8 @@ TEST(SweepWatch, GoesOnFromItsState) {
     watch.added(3e-12);
     other.set_state(watch.state());
     for (double const error : {2.9e-12, 4e-12, 7e-12})  // in vain, within what that left, beyond it
-        EXPECT_EQ(watch.is_due(error, allowed, tolerance), other.is_due(error, allowed, tolerance)) << error;
+        EXPECT_EQ(watch.is_due(error, allowed, tolerance), other.is_due(error, allowed, tolerance))
+            << error;
     EXPECT_EQ(watch.state(), other.state());
     EXPECT_THROW(other.set_state({1}), std::invalid_argument);
 }

@@ -8,10 +8,10 @@
 #include <random>
 
 #include "dca/pivot_failure.hpp"
-#include "error.hpp"
 #include "dynamics/closing.hpp"
-#include "observe/run_verdict.hpp"
+#include "error.hpp"
 #include "integrate/step_failure.hpp"
+#include "observe/run_verdict.hpp"
 #include "reader/load_scene.hpp"
 
 namespace catena::test {
@@ -49,7 +49,8 @@ TEST(Verdict, EnergyThatFluctuatesIsValidWithoutANote) {
 TEST(Verdict, ASmallDriftIsSaid) {
     Scene const scene = chain_under("rattle");
     EnergyWatch watch(scene);
-    for (int i = 0; i < 100; ++i) watch.add(100 * i, 500, 0.2 * i);  // 15 of 500 over three quarters
+    for (int i = 0; i < 100; ++i)
+        watch.add(100 * i, 500, 0.2 * i);  // 15 of 500 over three quarters
     RunCheck const v = watch.energy().value();
     EXPECT_TRUE(v.passed);
     EXPECT_NE(v.advice.find("by 0.0296"), std::string::npos) << v.advice;
@@ -70,13 +71,15 @@ TEST(Verdict, AThermostatNeedKeepNoEnergy) {
     EXPECT_FALSE(watch.energy().has_value());
 }
 
-/// Frames that fluctuate as the canonical ensemble has it, `times` as warm as the thermostat from step `from` on.
+/// Frames that fluctuate as the canonical ensemble has it, `times` as warm as the thermostat from
+/// step `from` on.
 EnergyWatch warm(Scene const& scene, double times, int frames, int every) {
     EnergyWatch watch(scene);
     double const kinetic = 0.5 * 201 * scene.boltzmann() * 300;
     std::mt19937 random(2);
     std::normal_distribution<double> noise(0, std::sqrt(2.0 / 201));
-    for (int i = 0; i < frames; ++i) watch.add(every * i, times * kinetic * (1 + noise(random)), std::nullopt);
+    for (int i = 0; i < frames; ++i)
+        watch.add(every * i, times * kinetic * (1 + noise(random)), std::nullopt);
     return watch;
 }
 TEST(Verdict, ThirtyThousandKelvinAreInvalid) {
@@ -97,7 +100,8 @@ TEST(Verdict, ATemperatureFivePercentOffIsSaidOnceTheStartIsForgotten) {
     RunCheck const late = warm(scene, 1.05, 1000, 100).temperature().value();
     EXPECT_TRUE(late.passed);
     EXPECT_NE(late.advice.find("standard errors"), std::string::npos) << late.advice;
-    EXPECT_EQ(warm(scene, 1.05, 1000, 1).temperature().value().advice.find("jumped"), std::string::npos);
+    EXPECT_EQ(warm(scene, 1.05, 1000, 1).temperature().value().advice.find("jumped"),
+              std::string::npos);
 }
 TEST(Verdict, AShortRunFromAColdStartIsValid) {
     Scene const scene = chain_under("g-baoab");
@@ -118,7 +122,8 @@ TEST(Verdict, ALongRunKeepsMeansOfItsFrames) {
     EnergyWatch restarted(scene);
     EXPECT_TRUE(restarted.set_state(watch.state(), v.step));
     EXPECT_EQ(restarted.energy().value().advice, v.advice);
-    EXPECT_FALSE(restarted.set_state(watch.state(), v.step - 1)) << "frames beyond the checkpoint's step";
+    EXPECT_FALSE(restarted.set_state(watch.state(), v.step - 1))
+        << "frames beyond the checkpoint's step";
     // The checkpoint's frame comes again.
     restarted.add(v.step, 1e9, 0.0);
     EXPECT_EQ(restarted.state(), watch.state());
@@ -160,20 +165,26 @@ TEST(Verdict, ABranchIsStillOneAfterARestart) {
     double const thermal = 0.5 * scene.boltzmann() * 300 * 201;
     RunVerdict branch(scene), restarted(scene);
     branch.branch();
-    for (int i = 0; i < 4; ++i) branch.add_frame(i, 10 * thermal, 0.0);  // 0.03 ps: nothing is forgotten at a friction of 1 / ps
+    for (int i = 0; i < 4; ++i)
+        branch.add_frame(i, 10 * thermal,
+                         0.0);  // 0.03 ps: nothing is forgotten at a friction of 1 / ps
     Checkpoint c;
     c.step = 4;
     branch.save(c);
     EXPECT_EQ(restarted.restore(c), "");
     for (RunVerdict const* const verdict : {&branch, &restarted})
-        for (RunCheck const& check : verdict->checks()) EXPECT_TRUE(check.passed) << check.name << ": " << check.advice;
+        for (RunCheck const& check : verdict->checks())
+            EXPECT_TRUE(check.passed) << check.name << ": " << check.advice;
 }
 
 /// The mean of frames `above` the thermostat's temperature, of a chain with loads.
-RunCheck temperature_of(Scene const& scene, double times) { return warm(scene, times, 1000, 100).temperature().value(); }
+RunCheck temperature_of(Scene const& scene, double times) {
+    return warm(scene, times, 1000, 100).temperature().value();
+}
 TEST(Verdict, PrescribedMotionsSayThatTheTemperatureIsNotChecked) {
     Scene const scene = parse_scene(
-        "chains: [{name: c, base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1], motion: {rate: "
+        "chains: [{name: c, base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: "
+        "revolute, axis: [0, 0, 1], motion: {rate: "
         "1}}},"
         "{mass: 1, inertia: [1, 1, 1], joint: {type: spherical, translation: [1, 0, 0]}}]}]\n"
         "dynamics: {integrator: baoab, step: 0.01, steps: 1000, temperature: 300, friction: 1}\n",
@@ -185,7 +196,8 @@ TEST(Verdict, PrescribedMotionsSayThatTheTemperatureIsNotChecked) {
 TEST(Verdict, ATorqueAddsNoMoreThanFrictionLetsIt) {
     // tau^2 / (I friction^2 dof kB) = 1 / (1 * 1 * 1 * 0.00831446) = 120.27 K of a lone rotor.
     Scene const scene = parse_scene(
-        "chains: [{name: c, base: fixed, bodies: [{mass: 1, inertia: [2, 3, 1], joint: {type: revolute, axis: [0, 0, 1], torque: 1}}]}]\n"
+        "chains: [{name: c, base: fixed, bodies: [{mass: 1, inertia: [2, 3, 1], joint: {type: "
+        "revolute, axis: [0, 0, 1], torque: 1}}]}]\n"
         "dynamics: {integrator: baoab, step: 0.01, steps: 1000, temperature: 300, friction: 1}\n",
         "scene.yaml");
     EXPECT_NEAR(heating_of(scene, false).excess, 120.27, 0.01);
@@ -201,11 +213,13 @@ TEST(Verdict, ATorqueAddsNoMoreThanFrictionLetsIt) {
 
 TEST(Verdict, ObliqueAxesOfAUniversalJointNeedMoreTorque) {
     auto const excess = [](std::string const& second) {
-        return heating_of(parse_scene("chains: [{name: u, base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: universal, "
+        return heating_of(parse_scene("chains: [{name: u, base: fixed, bodies: [{mass: 1, inertia: "
+                                      "[1, 1, 1], joint: {type: universal, "
                                       "axes: [[1, 0, 0], " +
                                           second +
                                           "], torque: [2, 0]}}]}]\n"
-                                          "dynamics: {integrator: baoab, step: 0.01, steps: 10, temperature: 300, friction: 1}\n",
+                                          "dynamics: {integrator: baoab, step: 0.01, steps: 10, "
+                                          "temperature: 300, friction: 1}\n",
                                       "scene.yaml"),
                           false)
             .excess;
@@ -220,17 +234,20 @@ TEST(Verdict, LongStepsDriftFasterThanFrictionTells) {
     EXPECT_EQ(drift_of_step(d), 1);
 }
 TEST(Verdict, WeakFrictionLeavesTheHeatOfAFallUncertain) {
-    // A free body of 6 degrees falls from rest; friction has taken next to nothing in 3 ps, and kinetic energy is what gravity gave.
+    // A free body of 6 degrees falls from rest; friction has taken next to nothing in 3 ps, and
+    // kinetic energy is what gravity gave.
     Scene const scene = parse_scene(
         "chains: [{name: b, bodies: [{mass: 10, inertia: [1, 1, 1], joint: {type: free}}]}]\n"
         "forces: {gravity: [0, 0, -3]}\n"
-        "dynamics: {integrator: baoab, step: 0.01, steps: 300, temperature: 300, friction: 0.0001}\n",
+        "dynamics: {integrator: baoab, step: 0.01, steps: 300, temperature: 300, friction: "
+        "0.0001}\n",
         "scene.yaml");
     EnergyWatch watch(scene);
     double const start = 3 * scene.boltzmann() * 300;
     for (int i = 0; i <= 30; ++i) {
         double const speed = 3 * 0.1 * i, gained = 0.5 * 10 * speed * speed;
-        watch.add(10 * i, start + gained, -gained + 0.01 * i);  // total energy rises by a little: noise
+        watch.add(10 * i, start + gained,
+                  -gained + 0.01 * i);  // total energy rises by a little: noise
     }
     EXPECT_TRUE(watch.temperature().value().passed) << watch.temperature().value().advice;
 }
@@ -239,10 +256,10 @@ TEST(Failure, WithinAStepNamesTheStepBeforeTheMasses) {
     Scene const scene = chain_under("rattle");
     std::string const lost = std::string("a matrix is lost (body 2): ") + dca::cause_of_lost_matrix;
     EXPECT_EQ(failure_in_step(0, lost, scene, false), "at step 0: " + lost);
-    EXPECT_EQ(
-        failure_in_step(7, lost, scene, true),
-        "at step 7: a matrix is lost (body 2): dynamics.step = 0.01 is too long for forces and speeds there: choose a smaller one; else " +
-            std::string(dca::cause_of_lost_matrix));
+    EXPECT_EQ(failure_in_step(7, lost, scene, true),
+              "at step 7: a matrix is lost (body 2): dynamics.step = 0.01 is too long for forces "
+              "and speeds there: choose a smaller one; else " +
+                  std::string(dca::cause_of_lost_matrix));
     EXPECT_EQ(failure_in_step(7, "no disk", scene, true), "at step 7: no disk");
 }
 
@@ -266,7 +283,8 @@ struct Falling {
     double error, factor, rounding;
     int sweeps = 0;
     int close(Closing const& closing, int done = 2) {
-        return closing.close(done, [&] { return std::max(error, rounding); }, [&] { ++sweeps, error *= factor; });
+        return closing.close(
+            done, [&] { return std::max(error, rounding); }, [&] { ++sweeps, error *= factor; });
     }
 };
 TEST(Closing, SweepsGoOnUntilJointsClose) {
@@ -274,12 +292,18 @@ TEST(Closing, SweepsGoOnUntilJointsClose) {
     EXPECT_EQ(joints.close({1e-10, 1e-12, 30}), joints.sweeps);
     EXPECT_LE(joints.error, 1e-12);
 }
-TEST(Closing, ClosedJointsNeedNoSweep) { EXPECT_EQ((Falling{0.9e-10, 0.1, 0}.close({1e-10, 1e-12, 30})), 0); }
-TEST(Closing, RoundingEndsSweeps) { EXPECT_LT((Falling{1e-9, 0.01, 2e-12}.close({1e-10, 1e-12, 30})), 5); }
+TEST(Closing, ClosedJointsNeedNoSweep) {
+    EXPECT_EQ((Falling{0.9e-10, 0.1, 0}.close({1e-10, 1e-12, 30})), 0);
+}
+TEST(Closing, RoundingEndsSweeps) {
+    EXPECT_LT((Falling{1e-9, 0.01, 2e-12}.close({1e-10, 1e-12, 30})), 5);
+}
 TEST(Closing, RoundingAboveTheToleranceEndsSweepsHoweverManyThereWere) {
     EXPECT_EQ((Falling{1e-9, 1, 1e-9}.close({1e-10, 1e-12, 30}, 30)), 5);
 }
-TEST(Closing, SlowConvergenceIsNoRounding) { EXPECT_THROW((Falling{9e-8, 0.9, 0}.close({1e-10, 1e-12, 30, 1e-13})), ComputationError); }
+TEST(Closing, SlowConvergenceIsNoRounding) {
+    EXPECT_THROW((Falling{9e-8, 0.9, 0}.close({1e-10, 1e-12, 30, 1e-13})), ComputationError);
+}
 TEST(Closing, JointsThatStayOpenAreAnError) {
     EXPECT_THROW((Falling{1e-2, 1, 0}.close({1e-10, 1e-12, 30})), ComputationError);
     EXPECT_THROW((Falling{std::nan(""), 1, 0}.close({1e-10, 1e-12, 30})), ComputationError);

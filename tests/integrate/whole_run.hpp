@@ -1,4 +1,5 @@
-// Whole runs of a scene in a folder of the test's own, by all ranks of the test or by some communicator of one.
+// Whole runs of a scene in a folder of the test's own, by all ranks of the test or by some
+// communicator of one.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "run/simulation.hpp"
 #include "io/output.hpp"
+#include "reader/load_scene.hpp"
+#include "run/simulation.hpp"
 #include "tests/integrate/scenes.hpp"
 #include "tests/mpi/world.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 
@@ -20,7 +21,9 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
   protected:
     WholeRun() {
         // Every rank must name the same folder: rank 0's.
-        std::string name = (std::filesystem::temp_directory_path() / ("catena-run-" + std::to_string(::getpid()))).string();
+        std::string name =
+            (std::filesystem::temp_directory_path() / ("catena-run-" + std::to_string(::getpid())))
+                .string();
         name.resize(200, ' ');
         catena::testing::world().broadcast(std::as_writable_bytes(std::span(name)));
         folder_ = name.substr(0, name.find(' '));
@@ -31,7 +34,8 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         if (catena::testing::world().rank() == 0) std::filesystem::remove_all(folder_, ignored);
         catena::testing::world().barrier();
     }
-    RunOptions options_of(std::string const& name, std::int64_t steps, std::string const& restart) const {
+    RunOptions options_of(std::string const& name, std::int64_t steps,
+                          std::string const& restart) const {
         RunOptions options;
         options.output = folder_ + "/" + name;
         options.steps = steps;
@@ -40,7 +44,8 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         return options;
     }
     /// `one_by_one`: not in vectors.
-    nlohmann::json run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
+    nlohmann::json run(Communicator const& communicator, std::string const& name,
+                       std::int64_t steps, std::string const& restart = "",
                        Backend backend = Backend::automatic, bool one_by_one = false) {
         RunOptions const options = options_of(name, steps, restart);
         Scene scene = parse_scene(GetParam().text, "scene.yaml");
@@ -57,7 +62,9 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         return summary;
     }
     /// The checkpoint of run `name`, bit for bit.
-    auto arrays(std::string const& name) const { return read_checkpoint(folder_ + "/" + name + "/checkpoint.h5").arrays; }
+    auto arrays(std::string const& name) const {
+        return read_checkpoint(folder_ + "/" + name + "/checkpoint.h5").arrays;
+    }
 
     std::string folder_;
 };

@@ -1,4 +1,5 @@
-// A checkpoint that all ranks write together holds the same bits as one that the root writes, and is as safe.
+// A checkpoint that all ranks write together holds the same bits as one that the root writes, and
+// is as safe.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +19,9 @@ using catena::testing::world;
 using Sizes = std::map<std::string, std::int64_t>;
 /// Numbers of the arrays that ranks bring: one of them shorter than ranks are many, one empty.
 Sizes const usual{{"few", 2}, {"many", 100'003}, {"none", 0}};
-double number(std::string const& array, std::int64_t i) { return static_cast<double>(array.size()) + 1 / (1.0 + static_cast<double>(i)); }
+double number(std::string const& array, std::int64_t i) {
+    return static_cast<double>(array.size()) + 1 / (1.0 + static_cast<double>(i));
+}
 
 class CheckpointOfRanks : public ::testing::Test {
   protected:
@@ -30,8 +33,10 @@ class CheckpointOfRanks : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
-/// Runs of so many numbers are each rank's in turn, in two rounds. The run with number `but` of an array is left out.
-void put_own(CheckpointWriter& writer, Sizes const& sizes, std::int64_t run, std::int64_t but = -1) {
+/// Runs of so many numbers are each rank's in turn, in two rounds. The run with number `but` of an
+/// array is left out.
+void put_own(CheckpointWriter& writer, Sizes const& sizes, std::int64_t run,
+             std::int64_t but = -1) {
     bool const together = writer.way().collective;
     if (!together && world().rank() != 0) return;
     std::int64_t const first = together ? world().rank() : 0, every = together ? world().size() : 1;
@@ -41,7 +46,8 @@ void put_own(CheckpointWriter& writer, Sizes const& sizes, std::int64_t run, std
         for (std::int64_t r = first; r * run < size; r += every) {
             if (r == but) continue;
             values.emplace_back();
-            for (std::int64_t i = r * run; i < std::min(size, (r + 1) * run); ++i) values.back().push_back(number(name, i));
+            for (std::int64_t i = r * run; i < std::min(size, (r + 1) * run); ++i)
+                values.back().push_back(number(name, i));
             parts.push_back({r * run, values.back()});
         }
         std::size_t const half = parts.size() / 2;
@@ -49,7 +55,8 @@ void put_own(CheckpointWriter& writer, Sizes const& sizes, std::int64_t run, std
         writer.put(name, std::span(parts).subspan(half));
     }
 }
-std::string write(std::string const& file, Checkpoint const& checkpoint, std::int64_t run, Sizes const& sizes = usual) {
+std::string write(std::string const& file, Checkpoint const& checkpoint, std::int64_t run,
+                  Sizes const& sizes = usual) {
     CheckpointWriter writer(world(), file, checkpoint, sizes);
     put_own(writer, sizes, run);
     writer.finish();
@@ -76,7 +83,8 @@ std::string shared_error_of(Action const& action) {
 
 TEST_F(CheckpointOfRanks, HoldsTheBitsOfOneWriter) {
     std::string const root = path("root.h5"), whole_at_once = path("at-once.h5");
-    EXPECT_EQ(write(root, sample(), 1000), world().size() == 1 ? "by the root" : "by the root: arrays are small");
+    EXPECT_EQ(write(root, sample(), 1000),
+              world().size() == 1 ? "by the root" : "by the root: arrays are small");
     if (world().rank() == 0) {
         expect_same(read_checkpoint(root), whole(sample()));
         write_checkpoint(whole_at_once, whole(sample()));
@@ -84,7 +92,8 @@ TEST_F(CheckpointOfRanks, HoldsTheBitsOfOneWriter) {
     }
     NEEDS_PARALLEL_HDF5;
     ::setenv("CATENA_HDF5", "collective", 1);
-    for (std::int64_t const run : {1000, 40'000, 200'000}) {  // many a rank, some without any, all one rank's
+    for (std::int64_t const run :
+         {1000, 40'000, 200'000}) {  // many a rank, some without any, all one rank's
         std::string const file = path("together" + std::to_string(run) + ".h5");
         EXPECT_EQ(write(file, sample(), run), together());
         if (world().rank() != 0) continue;
@@ -121,8 +130,10 @@ TEST_F(CheckpointOfRanks, KeepsTheOneBefore) {
         world().barrier();
         if (world().rank() != 0) continue;
         EXPECT_EQ(read_checkpoint(file).step, 200);
-        EXPECT_EQ(read_checkpoint(folder_ / (std::string(way) + "/checkpoint.previous.h5")).step, 100);
-        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / way), {}), 2) << "what was not finished is gone";
+        EXPECT_EQ(read_checkpoint(folder_ / (std::string(way) + "/checkpoint.previous.h5")).step,
+                  100);
+        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / way), {}), 2)
+            << "what was not finished is gone";
     }
 }
 
@@ -137,7 +148,8 @@ TEST_F(CheckpointOfRanks, WhatNobodyBroughtIsMissed) {
             put_own(writer, usual, 1000, 77);
             writer.finish();
         });
-        EXPECT_EQ(message, "cannot write the checkpoint (" + file + "): it does not read back, its checksum does not fit its contents");
+        EXPECT_EQ(message, "cannot write the checkpoint (" + file +
+                               "): it does not read back, its checksum does not fit its contents");
         world().barrier();
         if (world().rank() != 0) continue;
         EXPECT_EQ(read_checkpoint(file).step, 100);
@@ -167,7 +179,8 @@ TEST_F(CheckpointOfRanks, AFullDiskIsEveryRanksErrorBeforeNumbersAreWritten) {
         ::setenv("CATENA_HDF5", way, 1);
         std::unique_ptr<SmallDisk> disk;
         if (world().rank() == 0) disk = std::make_unique<SmallDisk>(1500);  // room for one
-        if (world().sum(disk && disk->mounted() ? 1 : 0) == 0) GTEST_SKIP() << "NOT RUN: mounting a small disk needs root";
+        if (world().sum(disk && disk->mounted() ? 1 : 0) == 0)
+            GTEST_SKIP() << "NOT RUN: mounting a small disk needs root";
         std::string const file = of_root(disk ? *disk / "checkpoint.h5" : "");
         write(file, sample(100), 1000);
         EXPECT_EQ(shared_error_of([&] { CheckpointWriter(world(), file, sample(200), usual); }),

@@ -56,9 +56,12 @@ TEST(Checkpoint, OneAlteredNumberIsSeen) {
     ASSERT_NE(at, std::string::npos);
     bytes[at] = static_cast<char>(bytes[at] ^ 1);
     put_bytes(file, bytes);
-    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" + file + "): start anew");
+    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" +
+                                 file + "): start anew");
     put_bytes(folder / "checkpoint.previous.h5", "");
-    EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")),
+              std::string::npos)
+        << refusal(file);
 }
 
 /// What is damaged never comes before HDF5, so neither do its errors.
@@ -67,41 +70,52 @@ TEST(Checkpoint, DamageIsSeenBeforeHdf5) {
     std::string const file = folder / "checkpoint.h5";
     write_checkpoint(file, sample());
     std::string const good = bytes_of(file);
-    EXPECT_TRUE(good.starts_with("Catena, sealed file: " + std::to_string(good.size() - 512) + " bytes, checksum by places "))
+    EXPECT_TRUE(good.starts_with("Catena, sealed file: " + std::to_string(good.size() - 512) +
+                                 " bytes, checksum by places "))
         << good.substr(0, 80);
     EXPECT_EQ(good.substr(512, 4), "\x89HDF");
     put_bytes(file, good + "more");
-    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" + file + "): start anew");
+    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" +
+                                 file + "): start anew");
     put_bytes(file, good.substr(0, 600));
-    EXPECT_EQ(refusal(file),
-              "the checkpoint is damaged, cut short, 600 of " + std::to_string(good.size()) + " bytes (" + file + "): start anew");
+    EXPECT_EQ(refusal(file), "the checkpoint is damaged, cut short, 600 of " +
+                                 std::to_string(good.size()) + " bytes (" + file + "): start anew");
     put_bytes(file, good.substr(0, 100));
     EXPECT_NE(refusal(file).find("cut short, 100 of"), std::string::npos) << refusal(file);
     std::string seal = "Catena, sealed file: 99999999999999999999999 bytes, checksum by places 0";
     seal.resize(512);
     put_bytes(file, seal + good.substr(512));
     EXPECT_NE(refusal(file).find("cut short"), std::string::npos) << refusal(file);
-    std::string earlier = "Catena, sealed file: " + std::to_string(good.size() - 512) + " bytes, checksum 0123456789abcdef\n";
+    std::string earlier = "Catena, sealed file: " + std::to_string(good.size() - 512) +
+                          " bytes, checksum 0123456789abcdef\n";
     earlier.resize(512);
     put_bytes(file, earlier + good.substr(512));
-    EXPECT_EQ(refusal(file), "a checkpoint of another version of Catena (" + file + "): restart with the version that wrote it");
+    EXPECT_EQ(refusal(file), "a checkpoint of another version of Catena (" + file +
+                                 "): restart with the version that wrote it");
     // What is left of this version's words is no earlier one's.
     std::string broken = good;
     broken[broken.find("by places")] = 'x';
     put_bytes(file, broken);
-    EXPECT_NE(refusal(file).find("the checkpoint is damaged, its checksum"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("the checkpoint is damaged, its checksum"), std::string::npos)
+        << refusal(file);
     put_bytes(file, good.substr(0, good.find("by places") + 3));
-    EXPECT_NE(refusal(file).find("the checkpoint is damaged, cut short"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("the checkpoint is damaged, cut short"), std::string::npos)
+        << refusal(file);
     put_bytes(file, good.substr(512));
     EXPECT_NE(refusal(file).find("one of an earlier version"), std::string::npos) << refusal(file);
-    EXPECT_NE(refusal(file).find("restart with the version that wrote it"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("restart with the version that wrote it"), std::string::npos)
+        << refusal(file);
     put_bytes(file, std::string(4096, '\0'));
-    EXPECT_NE(refusal(file).find("not a checkpoint of Catena, or damaged"), std::string::npos) << refusal(file);
-    EXPECT_NE(refusal(file).find("name the checkpoint.h5 of a run"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("not a checkpoint of Catena, or damaged"), std::string::npos)
+        << refusal(file);
+    EXPECT_NE(refusal(file).find("name the checkpoint.h5 of a run"), std::string::npos)
+        << refusal(file);
     put_bytes(folder / "checkpoint.previous.h5", good);
     for (std::string const& bytes : {std::string(4096, '\0'), std::string()}) {
         put_bytes(file, bytes);
-        EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")), std::string::npos) << refusal(file);
+        EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")),
+                  std::string::npos)
+            << refusal(file);
     }
 }
 
@@ -113,7 +127,8 @@ TEST(Checkpoint, TwoFlippedSignsAreSeen) {
     double const third[] = {1 / 3.0, 1 / 3.0};
     auto const at = bytes.find(std::string(reinterpret_cast<char const*>(third), sizeof third));
     ASSERT_NE(at, std::string::npos);
-    for (std::size_t const sign : {at + 7, at + 15}) bytes[sign] = static_cast<char>(bytes[sign] ^ 0x80);
+    for (std::size_t const sign : {at + 7, at + 15})
+        bytes[sign] = static_cast<char>(bytes[sign] ^ 0x80);
     put_bytes(file, bytes);
     EXPECT_NE(refusal(file).find("checksum"), std::string::npos) << refusal(file);
 }
@@ -136,16 +151,19 @@ TEST(Seal, PiecesOfSeveralReadersAreThoseOfOne) {
         EXPECT_EQ(sum, whole) << readers;
     }
     // Two pieces change places: the same bytes, another file.
-    std::string const first = bytes.substr(512, 4 << 20), second = bytes.substr(512 + (4 << 20), 4 << 20);
+    std::string const first = bytes.substr(512, 4 << 20),
+                      second = bytes.substr(512 + (4 << 20), 4 << 20);
     put_bytes(file, bytes.substr(0, 512) + second + first + bytes.substr(512 + (8 << 20)));
     EXPECT_NE(sum_pieces(file, 0, 1, file, "look"), whole);
 }
 
 TEST(Checkpoint, MissingAndForeignFilesAreRefused) {
     TemporaryFolder const folder;
-    EXPECT_EQ(refusal(folder / "none.h5"), "no such checkpoint (" + (folder / "none.h5") + "): name the checkpoint.h5 of a run");
+    EXPECT_EQ(refusal(folder / "none.h5"),
+              "no such checkpoint (" + (folder / "none.h5") + "): name the checkpoint.h5 of a run");
     make_trajectory(folder / "trajectory.h5md", {}, false, false, {})->close();
-    EXPECT_NE(refusal(folder / "trajectory.h5md").find("not a checkpoint of Catena"), std::string::npos);
+    EXPECT_NE(refusal(folder / "trajectory.h5md").find("not a checkpoint of Catena"),
+              std::string::npos);
     EXPECT_NE(refusal(folder.path()).find("not a checkpoint"), std::string::npos);
 }
 

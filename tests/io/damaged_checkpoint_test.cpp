@@ -1,4 +1,5 @@
-// Every byte of a checkpoint may be wrong. HDF5 reads beyond its buffers on some damaged files, so none must come before it.
+// Every byte of a checkpoint may be wrong. HDF5 reads beyond its buffers on some damaged files, so
+// none must come before it.
 #include <gtest/gtest.h>
 
 #include "sample_checkpoint.hpp"
@@ -6,7 +7,8 @@
 namespace catena::test {
 namespace {
 
-/// A flipped bit anywhere either changes nothing that is read or is refused as the user's input; it never goes through.
+/// A flipped bit anywhere either changes nothing that is read or is refused as the user's input; it
+/// never goes through.
 TEST(DamagedCheckpoint, NoFlippedBitGoesThrough) {
     TemporaryFolder const folder;
     std::string const file = folder / "checkpoint.h5";
@@ -34,7 +36,8 @@ TEST(DamagedCheckpoint, CutShortIsRefused) {
     std::string const good = bytes_of(file);
     for (std::size_t length = 0; length < good.size(); length += 97) {
         put_bytes(file, good.substr(0, length));
-        ASSERT_NE(refusal(file), "read without complaint") << length << " of " << good.size() << " bytes";
+        ASSERT_NE(refusal(file), "read without complaint")
+            << length << " of " << good.size() << " bytes";
     }
     put_bytes(file, good.substr(0, good.size() - 1));
     EXPECT_NE(refusal(file).find("cut short"), std::string::npos) << refusal(file);

@@ -1,4 +1,5 @@
-// A disk that is full must never look like success: HDF5 reports it at flushes and at no other place.
+// A disk that is full must never look like success: HDF5 reports it at flushes and at no other
+// place.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -36,7 +37,8 @@ Checkpoint checkpoint_of(std::size_t doubles) {
     return checkpoint;
 }
 
-void expect_failure(std::string const& message, std::string const& begin, std::string const& cause) {
+void expect_failure(std::string const& message, std::string const& begin,
+                    std::string const& cause) {
     EXPECT_TRUE(message.starts_with(begin) && message.ends_with("): " + cause)) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
@@ -60,10 +62,11 @@ TEST(DiskFull, CheckpointIsNoSuccessAndTheOneBeforeStays) {
     std::string const file = disk / "checkpoint.h5";
     write_checkpoint(file, checkpoint_of(10));
     for (std::size_t const doubles : {50000, 51000, 60000, 1000000})
-        expect_failure(message_of([&] { write_checkpoint(file, checkpoint_of(doubles)); }), "cannot write the checkpoint (" + file,
-                       "No space left on device");
+        expect_failure(message_of([&] { write_checkpoint(file, checkpoint_of(doubles)); }),
+                       "cannot write the checkpoint (" + file, "No space left on device");
     EXPECT_EQ(read_checkpoint(file).arrays, checkpoint_of(10).arrays);
-    EXPECT_FALSE(std::filesystem::exists(file + ".writing")) << "the draft goes on filling the disk";
+    EXPECT_FALSE(std::filesystem::exists(file + ".writing"))
+        << "the draft goes on filling the disk";
 }
 
 TEST(DiskFull, TrajectoryIsNoSuccess) {
@@ -71,7 +74,8 @@ TEST(DiskFull, TrajectoryIsNoSuccess) {
         SmallDisk const disk;
         NEEDS_SMALL_DISK(disk);
         std::string const file = disk / "trajectory.h5md";
-        expect_failure(fill_with_frames(file, flushing), "cannot write the trajectory (" + file, "No space left on device");
+        expect_failure(fill_with_frames(file, flushing), "cannot write the trajectory (" + file,
+                       "No space left on device");
     }
 }
 
@@ -87,7 +91,8 @@ TEST(DiskFull, TextAndTableAreNoSuccess) {
     std::string const message = message_of([&] {
         for (std::int64_t step = 0; step < 100000; ++step) table.write(step, 0.1, {0.1, 0.3});
     });
-    EXPECT_EQ(message, "cannot write (" + (disk / "observables.csv") + "): No space left on device");
+    EXPECT_EQ(message,
+              "cannot write (" + (disk / "observables.csv") + "): No space left on device");
 }
 
 TEST(FileTooLarge, CheckpointAndTrajectoryAreNoSuccess) {
@@ -95,17 +100,20 @@ TEST(FileTooLarge, CheckpointAndTrajectoryAreNoSuccess) {
     std::string const file = folder / "checkpoint.h5", trajectory = folder / "trajectory.h5md";
     write_checkpoint(file, checkpoint_of(10));
     FileSizeLimit const limit(100000);
-    expect_failure(message_of([&] { write_checkpoint(file, checkpoint_of(20000)); }), "cannot write the checkpoint (" + file,
-                   "File too large");
+    expect_failure(message_of([&] { write_checkpoint(file, checkpoint_of(20000)); }),
+                   "cannot write the checkpoint (" + file, "File too large");
     EXPECT_EQ(read_checkpoint(file).arrays, checkpoint_of(10).arrays);
     EXPECT_FALSE(std::filesystem::exists(file + ".writing"));
-    expect_failure(fill_with_frames(trajectory, true), "cannot write the trajectory (" + trajectory, "File too large");
+    expect_failure(fill_with_frames(trajectory, true), "cannot write the trajectory (" + trajectory,
+                   "File too large");
 }
 
 TEST(DeviceFull, TableIsNoSuccess) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "NOT RUN: no /dev/full here";
-    EXPECT_EQ(message_of([] { ObservablesWriter("/dev/full", {"a"}, {}).close(); }), "cannot write (/dev/full): No space left on device");
-    EXPECT_EQ(message_of([] { write_text_file("/dev/full", "text"); }), "cannot write (/dev/full): No space left on device");
+    EXPECT_EQ(message_of([] { ObservablesWriter("/dev/full", {"a"}, {}).close(); }),
+              "cannot write (/dev/full): No space left on device");
+    EXPECT_EQ(message_of([] { write_text_file("/dev/full", "text"); }),
+              "cannot write (/dev/full): No space left on device");
 }
 
 }  // namespace

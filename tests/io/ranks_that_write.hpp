@@ -20,10 +20,12 @@ inline std::string of_root(std::string text) {
 
 inline bool can_write_together() {
     Communicator const& world = catena::testing::world();
-    return world.size() > 1 && world.sum(hdf5::why_not_by_all(world).empty() ? 1 : 0) == world.size();
+    return world.size() > 1 &&
+           world.sum(hdf5::why_not_by_all(world).empty() ? 1 : 0) == world.size();
 }
 
-#define NEEDS_PARALLEL_HDF5 \
-    if (!can_write_together()) GTEST_SKIP() << "NOT RUN: one rank, or " << hdf5::why_not_by_all(catena::testing::world())
+#define NEEDS_PARALLEL_HDF5    \
+    if (!can_write_together()) \
+    GTEST_SKIP() << "NOT RUN: one rank, or " << hdf5::why_not_by_all(catena::testing::world())
 
 }  // namespace catena::test

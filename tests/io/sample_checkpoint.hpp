@@ -23,8 +23,9 @@ inline Checkpoint sample(std::int64_t step = 123456789012) {
     checkpoint.notes = {{"backend", "segments"}, {"empty", ""}, {"version", "0.1.0, größer"}};
     checkpoint.integers = {{"sweeps", 6}, {"negative", std::numeric_limits<std::int64_t>::min()}};
     double const odd_nan = std::bit_cast<double>(0x7ff80000deadbeefULL);
-    checkpoint.arrays = {
-        {"positions", {0.1, -0.0, 1e-320, odd_nan, 1e308}}, {"nothing", {}}, {"velocities", std::vector<double>(300, 1 / 3.0)}};
+    checkpoint.arrays = {{"positions", {0.1, -0.0, 1e-320, odd_nan, 1e308}},
+                         {"nothing", {}},
+                         {"velocities", std::vector<double>(300, 1 / 3.0)}};
     return checkpoint;
 }
 
@@ -39,7 +40,9 @@ inline void expect_same(Checkpoint const& a, Checkpoint const& b) {
         ASSERT_TRUE(b.arrays.contains(key)) << key;
         auto const& others = b.arrays.at(key);
         ASSERT_EQ(values.size(), others.size()) << key;
-        EXPECT_TRUE(values.empty() || std::memcmp(values.data(), others.data(), values.size() * sizeof(double)) == 0) << key;
+        EXPECT_TRUE(values.empty() ||
+                    std::memcmp(values.data(), others.data(), values.size() * sizeof(double)) == 0)
+            << key;
     }
 }
 
@@ -48,7 +51,9 @@ inline std::string bytes_of(std::string const& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-inline void put_bytes(std::string const& file, std::string const& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+inline void put_bytes(std::string const& file, std::string const& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+}
 
 inline std::string refusal(std::string const& file) {
     try {

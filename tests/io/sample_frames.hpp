@@ -33,9 +33,11 @@ inline Frame sample_frame(std::int64_t step, Topology const& topology) {
         frame.velocities.push_back({{next() * 1e-300, -0.0, next() * 1e300}});
         frame.joint_forces.push_back({{next(), next(), next(), next(), next(), next()}});
     }
-    for (std::size_t k = 0; k < topology.tips.size(); ++k) frame.tip_forces.push_back({{next(), next(), next(), next(), next(), next()}});
+    for (std::size_t k = 0; k < topology.tips.size(); ++k)
+        frame.tip_forces.push_back({{next(), next(), next(), next(), next(), next()}});
     frame.velocities[0][1] = std::numeric_limits<double>::denorm_min();
-    for (std::size_t k = 0; k < topology.bodies.size(); ++k) frame.orientations.push_back({next(), next(), next(), next()});
+    for (std::size_t k = 0; k < topology.bodies.size(); ++k)
+        frame.orientations.push_back({next(), next(), next(), next()});
     return frame;
 }
 

@@ -11,11 +11,13 @@
 
 namespace catena::test {
 
-/// A file system of its own, by default of a few hundred kB; `mounted` is false without the privilege.
+/// A file system of its own, by default of a few hundred kB; `mounted` is false without the
+/// privilege.
 class SmallDisk {
   public:
     explicit SmallDisk(int kilobytes = 400)
-        : mounted_(::mount("catena", folder_.path().c_str(), "tmpfs", 0, ("size=" + std::to_string(kilobytes) + "k").c_str()) == 0) {}
+        : mounted_(::mount("catena", folder_.path().c_str(), "tmpfs", 0,
+                           ("size=" + std::to_string(kilobytes) + "k").c_str()) == 0) {}
     SmallDisk(SmallDisk const&) = delete;
     SmallDisk& operator=(SmallDisk const&) = delete;
     ~SmallDisk() {
@@ -30,6 +32,7 @@ class SmallDisk {
 };
 
 #define NEEDS_SMALL_DISK(disk) \
-    if (!(disk).mounted()) GTEST_SKIP() << "NOT RUN: mounting a small disk needs root (" << std::strerror(errno) << ")"
+    if (!(disk).mounted())     \
+    GTEST_SKIP() << "NOT RUN: mounting a small disk needs root (" << std::strerror(errno) << ")"
 
 }  // namespace catena::test

@@ -1,7 +1,9 @@
-// Writes the folder of a run that no simulation made, so that its readers (MDAnalysis, the plot, the report) can be tested alone:
+// Writes the folder of a run that no simulation made, so that its readers (MDAnalysis, the plot,
+// the report) can be tested alone:
 //   io_synthetic_run beads|bodies|si FOLDER
-// beads: alpha-synuclein, one bead a residue, links of exactly 0.38 nm that turn at random; bodies: a chain of rigid bodies beside
-// one of beads in a periodic box, with velocities and joint forces; si: a pendulum in metres.
+// beads: alpha-synuclein, one bead a residue, links of exactly 0.38 nm that turn at random; bodies:
+// a chain of rigid bodies beside one of beads in a periodic box, with velocities and joint forces;
+// si: a pendulum in metres.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,26 +18,31 @@ namespace {
 
 // UniProt P37840
 constexpr std::string_view alpha_synuclein =
-    "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMPSEEGYQ"
+    "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGF"
+    "VKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMPSEEGYQ"
     "DYEPEA";
 constexpr double residue_mass = 110, link = 0.38, boltzmann = 0.00831446261815324;
 constexpr std::int64_t steps_between_frames = 100;
 
 std::string three_letters(char one) {
-    static constexpr std::pair<char, char const*> names[] = {{'A', "ALA"}, {'C', "CYS"}, {'D', "ASP"}, {'E', "GLU"}, {'F', "PHE"},
-                                                             {'G', "GLY"}, {'H', "HIS"}, {'I', "ILE"}, {'K', "LYS"}, {'L', "LEU"},
-                                                             {'M', "MET"}, {'N', "ASN"}, {'P', "PRO"}, {'Q', "GLN"}, {'R', "ARG"},
-                                                             {'S', "SER"}, {'T', "THR"}, {'V', "VAL"}, {'W', "TRP"}, {'Y', "TYR"}};
-    auto const* const found = std::find_if(std::begin(names), std::end(names), [&](auto const& entry) { return entry.first == one; });
+    static constexpr std::pair<char, char const*> names[] = {
+        {'A', "ALA"}, {'C', "CYS"}, {'D', "ASP"}, {'E', "GLU"}, {'F', "PHE"},
+        {'G', "GLY"}, {'H', "HIS"}, {'I', "ILE"}, {'K', "LYS"}, {'L', "LEU"},
+        {'M', "MET"}, {'N', "ASN"}, {'P', "PRO"}, {'Q', "GLN"}, {'R', "ARG"},
+        {'S', "SER"}, {'T', "THR"}, {'V', "VAL"}, {'W', "TRP"}, {'Y', "TYR"}};
+    auto const* const found = std::find_if(std::begin(names), std::end(names),
+                                           [&](auto const& entry) { return entry.first == one; });
     return found->second;
 }
 
 /// A freely turning chain: every link's direction follows its neighbour's and wanders.
 class Wanderer {
   public:
-    Wanderer(std::size_t sites, double length, double stiffness) : length_(length), directions_(sites), noise_(12345) {
+    Wanderer(std::size_t sites, double length, double stiffness)
+        : length_(length), directions_(sites), noise_(12345) {
         for (std::size_t k = 0; k < sites; ++k)
-            directions_[k] = unit(plus_scaled(gaussian(), stiffness, k > 0 ? directions_[k - 1] : gaussian()));
+            directions_[k] =
+                unit(plus_scaled(gaussian(), stiffness, k > 0 ? directions_[k - 1] : gaussian()));
     }
     void wander(double amount) {
         Vec3 shared = gaussian();
@@ -103,7 +110,8 @@ std::vector<double> observables_of(Frame const& frame, Wanderer& wanderer) {
     for (Vec3 const& x : frame.positions) centre = plus_scaled(centre, 1 / count, x);
     double squares = 0;
     for (Vec3 const& x : frame.positions) squares += dot(x - centre, x - centre) / count;
-    double const kinetic = 1.5 * count * boltzmann * (300 + 20 * wanderer.number()), potential = -120 + 6 * wanderer.number();
+    double const kinetic = 1.5 * count * boltzmann * (300 + 20 * wanderer.number()),
+                 potential = -120 + 6 * wanderer.number();
     return {potential,
             kinetic,
             potential + kinetic,
@@ -117,15 +125,18 @@ void add_optional_parts(Frame& frame, Topology const& topology, Wanderer& wander
     for (std::size_t k = 0; k < topology.mass.size(); ++k) {
         frame.velocities.push_back(0.1 * wanderer.gaussian());
         Vec3 const torque = wanderer.gaussian(), force = wanderer.gaussian();
-        frame.joint_forces.push_back({{torque[0], torque[1], torque[2], force[0], force[1], force[2]}});
+        frame.joint_forces.push_back(
+            {{torque[0], torque[1], torque[2], force[0], force[1], force[2]}});
     }
-    for (std::size_t k = 0; k < topology.bodies.size(); ++k) frame.orientations.push_back(from_rotation_vector(wanderer.gaussian()));
+    for (std::size_t k = 0; k < topology.bodies.size(); ++k)
+        frame.orientations.push_back(from_rotation_vector(wanderer.gaussian()));
 }
 
 std::string timeline() {
     std::string ranks;
     for (int rank = 0; rank < 2; ++rank)
-        ranks += std::string(rank > 0 ? "," : "") + R"({"rank": )" + std::to_string(rank) + R"(, "steps": [{"step": 5000, "phases": [
+        ranks += std::string(rank > 0 ? "," : "") + R"({"rank": )" + std::to_string(rank) +
+                 R"(, "steps": [{"step": 5000, "phases": [
             {"name": "kinematics", "lane": "main", "begin": 0, "end": 8e-6}, {"name": "forces", "lane": "OpenMM worker", "begin": 9e-6, "end": 1.9e-4},
             {"name": "matrix sweep", "lane": "main", "begin": 1e-5, "end": 9.1e-5}, {"name": "wait for forces", "lane": "main", "begin": 9.1e-5, "end": 1.92e-4},
             {"name": "bias sweep", "lane": "main", "begin": 1.92e-4, "end": 2.2e-4}, {"name": "exchange", "lane": "main", "begin": 2.2e-4, "end": 2.32e-4},
@@ -144,19 +155,25 @@ std::string summary(Topology const& topology) {
 }
 
 void write_run(std::string const& kind, std::filesystem::path const& folder) {
-    Topology const topology = kind == "beads" ? beads_topology() : kind == "bodies" ? bodies_topology() : si_topology();
+    Topology const topology = kind == "beads"    ? beads_topology()
+                              : kind == "bodies" ? bodies_topology()
+                                                 : si_topology();
     bool const beads = kind == "beads";
     double const length = topology.si ? 1 : link;
     std::int64_t const frames = beads ? 201 : 11;
     double const time_step = topology.si ? 1e-3 : 0.01;
     Wanderer wanderer(topology.mass.size(), length, 1.6);
     std::filesystem::create_directories(folder);
-    auto const trajectory = make_trajectory((folder / "trajectory.h5md").string(), topology, !beads, !beads, {});
-    std::string const energy = topology.si ? " [J]" : " [kJ/mol]", distance = topology.si ? " [m]" : " [nm]";
-    ObservablesWriter table((folder / "observables.csv").string(),
-                            {"potential_energy" + energy, "kinetic_energy" + energy, "total_energy" + energy, "temperature [K]",
-                             "constraint_error" + distance, "radius_of_gyration" + distance, "end_to_end_distance" + distance},
-                            {}, topology.si ? "s" : "ps");
+    auto const trajectory =
+        make_trajectory((folder / "trajectory.h5md").string(), topology, !beads, !beads, {});
+    std::string const energy = topology.si ? " [J]" : " [kJ/mol]",
+                      distance = topology.si ? " [m]" : " [nm]";
+    ObservablesWriter table(
+        (folder / "observables.csv").string(),
+        {"potential_energy" + energy, "kinetic_energy" + energy, "total_energy" + energy,
+         "temperature [K]", "constraint_error" + distance, "radius_of_gyration" + distance,
+         "end_to_end_distance" + distance},
+        {}, topology.si ? "s" : "ps");
     for (std::int64_t k = 0; k < frames; ++k) {
         Frame frame;
         frame.step = k * steps_between_frames;

@@ -9,7 +9,9 @@ namespace catena::test {
 
 class TemporaryFolder {
   public:
-    TemporaryFolder() : path_(std::filesystem::temp_directory_path() / ("catena-" + std::to_string(std::random_device()()))) {
+    TemporaryFolder()
+        : path_(std::filesystem::temp_directory_path() /
+                ("catena-" + std::to_string(std::random_device()()))) {
         std::filesystem::create_directories(path_);
     }
     TemporaryFolder(TemporaryFolder const&) = delete;

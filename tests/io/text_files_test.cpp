@@ -14,9 +14,12 @@
 namespace catena::test {
 namespace {
 
-void write_records(std::string const& file, std::vector<std::int64_t> const& steps, std::optional<std::int64_t> after = {}) {
+void write_records(std::string const& file, std::vector<std::int64_t> const& steps,
+                   std::optional<std::int64_t> after = {}) {
     ObservablesWriter table(file, {"total_energy [kJ/mol]", "temperature [K]"}, after);
-    for (std::int64_t const step : steps) table.write(step, 0.01 * static_cast<double>(step), {1.0 / (1 + static_cast<double>(step)), 300});
+    for (std::int64_t const step : steps)
+        table.write(step, 0.01 * static_cast<double>(step),
+                    {1.0 / (1 + static_cast<double>(step)), 300});
     table.close();
 }
 
@@ -29,8 +32,9 @@ TEST(Observables, HeaderHasUnitsAndNumbersReadBackBitForBit) {
         table.write(2, 1e-320, {-0.0, std::numeric_limits<double>::quiet_NaN()});
         table.close();
     }
-    EXPECT_TRUE(
-        read_text_file(file).starts_with("step,time [ps],total_energy [kJ/mol],odd\n1,0.30000000000000004,0.33333333333333331,-inf\n"));
+    EXPECT_TRUE(read_text_file(file).starts_with(
+        "step,time [ps],total_energy "
+        "[kJ/mol],odd\n1,0.30000000000000004,0.33333333333333331,-inf\n"));
     ObservablesTable const table = read_observables(file);
     EXPECT_EQ(table.columns[1], (std::vector<double>{0.1 + 0.2, 1e-320}));
     EXPECT_EQ(table.columns[2], (std::vector<double>{1 / 3.0, 0}));
@@ -71,12 +75,14 @@ TEST(Observables, RestartRefusesOtherColumnsAndBrokenLines) {
     TemporaryFolder const folder;
     std::string const file = folder / "observables.csv";
     auto const restart = [&] { return message_of([&] { write_records(file, {}, 100); }); };
-    EXPECT_EQ(restart(), "no table of observables to go on with (" + file + "): put it back, or " + GoOn::way_beside);
+    EXPECT_EQ(restart(), "no table of observables to go on with (" + file + "): put it back, or " +
+                             Continuation::way_beside);
     std::ofstream(file) << "step,time [ps],other\n";
     EXPECT_NE(restart().find("other columns"), std::string::npos) << restart();
     write_records(file, {0});
     std::ofstream(file, std::ios::app) << "not a record\n";
-    EXPECT_EQ(restart(), "not a record of observables (" + file + ", line 3): mend the line, or " + GoOn::way_beside);
+    EXPECT_EQ(restart(), "not a record of observables (" + file + ", line 3): mend the line, or " +
+                             Continuation::way_beside);
     std::string const before = read_text_file(file);
     EXPECT_THROW(write_records(file, {}, 100), InputError);
     EXPECT_EQ(read_text_file(file), before) << "a refused restart changed the file";
@@ -95,7 +101,8 @@ TEST(TextFile, ReplacesWholeAndLeavesNoDraft) {
     EXPECT_EQ(read_text_file(folder / "a.json"), "second");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
     EXPECT_EQ(message_of([&] { write_text_file(folder / "none/a.json", "x"); }),
-              "cannot open for writing (" + (folder / "none/a.json.writing") + "): No such file or directory");
+              "cannot open for writing (" + (folder / "none/a.json.writing") +
+                  "): No such file or directory");
 }
 
 TEST(TextFile, WritesThroughLinksAndPipesInsteadOfReplacingThem) {

@@ -5,9 +5,9 @@
 #include <sstream>
 #include <utility>
 
-#include "math/executor.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
+#include "math/executor.hpp"
 #include "sample_frames.hpp"
 #include "temporary_folder.hpp"
 
@@ -25,12 +25,14 @@ std::vector<std::string> lines_of(std::string const& file, std::string const& re
 /// `chains` chains of `count` beads, one bead a nm further than the other.
 Topology rows_of_beads(std::int64_t chains, std::int64_t count, Frame& frame) {
     Topology topology;
-    for (std::int64_t c = 0; c < chains; ++c) topology.chains.push_back({"chain", c * count, count, true, false});
+    for (std::int64_t c = 0; c < chains; ++c)
+        topology.chains.push_back({"chain", c * count, count, true, false});
     topology.mass.assign(static_cast<std::size_t>(chains * count), 100);
     topology.residue.assign(topology.mass.size(), "GLY");
     for (std::int64_t k = 0; k < chains * count; ++k)
         frame.positions.push_back(
-            {{static_cast<double>(k % count) - 0.5, std::floor(static_cast<double>(k) / static_cast<double>(count)), -1.25}});
+            {{static_cast<double>(k % count) - 0.5,
+              std::floor(static_cast<double>(k) / static_cast<double>(count)), -1.25}});
     return topology;
 }
 
@@ -39,16 +41,21 @@ TEST(Topology, PdbColumnsAreThoseOfTheFormat) {
     Topology topology = sample_topology();
     Frame frame = sample_frame(1, topology);
     frame.positions[0] = {{1.23456, -0.5, 12.3}};
-    EXPECT_EQ(write_topology(folder.path(), topology, frame), (std::vector<std::string>{folder / "topology.pdb", folder / "topology.psf"}));
+    EXPECT_EQ(write_topology(folder.path(), topology, frame),
+              (std::vector<std::string>{folder / "topology.pdb", folder / "topology.psf"}));
     auto const atoms = lines_of(folder / "topology.pdb", "ATOM");
     ASSERT_EQ(atoms.size(), 8U);
-    EXPECT_EQ(atoms[0], "ATOM      1  CA  MET A   1      12.346  -5.000 123.000  1.00  0.00           C");
+    EXPECT_EQ(atoms[0],
+              "ATOM      1  CA  MET A   1      12.346  -5.000 123.000  1.00  0.00           C");
     EXPECT_TRUE(atoms[5].starts_with("ATOM      6  CA  BDY B   1    ")) << atoms[5];
     EXPECT_EQ(lines_of(folder / "topology.pdb", "CRYST1"),
-              (std::vector<std::string>{"CRYST1  100.000  110.000  120.000  90.00  90.00  90.00 P 1           1"}));
+              (std::vector<std::string>{
+                  "CRYST1  100.000  110.000  120.000  90.00  90.00  90.00 P 1           1"}));
     EXPECT_EQ(lines_of(folder / "topology.pdb", "CONECT"),
-              (std::vector<std::string>{"CONECT    1    2", "CONECT    2    1    3", "CONECT    3    2    4", "CONECT    4    3    5",
-                                        "CONECT    5    4", "CONECT    6    7", "CONECT    7    6    8", "CONECT    8    7"}));
+              (std::vector<std::string>{"CONECT    1    2", "CONECT    2    1    3",
+                                        "CONECT    3    2    4", "CONECT    4    3    5",
+                                        "CONECT    5    4", "CONECT    6    7",
+                                        "CONECT    7    6    8", "CONECT    8    7"}));
     topology.box.reset();
     topology.chains[0].ring = true;
     write_topology(folder.path(), topology, frame);
@@ -88,14 +95,16 @@ TEST(Topology, PartsAndThreadsWriteTheSameLines) {
         for (int const threads : {1, 2, 3, 8})
             for (std::ptrdiff_t const most : {5L, 13L, 26L, 9999L}) {
                 if (count > 100 && most < 9999) continue;
-                auto const executor = openmp_is_built() ? openmp_executor(threads) : serial_executor();
+                auto const executor =
+                    openmp_is_built() ? openmp_executor(threads) : serial_executor();
                 TopologyWriter writer(folder.path(), topology);
                 for (auto at = frame.positions.begin(); at != frame.positions.end();) {
                     auto const end = at + std::min(most, frame.positions.end() - at);
                     writer.put({at, end}, *executor);
                     at = end;
                 }
-                EXPECT_TRUE(text_of(writer.finish()) == whole) << threads << " threads, " << most << " sites at a time";
+                EXPECT_TRUE(text_of(writer.finish()) == whole)
+                    << threads << " threads, " << most << " sites at a time";
             }
     }
 }
@@ -122,14 +131,16 @@ TEST(Topology, MetresAreShownAtAScaleThatIsNamed) {
     for (Vec3& x : frame.positions) x = 0.02 * x;
     write_topology(folder.path(), topology, frame);
     EXPECT_EQ(lines_of(folder / "topology.pdb", "ATOM")[1].substr(30, 8), "   1.000");
-    EXPECT_EQ(lines_of(folder / "topology.pdb", "REMARK").back(), "REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR 1E-02 M");
+    EXPECT_EQ(lines_of(folder / "topology.pdb", "REMARK").back(),
+              "REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR 1E-02 M");
 }
 
 TEST(Topology, BeyondThePdbsSerialsMmcifIsWrittenAsWell) {
     TemporaryFolder const folder;
     Frame frame;
     Topology const topology = rows_of_beads(30, 3400, frame);
-    EXPECT_EQ(write_topology(folder.path(), topology, frame), (std::vector<std::string>{folder / "topology.pdb", folder / "topology.cif"}));
+    EXPECT_EQ(write_topology(folder.path(), topology, frame),
+              (std::vector<std::string>{folder / "topology.pdb", folder / "topology.cif"}));
     auto const atoms = lines_of(folder / "topology.pdb", "ATOM");
     ASSERT_EQ(atoms.size(), 102000U);
     EXPECT_EQ(atoms[99998].substr(6, 5), "99999");
@@ -138,7 +149,8 @@ TEST(Topology, BeyondThePdbsSerialsMmcifIsWrittenAsWell) {
     EXPECT_TRUE(lines_of(folder / "topology.pdb", "CONECT").empty());
     auto const rows = lines_of(folder / "topology.cif", "ATOM");
     ASSERT_EQ(rows.size(), 102000U);
-    EXPECT_EQ(rows.back(), "ATOM 102000 C CA . GLY AD 1 3400 ? 33985.000 290.000 -12.500 1.00 0.00 3400 AD 1");
+    EXPECT_EQ(rows.back(),
+              "ATOM 102000 C CA . GLY AD 1 3400 ? 33985.000 290.000 -12.500 1.00 0.00 3400 AD 1");
 }
 
 }  // namespace

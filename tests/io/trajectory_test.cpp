@@ -28,11 +28,14 @@ std::vector<Value> read(std::string const& file, std::string const& name, hid_t 
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     Dataset const data(H5Dopen2(handle.get(), name.c_str(), H5P_DEFAULT));
     Space const space(H5Dget_space(data.get()));
-    std::vector<Value> values(static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get()))));
+    std::vector<Value> values(
+        static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.get()))));
     EXPECT_GE(H5Dread(data.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << name;
     return values;
 }
-std::vector<double> numbers(std::string const& file, std::string const& name) { return read<double>(file, name, H5T_NATIVE_DOUBLE); }
+std::vector<double> numbers(std::string const& file, std::string const& name) {
+    return read<double>(file, name, H5T_NATIVE_DOUBLE);
+}
 std::vector<std::int64_t> steps(std::string const& file) {
     return read<std::int64_t>(file, "particles/trajectory/position/step", H5T_NATIVE_INT64);
 }
@@ -53,7 +56,8 @@ void expect_same_bits(std::vector<double> const& a, std::vector<double> const& b
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
 }
 
-void write_frames(std::string const& file, std::vector<std::int64_t> const& frames, std::optional<std::int64_t> after = {}) {
+void write_frames(std::string const& file, std::vector<std::int64_t> const& frames,
+                  std::optional<std::int64_t> after = {}) {
     Topology const topology = sample_topology();
     auto const trajectory = make_trajectory(file, topology, true, true, after);
     for (std::int64_t const step : frames) trajectory->write(sample_frame(step, topology));
@@ -65,39 +69,54 @@ TEST(Trajectory, ReadsBackBitForBit) {
     std::string const file = folder / "trajectory.h5md";
     write_frames(file, {0, 10, 20});
     Topology const topology = sample_topology();
-    std::vector<Frame> const frames{sample_frame(0, topology), sample_frame(10, topology), sample_frame(20, topology)};
+    std::vector<Frame> const frames{sample_frame(0, topology), sample_frame(10, topology),
+                                    sample_frame(20, topology)};
 
     EXPECT_EQ(steps(file), (std::vector<std::int64_t>{0, 10, 20}));
-    expect_same_bits(numbers(file, "particles/trajectory/position/time"), {frames[0].time, frames[1].time, frames[2].time});
-    expect_same_bits(numbers(file, "particles/trajectory/position/value"), flat(frames, [](Frame const& f) { return f.positions; }));
-    expect_same_bits(numbers(file, "particles/trajectory/velocity/value"), flat(frames, [](Frame const& f) { return f.velocities; }));
-    expect_same_bits(numbers(file, "catena/orientation/value"), flat(frames, [](Frame const& f) { return f.orientations; }));
+    expect_same_bits(numbers(file, "particles/trajectory/position/time"),
+                     {frames[0].time, frames[1].time, frames[2].time});
+    expect_same_bits(numbers(file, "particles/trajectory/position/value"),
+                     flat(frames, [](Frame const& f) { return f.positions; }));
+    expect_same_bits(numbers(file, "particles/trajectory/velocity/value"),
+                     flat(frames, [](Frame const& f) { return f.velocities; }));
+    expect_same_bits(numbers(file, "catena/orientation/value"),
+                     flat(frames, [](Frame const& f) { return f.orientations; }));
     auto const half = [](std::vector<Vector<double, 6>> Frame::* wrenches, std::size_t first) {
         return [wrenches, first](Frame const& frame) {
             std::vector<Vec3> part;
-            for (auto const& w : frame.*wrenches) part.push_back({{w.data[first], w.data[first + 1], w.data[first + 2]}});
+            for (auto const& w : frame.*wrenches)
+                part.push_back({{w.data[first], w.data[first + 1], w.data[first + 2]}});
             return part;
         };
     };
-    expect_same_bits(numbers(file, "catena/joint_torque/value"), flat(frames, half(&Frame::joint_forces, 0)));
-    expect_same_bits(numbers(file, "catena/joint_force/value"), flat(frames, half(&Frame::joint_forces, 3)));
-    expect_same_bits(numbers(file, "catena/tip_torque/value"), flat(frames, half(&Frame::tip_forces, 0)));
-    expect_same_bits(numbers(file, "catena/tip_force/value"), flat(frames, half(&Frame::tip_forces, 3)));
-    EXPECT_EQ((read<std::int64_t>(file, "catena/tip_force/chain", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{0, 1}));
+    expect_same_bits(numbers(file, "catena/joint_torque/value"),
+                     flat(frames, half(&Frame::joint_forces, 0)));
+    expect_same_bits(numbers(file, "catena/joint_force/value"),
+                     flat(frames, half(&Frame::joint_forces, 3)));
+    expect_same_bits(numbers(file, "catena/tip_torque/value"),
+                     flat(frames, half(&Frame::tip_forces, 0)));
+    expect_same_bits(numbers(file, "catena/tip_force/value"),
+                     flat(frames, half(&Frame::tip_forces, 3)));
+    EXPECT_EQ((read<std::int64_t>(file, "catena/tip_force/chain", H5T_NATIVE_INT64)),
+              (std::vector<std::int64_t>{0, 1}));
     expect_same_bits(numbers(file, "particles/trajectory/mass"), topology.mass);
-    expect_same_bits(numbers(file, "particles/trajectory/box/edges/value"), {10, 11, 12, 10, 11, 12, 10, 11, 12});
-    EXPECT_EQ((read<std::int64_t>(file, "catena/orientation/site", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{5, 6, 7}));
+    expect_same_bits(numbers(file, "particles/trajectory/box/edges/value"),
+                     {10, 11, 12, 10, 11, 12, 10, 11, 12});
+    EXPECT_EQ((read<std::int64_t>(file, "catena/orientation/site", H5T_NATIVE_INT64)),
+              (std::vector<std::int64_t>{5, 6, 7}));
 }
 
 TEST(Trajectory, EveryElementHasTheSameStepDataset) {
     TemporaryFolder const folder;
     std::string const file = folder / "trajectory.h5md";
     write_frames(file, {0, 5});
-    for (char const* element : {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation",
-                                "catena/joint_force", "catena/tip_force"}) {
-        EXPECT_EQ((read<std::int64_t>(file, std::string(element) + "/step", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{0, 5}))
+    for (char const* element : {"particles/trajectory/velocity", "particles/trajectory/box/edges",
+                                "catena/orientation", "catena/joint_force", "catena/tip_force"}) {
+        EXPECT_EQ((read<std::int64_t>(file, std::string(element) + "/step", H5T_NATIVE_INT64)),
+                  (std::vector<std::int64_t>{0, 5}))
             << element;
-        EXPECT_EQ(numbers(file, std::string(element) + "/time"), (std::vector<double>{0, 0.5})) << element;
+        EXPECT_EQ(numbers(file, std::string(element) + "/time"), (std::vector<double>{0, 0.5}))
+            << element;
     }
 }
 
@@ -115,8 +134,8 @@ TEST(Trajectory, WithoutBoxVelocitiesAndForcesTheseAreAbsent) {
     trajectory->write(sample_frame(1, topology));
     trajectory->close();
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    for (char const* absent : {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation",
-                               "catena/joint_force", "catena/tip_force"})
+    for (char const* absent : {"particles/trajectory/velocity", "particles/trajectory/box/edges",
+                               "catena/orientation", "catena/joint_force", "catena/tip_force"})
         EXPECT_EQ(H5Lexists(handle.get(), absent, H5P_DEFAULT), 0) << absent;
     EXPECT_EQ(H5Lexists(handle.get(), "particles/trajectory/box", H5P_DEFAULT), 1);
 }
@@ -133,7 +152,8 @@ TEST(Trajectory, UnitsAreTheScenes) {
             Object const owner(H5Oopen(handle.get(), object, H5P_DEFAULT));
             Attribute const attribute(H5Aopen(owner.get(), "unit", H5P_DEFAULT));
             Type const type(H5Aget_type(attribute.get()));
-            EXPECT_GT(H5Tis_variable_str(type.get()), 0) << "MDAnalysis refuses units of fixed length";
+            EXPECT_GT(H5Tis_variable_str(type.get()), 0)
+                << "MDAnalysis refuses units of fixed length";
             EXPECT_EQ(H5Tget_cset(type.get()), H5T_CSET_UTF8);
             char* text = nullptr;
             H5Aread(attribute.get(), type.get(), static_cast<void*>(&text));
@@ -158,7 +178,8 @@ TEST(Trajectory, RestartCutsLaterFramesAndGoesOn) {
     write_frames(file, {0, 10, 20, 30, 35});
     write_frames(file, {30, 40, 50}, 29);
     EXPECT_EQ(steps(file), (std::vector<std::int64_t>{0, 10, 20, 30, 40, 50}));
-    for (char const* name : {"particles/trajectory/position/value", "particles/trajectory/velocity/value", "catena/orientation/value",
+    for (char const* name : {"particles/trajectory/position/value",
+                             "particles/trajectory/velocity/value", "catena/orientation/value",
                              "catena/joint_force/value", "particles/trajectory/position/time"})
         expect_same_bits(numbers(file, name), numbers(undisturbed, name));
 }
@@ -198,7 +219,8 @@ TEST(Trajectory, AKilledRunLeavesAllFlushedFrames) {
     Topology const topology = sample_topology();
     auto const positions = numbers(file, "particles/trajectory/position/value");
     for (std::int64_t const step : {0, 750, 1499, 1501}) {
-        auto const expected = flat({sample_frame(step, topology)}, [](Frame const& f) { return f.positions; });
+        auto const expected =
+            flat({sample_frame(step, topology)}, [](Frame const& f) { return f.positions; });
         auto const from = positions.begin() + static_cast<std::ptrdiff_t>(expected.size()) * step;
         expect_same_bits({from, from + static_cast<std::ptrdiff_t>(expected.size())}, expected);
     }
@@ -217,25 +239,31 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
             }
         });
     };
-    EXPECT_EQ(restart(topology), "no trajectory to go on with (" + file + "): put it back, or " + GoOn::way_beside);
+    EXPECT_EQ(restart(topology), "no trajectory to go on with (" + file + "): put it back, or " +
+                                     Continuation::way_beside);
     std::ofstream(file) << "no HDF5 at all";
     EXPECT_NE(restart(topology).find("cannot be opened"), std::string::npos) << restart(topology);
     File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)).close();
-    EXPECT_NE(restart(topology).find("was not written by Catena"), std::string::npos) << restart(topology);
+    EXPECT_NE(restart(topology).find("was not written by Catena"), std::string::npos)
+        << restart(topology);
     write_frames(file, {0, 10});
-    EXPECT_NE(restart(topology, false).find("holds velocities that this run does not write"), std::string::npos)
+    EXPECT_NE(restart(topology, false).find("holds velocities that this run does not write"),
+              std::string::npos)
         << restart(topology, false);
     Topology larger = topology;
     larger.mass.push_back(1);
     ++larger.chains[1].count;
-    EXPECT_NE(restart(larger).find("has 8 sites but the scene 9"), std::string::npos) << restart(larger);
+    EXPECT_NE(restart(larger).find("has 8 sites but the scene 9"), std::string::npos)
+        << restart(larger);
     Topology open = topology;
     open.box.reset();
-    EXPECT_NE(restart(open).find("holds box edges that this run does not write"), std::string::npos) << restart(open);
+    EXPECT_NE(restart(open).find("holds box edges that this run does not write"), std::string::npos)
+        << restart(open);
     Topology si = topology;
     si.si = true;
     EXPECT_NE(restart(si).find("is in nm"), std::string::npos) << restart(si);
-    EXPECT_EQ(steps(file), (std::vector<std::int64_t>{0, 10})) << "a refused restart changed the file";
+    EXPECT_EQ(steps(file), (std::vector<std::int64_t>{0, 10}))
+        << "a refused restart changed the file";
 }
 
 /// As a frame comes from several ranks: cut where one likes, bodies with their sites.
@@ -272,9 +300,12 @@ TEST(Trajectory, PartsMakeTheWholeFrame) {
     trajectory->end(whole.tip_forces);
     trajectory->close();
     EXPECT_EQ(steps(folder / "parts.h5md"), (std::vector<std::int64_t>{10}));
-    for (char const* const name : {"particles/trajectory/position/value", "particles/trajectory/velocity/value", "catena/orientation/value",
-                                   "catena/joint_force/value", "catena/joint_torque/value", "catena/tip_force/value"})
-        EXPECT_EQ(numbers(folder / "parts.h5md", name), numbers(folder / "whole.h5md", name)) << name;
+    for (char const* const name :
+         {"particles/trajectory/position/value", "particles/trajectory/velocity/value",
+          "catena/orientation/value", "catena/joint_force/value", "catena/joint_torque/value",
+          "catena/tip_force/value"})
+        EXPECT_EQ(numbers(folder / "parts.h5md", name), numbers(folder / "whole.h5md", name))
+            << name;
 }
 
 TEST(Trajectory, RefusesFramesThatDoNotFit) {
@@ -298,7 +329,8 @@ TEST(Trajectory, RefusesFramesThatDoNotFit) {
 TEST(Trajectory, AFolderThatIsMissingIsNamed) {
     TemporaryFolder const folder;
     std::string const file = folder / "missing/trajectory.h5md";
-    std::string const message = message_of([&] { make_trajectory(file, sample_topology(), true, true, {}); });
+    std::string const message =
+        message_of([&] { make_trajectory(file, sample_topology(), true, true, {}); });
     EXPECT_EQ(message, "cannot write the trajectory (" + file + "): No such file or directory");
 }
 

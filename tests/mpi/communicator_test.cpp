@@ -37,7 +37,8 @@ class CommunicatorTest : public ::testing::TestWithParam<Connection> {
     }
     std::vector<std::int64_t> bytes_of_ranks() const {
         std::vector<std::int64_t> bytes;
-        for (int r = 0; r < ranks().size(); ++r) bytes.push_back(static_cast<std::int64_t>(8 * block_of(r).size()));
+        for (int r = 0; r < ranks().size(); ++r)
+            bytes.push_back(static_cast<std::int64_t>(8 * block_of(r).size()));
         return bytes;
     }
     std::vector<std::int64_t> all_blocks() const {
@@ -79,7 +80,8 @@ TEST_P(CommunicatorTest, AllGatherPutsBlocksInRankOrder) {
 TEST_P(CommunicatorTest, AllGatherInPlace) {
     std::vector<std::int64_t> const expected = all_blocks();
     std::vector<std::int64_t> const bytes = bytes_of_ranks();
-    std::int64_t const first = std::accumulate(bytes.begin(), bytes.begin() + ranks().rank(), std::int64_t{0}) / 8;
+    std::int64_t const first =
+        std::accumulate(bytes.begin(), bytes.begin() + ranks().rank(), std::int64_t{0}) / 8;
     std::vector<std::int64_t> all(expected.size(), -1);
     std::vector<std::int64_t> const block = block_of(ranks().rank());
     std::copy(block.begin(), block.end(), all.begin() + first);
@@ -95,12 +97,16 @@ TEST_P(CommunicatorTest, AllGatherOfBlocksOfAnySize) {
         std::vector<std::byte> expected;
         for (int r = 0; r < ranks().size(); ++r) {
             bytes.push_back(draw() % 3 == 0 ? 0 : static_cast<std::int64_t>(draw() % 40));
-            for (std::int64_t k = 0; k < bytes.back(); ++k) expected.push_back(static_cast<std::byte>(draw() % 256));
+            for (std::int64_t k = 0; k < bytes.back(); ++k)
+                expected.push_back(static_cast<std::byte>(draw() % 256));
         }
         auto const own = static_cast<std::size_t>(ranks().rank());
-        auto const first = std::accumulate(bytes.begin(), bytes.begin() + ranks().rank(), std::int64_t{0});
+        auto const first =
+            std::accumulate(bytes.begin(), bytes.begin() + ranks().rank(), std::int64_t{0});
         std::vector<std::byte> all(expected.size());
-        ranks().all_gather(std::span(expected).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(bytes[own])), all, bytes);
+        ranks().all_gather(std::span(expected).subspan(static_cast<std::size_t>(first),
+                                                       static_cast<std::size_t>(bytes[own])),
+                           all, bytes);
         EXPECT_EQ(all, expected);
     }
 }
@@ -115,7 +121,9 @@ TEST_P(CommunicatorTest, GatherFillsRankZeroAlone) {
 
 TEST_P(CommunicatorTest, BlocksOfTheWrongLengthAreRefused) {
     std::vector<std::int64_t> all(all_blocks().size() + 1);
-    EXPECT_THROW(ranks().all_gather(readable(block_of(ranks().rank())), writable(all), bytes_of_ranks()), std::logic_error);
+    EXPECT_THROW(
+        ranks().all_gather(readable(block_of(ranks().rank())), writable(all), bytes_of_ranks()),
+        std::logic_error);
 }
 
 TEST_P(CommunicatorTest, BroadcastComesFromRankZero) {
@@ -133,22 +141,29 @@ TEST_P(CommunicatorTest, ExchangePassesDataOnWithUnequalLengths) {
     std::vector<std::int64_t> const send(static_cast<std::size_t>(3 * rank), rank);
     std::vector<std::int64_t> receive(from < 0 ? 2 : static_cast<std::size_t>(3 * from), -7);
     ranks().exchange(readable(send), to, writable(receive), from);
-    EXPECT_EQ(receive, from < 0 ? std::vector<std::int64_t>(2, -7) : std::vector<std::int64_t>(static_cast<std::size_t>(3 * from), from));
+    EXPECT_EQ(receive, from < 0
+                           ? std::vector<std::int64_t>(2, -7)
+                           : std::vector<std::int64_t>(static_cast<std::size_t>(3 * from), from));
 }
 
 TEST_P(CommunicatorTest, ExchangeAroundARing) {
     int const size = ranks().size(), rank = ranks().rank();
     std::vector<std::int64_t> const send(4, rank);
     std::vector<std::int64_t> receive(4, -1);
-    ranks().exchange(readable(send), (rank + 1) % size, writable(receive), (rank + size - 1) % size);
+    ranks().exchange(readable(send), (rank + 1) % size, writable(receive),
+                     (rank + size - 1) % size);
     EXPECT_EQ(receive, std::vector<std::int64_t>(4, (rank + size - 1) % size));
 }
 
 /// Rank r sends 3 r + s numbers to rank s, but nothing where r + s is a multiple of 4.
-void exchange_with_everybody(std::function<void(std::span<Outgoing const>, std::span<Incoming const>)> const& exchange_all, int rank,
-                             int size) {
-    auto const length = [](int from, int to) { return (from + to) % 4 == 0 ? 0 : static_cast<std::size_t>(3 * from + to); };
-    std::vector<std::vector<std::int64_t>> sent(static_cast<std::size_t>(size)), received(static_cast<std::size_t>(size));
+void exchange_with_everybody(
+    std::function<void(std::span<Outgoing const>, std::span<Incoming const>)> const& exchange_all,
+    int rank, int size) {
+    auto const length = [](int from, int to) {
+        return (from + to) % 4 == 0 ? 0 : static_cast<std::size_t>(3 * from + to);
+    };
+    std::vector<std::vector<std::int64_t>> sent(static_cast<std::size_t>(size)),
+        received(static_cast<std::size_t>(size));
     std::vector<Outgoing> out;
     std::vector<Incoming> in;
     for (int other = 0; other < size; ++other) {
@@ -162,17 +177,20 @@ void exchange_with_everybody(std::function<void(std::span<Outgoing const>, std::
     std::reverse(out.begin(), out.end());  // in any order
     exchange_all(out, in);
     for (int other = 0; other < size; ++other)
-        EXPECT_EQ(received[static_cast<std::size_t>(other)],
-                  std::vector<std::int64_t>(other == rank ? 0 : length(other, rank), 100 * other + rank));
+        EXPECT_EQ(
+            received[static_cast<std::size_t>(other)],
+            std::vector<std::int64_t>(other == rank ? 0 : length(other, rank), 100 * other + rank));
 }
 
 TEST_P(CommunicatorTest, ExchangeOfAllAtOnce) {
-    exchange_with_everybody([&](auto out, auto in) { ranks().exchange_all(out, in); }, ranks().rank(), ranks().size());
+    exchange_with_everybody([&](auto out, auto in) { ranks().exchange_all(out, in); },
+                            ranks().rank(), ranks().size());
     ranks().exchange_all({}, {});
 }
 
 TEST_P(CommunicatorTest, ExchangeOfAllRoundByRound) {
-    exchange_with_everybody([&](auto out, auto in) { ranks().Communicator::exchange_all(out, in); }, ranks().rank(), ranks().size());
+    exchange_with_everybody([&](auto out, auto in) { ranks().Communicator::exchange_all(out, in); },
+                            ranks().rank(), ranks().size());
 }
 
 TEST_P(CommunicatorTest, MaxIsExactAndKnowsNegativesInfinitiesAndNaN) {
@@ -181,7 +199,8 @@ TEST_P(CommunicatorTest, MaxIsExactAndKnowsNegativesInfinitiesAndNaN) {
     EXPECT_EQ(ranks().max(0.1 * ranks().rank()), 0.1 * (ranks().size() - 1));
     EXPECT_EQ(ranks().max(-infinity), -infinity);
     EXPECT_EQ(ranks().max(ranks().rank() == ranks().size() - 1 ? infinity : 3.0), infinity);
-    EXPECT_TRUE(std::isnan(ranks().max(ranks().rank() == ranks().size() - 1 ? std::nan("") : infinity)));
+    EXPECT_TRUE(
+        std::isnan(ranks().max(ranks().rank() == ranks().size() - 1 ? std::nan("") : infinity)));
     EXPECT_TRUE(std::isnan(ranks().max(ranks().rank() == 0 ? -std::nan("") : -infinity)));
 }
 
@@ -204,7 +223,8 @@ TEST_P(CommunicatorTest, TrafficCountsGathersAndExchanges) {
     std::vector<std::int64_t> all(all_blocks().size());
     ranks().all_gather(readable(block_of(ranks().rank())), writable(all), bytes_of_ranks());
     std::vector<double> send(3, 1.0), receive(3);
-    int const inboard = ranks().rank() - 1, outboard = ranks().rank() + 1 < ranks().size() ? ranks().rank() + 1 : -1;
+    int const inboard = ranks().rank() - 1,
+              outboard = ranks().rank() + 1 < ranks().size() ? ranks().rank() + 1 : -1;
     ranks().exchange(readable(send), outboard, writable(receive), inboard);
     Traffic const counted = ranks().traffic() - before;
     if (message_passing_library() == "none") return;
@@ -212,7 +232,8 @@ TEST_P(CommunicatorTest, TrafficCountsGathersAndExchanges) {
     if (GetParam().hosts > 0) {
         std::int64_t const pieces = GetParam().in_pieces ? (8 * std::ssize(all) + 4) / 5 : 1;
         int const hosts = std::min(GetParam().hosts, ranks().size());
-        bool const leads = GetParam().in_turn ? ranks().rank() < hosts : ranks().rank() * hosts % ranks().size() < hosts;
+        bool const leads = GetParam().in_turn ? ranks().rank() < hosts
+                                              : ranks().rank() * hosts % ranks().size() < hosts;
         EXPECT_EQ(ranks().gather_way().leads, leads);
         expected.host_waits = 2 * pieces;
         expected.leader_gathers = leads && hosts > 1 ? pieces : 0;
@@ -226,7 +247,9 @@ TEST_P(CommunicatorTest, SaysHowItGathers) {
     int const hosts = message_passing_library() == "none" ? 0 : GetParam().hosts;
     EXPECT_EQ(way.stages, hosts > 0 ? 2 : 1);
     EXPECT_EQ(way.hosts, hosts > 0 ? std::min(hosts, ranks().size()) : 1);
-    EXPECT_EQ(way.text().find("in two stages") != std::string::npos && way.text().find("by CATENA_GATHER") != std::string::npos, hosts > 0);
+    EXPECT_EQ(way.text().find("in two stages") != std::string::npos &&
+                  way.text().find("by CATENA_GATHER") != std::string::npos,
+              hosts > 0);
 }
 
 /// Gives the cores back.
@@ -250,7 +273,8 @@ class Bound {
 TEST(Cores, RanksBoundToTheSameOnesShareThem) {
     Communicator const& ranks = world();
     CoreSet const own = cores_bound_to();
-    if (ranks.max(own.known ? 0 : 1) > 0) GTEST_SKIP() << "NOT RUN: the system does not tell which cores this process may run on";
+    if (ranks.max(own.known ? 0 : 1) > 0)
+        GTEST_SKIP() << "NOT RUN: the system does not tell which cores this process may run on";
     std::vector<CoreSet> all(static_cast<std::size_t>(ranks.size()));
     ranks.all_gather(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)),
                      std::vector<std::int64_t>(all.size(), sizeof(CoreSet)));
@@ -270,12 +294,15 @@ TEST(Cores, RanksBoundToTheSameOnesShareThem) {
         Bound const bound(core_of(ranks.rank()));
         std::unique_ptr<Communicator> const connection = connected({"bound"});
         EXPECT_TRUE(bound.done());
-        EXPECT_EQ(connection->ranks_on_cores(), sharing([&](int r) { return core_of(r) == core_of(ranks.rank()); }));
+        EXPECT_EQ(connection->ranks_on_cores(),
+                  sharing([&](int r) { return core_of(r) == core_of(ranks.rank()); }));
         EXPECT_EQ(cores_of_rank(*connection), 1);
     }
     std::unique_ptr<Communicator> const connection = connected({"as before"});
-    EXPECT_EQ(connection->ranks_on_cores(), sharing([&](int r) { return all[static_cast<std::size_t>(r)] == own; }));
-    EXPECT_EQ(cores_of_rank(*connection), std::max(1, CPU_COUNT(&own.cores) / connection->ranks_on_cores()));
+    EXPECT_EQ(connection->ranks_on_cores(),
+              sharing([&](int r) { return all[static_cast<std::size_t>(r)] == own; }));
+    EXPECT_EQ(cores_of_rank(*connection),
+              std::max(1, CPU_COUNT(&own.cores) / connection->ranks_on_cores()));
 }
 
 /// Of rank 0, whatever the others' are.
@@ -288,7 +315,10 @@ TEST(FirstRank, ItsVariablesAreEverybodys) {
 
 /// Each set of ranks that fail; words of any length come from the last of them.
 TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
-    auto const words = [](int rank) { return std::string(static_cast<std::size_t>(7 * rank % 3 * 100), static_cast<char>('a' + rank)); };
+    auto const words = [](int rank) {
+        return std::string(static_cast<std::size_t>(7 * rank % 3 * 100),
+                           static_cast<char>('a' + rank));
+    };
     int const ranks = std::min(world().size(), 4);
     for (int failing = 0; failing < 1 << ranks; ++failing) {
         int calls = 0;
@@ -296,7 +326,8 @@ TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
         try {
             on_every_rank(world(), [&] {
                 ++calls;
-                if ((failing >> world().rank() & 1) != 0) throw std::runtime_error(words(world().rank()));
+                if ((failing >> world().rank() & 1) != 0)
+                    throw std::runtime_error(words(world().rank()));
             });
         } catch (SharedError const& error) {
             thrown = error.what();
@@ -309,9 +340,12 @@ TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Connections, CommunicatorTest,
-                         ::testing::Values(Connection{"Whole"}, Connection{"InPieces", true}, Connection{"OneHost", false, 1},
-                                           Connection{"TwoHosts", false, 2}, Connection{"TwoHostsInTurn", false, 2, true},
-                                           Connection{"ThreeHostsInTurnInPieces", true, 3, true}, Connection{"HostsOfOne", false, 6}),
+                         ::testing::Values(Connection{"Whole"}, Connection{"InPieces", true},
+                                           Connection{"OneHost", false, 1},
+                                           Connection{"TwoHosts", false, 2},
+                                           Connection{"TwoHostsInTurn", false, 2, true},
+                                           Connection{"ThreeHostsInTurnInPieces", true, 3, true},
+                                           Connection{"HostsOfOne", false, 6}),
                          [](auto const& test) { return std::string(test.param.name); });
 
 }  // namespace

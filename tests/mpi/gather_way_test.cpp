@@ -19,7 +19,8 @@ TEST(GatherWay, ChoicesByName) {
     EXPECT_EQ(gather_choice("two-stage").ranks_a_host, 0);
     EXPECT_EQ(gather_choice("two-stage:3").stages, Stages::two);
     EXPECT_EQ(gather_choice("two-stage:3").ranks_a_host, 3);
-    for (char const* const wrong : {"two", "two-stage:", "two-stage:0", "two-stage:-1", "two-stage:3x", "one-stage:2"})
+    for (char const* const wrong :
+         {"two", "two-stage:", "two-stage:0", "two-stage:-1", "two-stage:3x", "one-stage:2"})
         EXPECT_THROW(gather_choice(wrong), InputError) << wrong;
 }
 

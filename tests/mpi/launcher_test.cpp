@@ -9,12 +9,14 @@
 namespace catena {
 namespace {
 
-/// Runs each case as if nothing had started the process; its own variables are its own business (one process a case).
+/// Runs each case as if nothing had started the process; its own variables are its own business
+/// (one process a case).
 class LauncherTest : public ::testing::Test {
   protected:
     void SetUp() override {
-        for (char const* name : {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_SIZE", "PMIX_RANK", "MV2_COMM_WORLD_RANK",
-                                 "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS", "SLURM_NTASKS"})
+        for (char const* name :
+             {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_SIZE", "PMIX_RANK",
+              "MV2_COMM_WORLD_RANK", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS", "SLURM_NTASKS"})
             unsetenv(name);
     }
     static void set(char const* name, char const* value) { setenv(name, value, 1); }

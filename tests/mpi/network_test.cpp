@@ -9,7 +9,8 @@ namespace catena::testing {
 namespace {
 
 /// Seconds of a gather on so many ranks and hosts, in so many stages.
-double gather(Network const& network, std::int64_t bytes, std::int64_t ranks, std::int64_t hosts, int stages = 1) {
+double gather(Network const& network, std::int64_t bytes, std::int64_t ranks, std::int64_t hosts,
+              int stages = 1) {
     GatherWay way;
     way.ranks = ranks;
     way.hosts = hosts;

@@ -16,7 +16,10 @@ TEST(NoMpi, SeveralProcessesAreRefused) {
         world_communicator(nullptr, nullptr);
         FAIL() << "two processes without MPI were accepted";
     } catch (InputError const& error) {
-        EXPECT_EQ(std::string(error.what()).rfind("built without MPI (started with OMPI_COMM_WORLD_SIZE=2): ", 0), 0u) << error.what();
+        EXPECT_EQ(std::string(error.what())
+                      .rfind("built without MPI (started with OMPI_COMM_WORLD_SIZE=2): ", 0),
+                  0u)
+            << error.what();
     }
 }
 

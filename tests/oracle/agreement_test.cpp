@@ -10,8 +10,8 @@ namespace {
 
 using oracle::Quad;
 
-/// Every kind of chain in turn: fixed and free base, each mixture of joints, with and without springs; n from 1 to `largest`,
-/// small ones more often.
+/// Every kind of chain in turn: fixed and free base, each mixture of joints, with and without
+/// springs; n from 1 to `largest`, small ones more often.
 Case random_case(std::uint64_t seed, double largest) {
     Random random(1'000'000 + seed);
     RandomChainOptions options;
@@ -56,11 +56,14 @@ class EveryJoint : public ::testing::TestWithParam<RandomJoints> {
     static void compare(int count, std::size_t largest) {
         solvers_agree<S>(
             count, 16, [&](std::uint64_t seed) { return random_case(seed, largest); },
-            [](Case const& c) { inverse_dynamics_agree(c, 16, oracle::condition_estimate(c.chain, c.loads)); });
+            [](Case const& c) {
+                inverse_dynamics_agree(c, 16, oracle::condition_estimate(c.chain, c.loads));
+            });
     }
 };
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryJoint,
-                         ::testing::Values(RandomJoints::universal, RandomJoints::weld, RandomJoints::prismatic, RandomJoints::helical,
+                         ::testing::Values(RandomJoints::universal, RandomJoints::weld,
+                                           RandomJoints::prismatic, RandomJoints::helical,
                                            RandomJoints::planar, RandomJoints::any));
 TEST_P(EveryJoint, SolversAgree) { compare<double>(240, 12); }
 TEST_P(EveryJoint, SolversAgreeIn113Bits) { compare<Quad>(8, 4); }
@@ -69,8 +72,10 @@ TEST_P(EveryJoint, SolversAgreeOnJointsThatDoNotClose) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Case c = random_case(seed, 8);
         Random random(seed);
-        for (std::size_t k = 0; k < c.chain.size(); ++k) c.loads.gaps.emplace_back(random.vector(5), random.vector(5));
-        ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
+        for (std::size_t k = 0; k < c.chain.size(); ++k)
+            c.loads.gaps.emplace_back(random.vector(5), random.vector(5));
+        ASSERT_LE(agreement.add(c.chain, c.loads), 16)
+            << "seed " << seed << ", " << c.chain.size() << " bodies";
     }
 }
 

@@ -1,4 +1,5 @@
-// Point beads on rigid links: the two solvers against each other, Newton's law, and cases done by hand.
+// Point beads on rigid links: the two solvers against each other, Newton's law, and cases done by
+// hand.
 #include <gtest/gtest.h>
 
 #include "tests/oracle/compare.hpp"
@@ -16,7 +17,8 @@ void compare(int count, double largest) {
         auto const s = static_cast<std::uint64_t>(seed);
         auto const n = static_cast<std::size_t>(std::pow(largest + 0.99, Random(s + 77).uniform()));
         ChainSpec const chain = random_bead_chain(s, n, seed % 2 == 0 ? Base::fixed : Base::free);
-        ASSERT_LE(agreement.add(chain, {Random(s).vector(10), random_forces(s + 9, n)}), 16) << "seed " << seed << ", " << n << " beads";
+        ASSERT_LE(agreement.add(chain, {Random(s).vector(10), random_forces(s + 9, n)}), 16)
+            << "seed " << seed << ", " << n << " beads";
     }
     agreement.print();
     EXPECT_GT(agreement.error(), 0.0);
@@ -33,11 +35,17 @@ TEST(Beads, NewtonAndLengths) {
             BeadArrays const& b = chain.beads;
             oracle::Loads const loads{{{1, 2, -9}}, random_forces(n, n)};
             auto const r = oracle::aba<double>(chain, loads);
-            double const allowed = 4 * static_cast<double>(n) * 0x1p-52 * oracle::condition_estimate(chain);
-            auto const along = [&](std::size_t k) { return b.position[k] - (k == 0 ? b.anchor : b.position[k - 1]); };
-            auto const relative = [&](std::vector<Vec3> const& v, std::size_t k) { return k == 0 ? v[0] : v[k] - v[k - 1]; };
+            double const allowed =
+                4 * static_cast<double>(n) * 0x1p-52 * oracle::condition_estimate(chain);
+            auto const along = [&](std::size_t k) {
+                return b.position[k] - (k == 0 ? b.anchor : b.position[k - 1]);
+            };
+            auto const relative = [&](std::vector<Vec3> const& v, std::size_t k) {
+                return k == 0 ? v[0] : v[k] - v[k - 1];
+            };
             for (std::size_t k = 0; k < n; ++k) {
-                Vec3 const applied = loads.bead_forces[k] + b.mass[k] * loads.gravity, inertial = b.mass[k] * r.com_acceleration[k];
+                Vec3 const applied = loads.bead_forces[k] + b.mass[k] * loads.gravity,
+                           inertial = b.mass[k] * r.com_acceleration[k];
                 Vec3 rest = inertial - applied;
                 double size = norm(inertial) + norm(applied);
                 if (k > 0 || base == Base::fixed) {
@@ -46,8 +54,10 @@ TEST(Beads, NewtonAndLengths) {
                     double const speed = dot(relative(b.velocity, k), relative(b.velocity, k));
                     double const pull = dot(along(k), relative(r.com_acceleration, k));
                     double const terms =
-                        speed + norm(along(k)) * (norm(r.com_acceleration[k]) + (k > 0 ? norm(r.com_acceleration[k - 1]) : 0));
-                    EXPECT_LE(std::abs(speed + pull), allowed * terms) << "link " << k + 1 << " of " << n;
+                        speed + norm(along(k)) * (norm(r.com_acceleration[k]) +
+                                                  (k > 0 ? norm(r.com_acceleration[k - 1]) : 0));
+                    EXPECT_LE(std::abs(speed + pull), allowed * terms)
+                        << "link " << k + 1 << " of " << n;
                 } else {
                     EXPECT_EQ(r.tension[0], 0.0);
                 }
@@ -65,7 +75,8 @@ TEST(Beads, NewtonAndLengths) {
         }
 }
 
-ChainSpec beads(Base base, std::vector<Vec3> const& positions, std::vector<Vec3> const& velocities) {
+ChainSpec beads(Base base, std::vector<Vec3> const& positions,
+                std::vector<Vec3> const& velocities) {
     ChainSpec chain;
     chain.base = base;
     for (std::size_t k = 0; k < positions.size(); ++k) {
@@ -80,7 +91,8 @@ ChainSpec beads(Base base, std::vector<Vec3> const& positions, std::vector<Vec3>
 /// Four equal beads hanging at rest: the links carry what hangs below them.
 TEST(Beads, HangingChainCarriesItsWeight) {
     ChainSpec const chain =
-        beads(Base::fixed, {{{0, 0, -1}}, {{0, 0, -2}}, {{0, 0, -3}}, {{0, 0, -4}}}, std::vector<Vec3>(4, Vec3::zero()));
+        beads(Base::fixed, {{{0, 0, -1}}, {{0, 0, -2}}, {{0, 0, -3}}, {{0, 0, -4}}},
+              std::vector<Vec3>(4, Vec3::zero()));
     auto const r = oracle::aba<double>(chain, {{{0, 0, -10}}, {}});
     for (std::size_t k = 0; k < 4; ++k) {
         EXPECT_NEAR(r.tension[k], 2 * 10.0 * static_cast<double>(4 - k), 1e-12);
@@ -93,7 +105,8 @@ TEST(Beads, HangingChainCarriesItsWeight) {
 
 /// Two equal beads circling each other with speed v at distance 1: each is held by m v^2 / (1/2).
 TEST(Beads, DumbbellTurnsUnderTension) {
-    auto const r = oracle::aba<double>(beads(Base::free, {{{0, 0, 0}}, {{1, 0, 0}}}, {{{0, -3, 0}}, {{0, 3, 0}}}), {});
+    auto const r = oracle::aba<double>(
+        beads(Base::free, {{{0, 0, 0}}, {{1, 0, 0}}}, {{{0, -3, 0}}, {{0, 3, 0}}}), {});
     EXPECT_NEAR(r.tension[1], 2 * 9 / 0.5, 1e-13);
     EXPECT_LE(norm(r.com_acceleration[0] - Vec3{{18, 0, 0}}), 1e-13);
     EXPECT_LE(norm(r.com_acceleration[1] + Vec3{{18, 0, 0}}), 1e-13);

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "oracle/oracle.hpp"
 #include "measure/nudged.hpp"
+#include "oracle/oracle.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 
@@ -53,7 +53,8 @@ enum class What { all, accelerations };
 /// The quantities of a result.
 template <class S>
 std::vector<std::vector<Vector<S, 3>>> quantities(oracle::OracleResult<S> const& r, What what) {
-    if (what == What::accelerations) return {r.qdd, r.com_acceleration, r.alpha, {r.base_acceleration}};
+    if (what == What::accelerations)
+        return {r.qdd, r.com_acceleration, r.alpha, {r.base_acceleration}};
     std::vector<Vector<S, 3>> tension;
     for (S const& t : r.tension) tension.push_back({{t, S(0), S(0)}});
     return {r.qdd,
@@ -69,40 +70,49 @@ std::vector<std::vector<Vector<S, 3>>> quantities(oracle::OracleResult<S> const&
             {r.tip_force.force}};
 }
 
-/// Largest difference between two results, each quantity relative to its own largest component; one that the model keeps at
-/// zero (the rotation of a chain of prismatic joints) relative to the largest of all, which is O(1) in these chains' units.
+/// Largest difference between two results, each quantity relative to its own largest component; one
+/// that the model keeps at zero (the rotation of a chain of prismatic joints) relative to the
+/// largest of all, which is O(1) in these chains' units.
 template <class S>
-S difference(oracle::OracleResult<S> const& a, oracle::OracleResult<S> const& b, What what = What::all) {
+S difference(oracle::OracleResult<S> const& a, oracle::OracleResult<S> const& b,
+             What what = What::all) {
     auto const of_a = quantities(a, what), of_b = quantities(b, what);
     S overall(0), worst(0);
     for (auto const& q : of_b) overall = std::max(overall, largest(q));
     for (std::size_t i = 0; i < of_b.size(); ++i) {
         S const own = largest(of_b[i]);
-        S const error = own > S(0) ? S(relative_difference(of_a[i], of_b[i]) * own) : largest(of_a[i]);
-        if (error > S(0)) worst = std::max(worst, S(error / (own > S(1e-6) * overall ? own : overall)));
+        S const error =
+            own > S(0) ? S(relative_difference(of_a[i], of_b[i]) * own) : largest(of_a[i]);
+        if (error > S(0))
+            worst = std::max(worst, S(error / (own > S(1e-6) * overall ? own : overall)));
     }
     return worst;
 }
 
-/// How much a relative change of the inputs grows in the results, measured (three random changes of 1e-8); at least 1.
+/// How much a relative change of the inputs grows in the results, measured (three random changes of
+/// 1e-8); at least 1.
 inline double growth(ChainSpec const& chain, oracle::Loads const& loads) {
     double const size = 1e-8;
     auto const found = oracle::aba<double>(chain, loads);
     double most = 1;
     for (std::uint64_t seed = 1; seed <= 3; ++seed)
-        most = std::max(most, difference(oracle::aba<double>(perturbed(seed, chain, size), loads), found) / size);
+        most = std::max(
+            most,
+            difference(oracle::aba<double>(perturbed(seed, chain, size), loads), found) / size);
     return most;
 }
 
-/// The chain a time h later, correct to h^2 in coordinates and h in velocities with errors even in h where it matters for
-/// central differences: spherical and free joints turn by the rotation vector h (w + h/2 w') about their body's axes.
+/// The chain a time h later, correct to h^2 in coordinates and h in velocities with errors even in
+/// h where it matters for central differences: spherical and free joints turn by the rotation
+/// vector h (w + h/2 w') about their body's axes.
 inline ChainSpec moved(ChainSpec chain, oracle::OracleResult<double> const& a, double h) {
     BodyArrays& b = chain.bodies;
     for (std::size_t k = 0; k < b.size(); ++k) {
         Vec3 const step = h * (b.qd[k] + (0.5 * h) * a.qdd[k]);
         if (b.joint[k] == JointType::spherical || b.joint[k] == JointType::free) {
             auto const& q = b.q[k];
-            Quat const turned = normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
+            Quat const turned =
+                normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
             b.q[k] = {turned.w, turned.x, turned.y, turned.z};
         } else {
             for (int i = 0; i < 2; ++i) b.q[k][static_cast<std::size_t>(i)] += step[i];
@@ -114,30 +124,34 @@ inline ChainSpec moved(ChainSpec chain, oracle::OracleResult<double> const& a, d
     return chain;
 }
 
-/// Collects |aba - dense| over many chains against c n eps growth: both solvers are backward stable, so each gives the exact
-/// answer of a problem changed by a few roundings a body, and growth is what such a change does to the answer. c = 16: a body
-/// passes some tens of rounded operations, which add up like a random walk.
+/// Collects |aba - dense| over many chains against c n eps growth: both solvers are backward
+/// stable, so each gives the exact answer of a problem changed by a few roundings a body, and
+/// growth is what such a change does to the answer. c = 16: a body passes some tens of rounded
+/// operations, which add up like a random walk.
 template <class S>
 class Agreement {
   public:
     /// The difference over its bound with c = 1.
     double add(ChainSpec const& chain, oracle::Loads const& loads) {
-        double const error = static_cast<double>(difference(oracle::aba<S>(chain, loads), oracle::dense<S>(chain, loads)));
+        double const error = static_cast<double>(
+            difference(oracle::aba<S>(chain, loads), oracle::dense<S>(chain, loads)));
         double const unit = static_cast<double>(chain.size()) * static_cast<double>(epsilon<S>());
         double const ratio = error / (unit * growth(chain, loads));
         return take(chain, loads, error, ratio);
     }
-    /// Accelerations alone, over n eps cond: of a chain held more than once, whose perturbed neighbours cannot move at all.
+    /// Accelerations alone, over n eps cond: of a chain held more than once, whose perturbed
+    /// neighbours cannot move at all.
     double add_accelerations(ChainSpec const& chain, oracle::Loads const& loads) {
-        double const error =
-            static_cast<double>(difference(oracle::aba<S>(chain, loads), oracle::dense<S>(chain, loads), What::accelerations));
+        double const error = static_cast<double>(difference(
+            oracle::aba<S>(chain, loads), oracle::dense<S>(chain, loads), What::accelerations));
         double const unit = static_cast<double>(chain.size()) * static_cast<double>(epsilon<S>());
         return take(chain, loads, error, error / (unit * oracle::condition_estimate(chain, loads)));
     }
     double error() const { return error_; }
     void print() const {
-        std::printf("%d chains: largest |aba - dense| %.1e; over n eps growth %.2f, over n eps cond %.2f\n", count_, error_, ratio_,
-                    condition_ratio_);
+        std::printf(
+            "%d chains: largest |aba - dense| %.1e; over n eps growth %.2f, over n eps cond %.2f\n",
+            count_, error_, ratio_, condition_ratio_);
     }
 
   private:
@@ -146,7 +160,8 @@ class Agreement {
         ++count_;
         error_ = std::max(error_, error);
         ratio_ = std::max(ratio_, ratio);
-        condition_ratio_ = std::max(condition_ratio_, error / (unit * oracle::condition_estimate(chain, loads)));
+        condition_ratio_ =
+            std::max(condition_ratio_, error / (unit * oracle::condition_estimate(chain, loads)));
         return ratio;
     }
     int count_ = 0;
@@ -165,8 +180,8 @@ inline void inverse_dynamics_agree(Case const& given, double c, double growth) {
               c * static_cast<double>(given.chain.size()) * 0x1p-52 * growth);
 }
 
-/// Asserts that the solvers agree on the chains of seeds 0 .. count - 1, within Agreement's c; `check` asserts more of each chain. A seed
-/// may be without a chain.
+/// Asserts that the solvers agree on the chains of seeds 0 .. count - 1, within Agreement's c;
+/// `check` asserts more of each chain. A seed may be without a chain.
 template <class S>
 void solvers_agree(
     int count, double c, std::function<std::optional<Case>(std::uint64_t)> const& random_case,
@@ -175,7 +190,8 @@ void solvers_agree(
     for (int seed = 0; seed < count; ++seed) {
         std::optional<Case> const made = random_case(static_cast<std::uint64_t>(seed));
         if (!made) continue;
-        SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(made->chain.size()) + " bodies");
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(made->chain.size()) +
+                     " bodies");
         ASSERT_LE(agreement.add(made->chain, made->loads), c);
         ASSERT_NO_FATAL_FAILURE(check(*made));
     }
@@ -183,11 +199,13 @@ void solvers_agree(
     EXPECT_GT(agreement.error(), 0.0);  // two algorithms, not one
 }
 
-/// Largest second time derivative of some quantities, by their values a time h before, now and a time h later.
-inline double second_derivative(std::vector<double> const& behind, std::vector<double> const& now, std::vector<double> const& ahead,
-                                double h) {
+/// Largest second time derivative of some quantities, by their values a time h before, now and a
+/// time h later.
+inline double second_derivative(std::vector<double> const& behind, std::vector<double> const& now,
+                                std::vector<double> const& ahead, double h) {
     double most = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) most = std::max(most, std::abs(ahead[i] - 2 * now[i] + behind[i]) / (h * h));
+    for (std::size_t i = 0; i < now.size(); ++i)
+        most = std::max(most, std::abs(ahead[i] - 2 * now[i] + behind[i]) / (h * h));
     return most;
 }
 

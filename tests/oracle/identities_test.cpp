@@ -1,4 +1,5 @@
-// Mechanics that any right answer obeys, whatever the algorithm: balances of the whole chain, power, joint forces.
+// Mechanics that any right answer obeys, whatever the algorithm: balances of the whole chain,
+// power, joint forces.
 #include <gtest/gtest.h>
 
 #include "tests/oracle/compare.hpp"
@@ -33,25 +34,36 @@ struct Solved {
 };
 Solved solve(ChainSpec const& chain, Vec3 const& gravity) {
     oracle::Loads const loads{gravity, {}};
-    return {chain, loads, oracle::kinematics<double>(chain, loads), oracle::aba<double>(chain, loads)};
+    return {chain, loads, oracle::kinematics<double>(chain, loads),
+            oracle::aba<double>(chain, loads)};
 }
-/// c n eps cond: the accelerations' own error (agreement_test.cpp) carried into a sum over the bodies.
-double allowed(ChainSpec const& chain) { return 4 * static_cast<double>(chain.size()) * 0x1p-52 * oracle::condition_estimate(chain); }
+/// c n eps cond: the accelerations' own error (agreement_test.cpp) carried into a sum over the
+/// bodies.
+double allowed(ChainSpec const& chain) {
+    return 4 * static_cast<double>(chain.size()) * 0x1p-52 * oracle::condition_estimate(chain);
+}
 
 std::vector<ChainSpec> chains(Base base, bool springs) {
     std::vector<ChainSpec> all;
     std::uint64_t seed = 100;
     for (std::size_t const n : {1, 2, 3, 7, 8, 9, 20})
-        for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed})
-            all.push_back(random_chain(++seed, {.bodies = n, .joints = joints, .base = base, .springs = springs}));
+        for (RandomJoints const joints :
+             {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed})
+            all.push_back(random_chain(
+                ++seed, {.bodies = n, .joints = joints, .base = base, .springs = springs}));
     return all;
 }
 Vec3 const gravity{{1, -2, -9}};
 
 TEST(Identities, AFreeChainAtRestFallsTogether) {
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed}) {
-        Solved const s =
-            solve(random_chain(5, {.bodies = 12, .joints = joints, .base = Base::free, .moving = false, .loaded = false}), gravity);
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed}) {
+        Solved const s = solve(random_chain(5, {.bodies = 12,
+                                                .joints = joints,
+                                                .base = Base::free,
+                                                .moving = false,
+                                                .loaded = false}),
+                               gravity);
         double const tolerance = allowed(s.chain) * norm(gravity);
         EXPECT_LE(norm(s.found.base_acceleration - gravity), tolerance);
         for (std::size_t k = 0; k < 12; ++k) {
@@ -62,7 +74,8 @@ TEST(Identities, AFreeChainAtRestFallsTogether) {
     }
 }
 
-/// Momentum and angular momentum (about the ground's origin) of a free chain change by the external loads alone.
+/// Momentum and angular momentum (about the ground's origin) of a free chain change by the external
+/// loads alone.
 TEST(Identities, AFreeChainObeysTheBalancesOfTheWhole) {
     for (bool const springs : {false, true})
         for (ChainSpec const& chain : chains(Base::free, springs)) {
@@ -72,7 +85,8 @@ TEST(Identities, AFreeChainObeysTheBalancesOfTheWhole) {
                 double const mass = chain.bodies.mass[k];
                 auto const& [torque, push] = chain.bodies.wrench[k];
                 Vec3 const &x = s.at.com_position[k], &w = s.at.omega[k];
-                Vec3 const inertial = mass * s.found.com_acceleration[k], external = push + mass * gravity;
+                Vec3 const inertial = mass * s.found.com_acceleration[k],
+                           external = push + mass * gravity;
                 force.add(inertial);
                 force.add(-external);
                 moment.add(s.inertia(k) * s.found.alpha[k]);
@@ -86,7 +100,8 @@ TEST(Identities, AFreeChainObeysTheBalancesOfTheWhole) {
         }
 }
 
-/// Newton and Euler of each body with the reported joint forces: forces hold the chain together, both at one joint.
+/// Newton and Euler of each body with the reported joint forces: forces hold the chain together,
+/// both at one joint.
 TEST(Identities, JointForcesBalanceEveryBody) {
     for (Base const base : {Base::fixed, Base::free})
         for (ChainSpec const& chain : chains(base, true)) {
@@ -122,10 +137,12 @@ TEST(Identities, ConstraintForcesLeaveTheFreeDirectionsAlone) {
         for (std::size_t k = 0; k < chain.size(); ++k) {
             auto const &total = s.found.joint_force[k], &constraint = s.found.constraint_force[k];
             double const size = norm(total.torque) + norm(total.force);
-            Vec3 const axis = s.at.orientation[k] * chain.bodies.axis[k], given = chain.bodies.torque[k];
+            Vec3 const axis = s.at.orientation[k] * chain.bodies.axis[k],
+                       given = chain.bodies.torque[k];
             if (chain.bodies.joint[k] == JointType::revolute) {
                 EXPECT_LE(std::abs(dot(axis, constraint.torque)), 64 * 0x1p-52 * size);
-                EXPECT_LE(norm(total.torque - constraint.torque - given[0] * axis), 64 * 0x1p-52 * size);
+                EXPECT_LE(norm(total.torque - constraint.torque - given[0] * axis),
+                          64 * 0x1p-52 * size);
             } else {
                 EXPECT_EQ(norm(constraint.torque), 0.0);
                 EXPECT_LE(norm(total.torque - s.at.orientation[k] * given), 64 * 0x1p-52 * size);
@@ -135,7 +152,8 @@ TEST(Identities, ConstraintForcesLeaveTheFreeDirectionsAlone) {
     }
 }
 
-/// dK/dt equals the power of gravity, wrenches and joint torques (no springs here: motion_test.cpp has them).
+/// dK/dt equals the power of gravity, wrenches and joint torques (no springs here: motion_test.cpp
+/// has them).
 TEST(Identities, PowerBalance) {
     for (Base const base : {Base::fixed, Base::free})
         for (ChainSpec const& chain : chains(base, false)) {
@@ -148,13 +166,15 @@ TEST(Identities, PowerBalance) {
                 power.add(dot(s.at.omega[k], s.inertia(k) * s.found.alpha[k]));
                 power.add(-dot(push + mass * gravity, s.at.com_velocity[k]));
                 power.add(-dot(torque, s.at.omega[k]));
-                if (chain.bodies.joint[k] != JointType::free) power.add(-dot(chain.bodies.torque[k], chain.bodies.qd[k]));
+                if (chain.bodies.joint[k] != JointType::free)
+                    power.add(-dot(chain.bodies.torque[k], chain.bodies.qd[k]));
             }
             EXPECT_LE(power.relative(), allowed(chain)) << chain.size();
         }
 }
 
-/// A body swinging about a pin: q'' = - m g d sin q / (J + m d^2), force by Newton; worked out by hand.
+/// A body swinging about a pin: q'' = - m g d sin q / (J + m d^2), force by Newton; worked out by
+/// hand.
 TEST(Identities, CompoundPendulum) {
     ChainSpec chain;
     chain.base = Base::fixed;
@@ -173,7 +193,8 @@ TEST(Identities, CompoundPendulum) {
     b.damping = {{{0.1, 0, 0}}};
     b.rest = {{0.2, 0, 0, 0}};
     Solved const s = solve(chain, {{0, -10, 0}});
-    double const expected = (0.25 - 1.5 * 0.5 - 0.1 * 3 - 2 * 10 * 0.5 * std::sin(0.7)) / (0.4 + 2 * 0.25);
+    double const expected =
+        (0.25 - 1.5 * 0.5 - 0.1 * 3 - 2 * 10 * 0.5 * std::sin(0.7)) / (0.4 + 2 * 0.25);
     EXPECT_NEAR(s.found.qdd[0][0], expected, 1e-14 * 10);
     Vec3 const arm{{0.5 * std::sin(0.7), -0.5 * std::cos(0.7), 0}}, spin{{0, 0, expected}};
     Vec3 const acceleration = cross(spin, arm) - 9.0 * arm;

@@ -1,4 +1,5 @@
-// Conventions against time itself: coordinates moved on by a short time, differences taken, no formula of the oracles used.
+// Conventions against time itself: coordinates moved on by a short time, differences taken, no
+// formula of the oracles used.
 #include <gtest/gtest.h>
 
 #include "tests/oracle/compare.hpp"
@@ -37,22 +38,29 @@ Differences differences(ChainSpec const& chain, OracleResult<double> const& a, d
         return oracle::kinematics<double>(moved(chain, a, by), loads);
     };
     auto const ahead = later(h), behind = later(-h);
-    auto const total = [](Kinematics<double> const& k) { return k.kinetic_energy + k.potential_energy + k.spring_energy; };
-    return {central(ahead.com_position, behind.com_position, h), central(ahead.com_velocity, behind.com_velocity, h),
+    auto const total = [](Kinematics<double> const& k) {
+        return k.kinetic_energy + k.potential_energy + k.spring_energy;
+    };
+    return {central(ahead.com_position, behind.com_position, h),
+            central(ahead.com_velocity, behind.com_velocity, h),
             central(ahead.omega, behind.omega, h), (total(ahead) - total(behind)) / (2 * h),
             (ahead.spring_energy - behind.spring_energy) / (2 * h)};
 }
 
-/// The error of a central difference falls by 4 when the step is halved, if what it tends to is right; else it stays.
+/// The error of a central difference falls by 4 when the step is halved, if what it tends to is
+/// right; else it stays.
 void expect_second_order(double coarse, double fine, char const* what) {
     EXPECT_LT(coarse, 0.02) << what;
-    if (coarse < 1e-12) return;  // a motion without a third derivative (prismatic joints alone) leaves no error to halve
+    if (coarse < 1e-12)
+        return;  // a motion without a third derivative (prismatic joints alone) leaves no error to
+                 // halve
     EXPECT_GT(coarse, 1e-9) << what << ": too small to tell the order";
     EXPECT_NEAR(coarse / fine, 4, 0.3) << what;
 }
 
-RandomJoints const kinds[] = {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed,   RandomJoints::universal,
-                              RandomJoints::weld,     RandomJoints::prismatic, RandomJoints::helical, RandomJoints::any};
+RandomJoints const kinds[] = {
+    RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed,   RandomJoints::universal,
+    RandomJoints::weld,     RandomJoints::prismatic, RandomJoints::helical, RandomJoints::any};
 
 class Motion : public ::testing::TestWithParam<int> {
   protected:
@@ -70,37 +78,43 @@ class Motion : public ::testing::TestWithParam<int> {
         auto const k = oracle::kinematics<double>(c, loads_at_start());
         double const h = 1e-3;
         Differences const coarse = differences(c, a, h), fine = differences(c, a, h / 2);
-        expect_second_order(relative_difference(coarse.velocity, k.com_velocity), relative_difference(fine.velocity, k.com_velocity),
-                            "velocity");
+        expect_second_order(relative_difference(coarse.velocity, k.com_velocity),
+                            relative_difference(fine.velocity, k.com_velocity), "velocity");
         expect_second_order(relative_difference(coarse.acceleration, a.com_acceleration),
-                            relative_difference(fine.acceleration, a.com_acceleration), "acceleration");
+                            relative_difference(fine.acceleration, a.com_acceleration),
+                            "acceleration");
         if (largest(a.alpha) > 1e-9)
-            expect_second_order(relative_difference(coarse.alpha, a.alpha), relative_difference(fine.alpha, a.alpha),
-                                "angular acceleration");
+            expect_second_order(relative_difference(coarse.alpha, a.alpha),
+                                relative_difference(fine.alpha, a.alpha), "angular acceleration");
     }
 };
-INSTANTIATE_TEST_SUITE_P(AllKinds, Motion, ::testing::Range(0, 2 * static_cast<int>(std::size(kinds))));
+INSTANTIATE_TEST_SUITE_P(AllKinds, Motion,
+                         ::testing::Range(0, 2 * static_cast<int>(std::size(kinds))));
 
 TEST_P(Motion, VelocitiesAndAccelerationsAreTimeDerivatives) { expect_time_derivatives(chain()); }
 TEST_P(Motion, WithDrivenJointsToo) { expect_time_derivatives(chain(0.5)); }
 
-/// Springs conserve, whatever their three stiffnesses: the energy changes by the power of dampers, torques and wrenches.
+/// Springs conserve, whatever their three stiffnesses: the energy changes by the power of dampers,
+/// torques and wrenches.
 TEST_P(Motion, EnergyChangesByThePowerOfWhatIsNotConservative) {
     ChainSpec const c = chain();
     auto const a = oracle::aba<double>(c, loads_at_start());
     auto const k = oracle::kinematics<double>(c, loads_at_start());
     double power = 0;
     for (std::size_t i = 0; i < c.size(); ++i) {
-        power += dot(c.bodies.wrench[i].first, k.omega[i]) + dot(c.bodies.wrench[i].second, k.com_velocity[i]);
+        power += dot(c.bodies.wrench[i].first, k.omega[i]) +
+                 dot(c.bodies.wrench[i].second, k.com_velocity[i]);
         if (c.bodies.joint[i] == JointType::free) continue;
         Vec3 const& qd = c.bodies.qd[i];
-        for (int j = 0; j < 3; ++j) power += (c.bodies.torque[i][j] - c.bodies.damping[i][j] * qd[j]) * qd[j];
+        for (int j = 0; j < 3; ++j)
+            power += (c.bodies.torque[i][j] - c.bodies.damping[i][j] * qd[j]) * qd[j];
     }
     double const h = 1e-3;
     Differences const coarse = differences(c, a, h), fine = differences(c, a, h / 2);
     double const scale = std::abs(power) + std::abs(coarse.spring);
     EXPECT_GT(std::abs(coarse.spring), 1e-3 * scale);  // the springs take part
-    expect_second_order(std::abs(coarse.energy - power) / scale, std::abs(fine.energy - power) / scale, "power");
+    expect_second_order(std::abs(coarse.energy - power) / scale,
+                        std::abs(fine.energy - power) / scale, "power");
 }
 
 /// Poses by the definition of each joint's motion X(q) in scene.hpp, written out with quaternions.
@@ -115,16 +129,20 @@ TEST_P(Motion, PosesFollowTheDefinition) {
         auto const& q = b.q[i];
         Quat turn = Quat::identity();
         Vec3 shift = Vec3::zero();
-        if (type == JointType::free || type == JointType::spherical) turn = {q[0], q[1], q[2], q[3]};
-        if (type == JointType::revolute || type == JointType::helical) turn = from_axis_angle(b.axis[i], q[0]);
-        if (type == JointType::universal) turn = from_axis_angle(b.first_axis[i], q[0]) * from_axis_angle(b.axis[i], q[1]);
+        if (type == JointType::free || type == JointType::spherical)
+            turn = {q[0], q[1], q[2], q[3]};
+        if (type == JointType::revolute || type == JointType::helical)
+            turn = from_axis_angle(b.axis[i], q[0]);
+        if (type == JointType::universal)
+            turn = from_axis_angle(b.first_axis[i], q[0]) * from_axis_angle(b.axis[i], q[1]);
         if (type == JointType::prismatic) shift = q[0] * b.axis[i];
         if (type == JointType::helical) shift = (b.pitch[i] * q[0]) * b.axis[i];
         bool const free = type == JointType::free;
         x = free ? b.free_position : x + r * (b.translation[i] + b.rotation[i] * shift);
         r = free ? to_matrix(turn) : r * (b.rotation[i] * to_matrix(turn));
         EXPECT_LE(norm(k.origin[i] - x), 64 * 0x1p-52);
-        for (int j = 0; j < 3; ++j) EXPECT_LE(norm(k.orientation[i].column(j) - r.column(j)), 64 * 0x1p-52);
+        for (int j = 0; j < 3; ++j)
+            EXPECT_LE(norm(k.orientation[i].column(j) - r.column(j)), 64 * 0x1p-52);
     }
 }
 
@@ -140,22 +158,28 @@ TEST_P(Motion, ADriveIsTheEffortItNeeds) {
         JointType const type = c.bodies.joint[i];
         Vec3 &u = pushed.bodies.qd[i], &effort = pushed.bodies.torque[i], q = Vec3::zero();
         for (int j = 0; j < (type == JointType::universal ? 2 : 1); ++j) {
-            Course const& course = d.course[static_cast<std::size_t>(j)];
-            double const turns = 2 * std::acos(-1.0) * course.frequency, phase = turns * start + course.phase;
+            PrescribedMotion const& course = d.course[static_cast<std::size_t>(j)];
+            double const turns = 2 * std::acos(-1.0) * course.frequency,
+                         phase = turns * start + course.phase;
             q[j] = course.offset + course.rate * start + course.amplitude * std::sin(phase);
             u[j] = course.rate + course.amplitude * turns * std::cos(phase);
-            EXPECT_NEAR(driven.qdd[i][j], -course.amplitude * turns * turns * std::sin(phase), 1e-12 * (1 + turns * turns));
+            EXPECT_NEAR(driven.qdd[i][j], -course.amplitude * turns * turns * std::sin(phase),
+                        1e-12 * (1 + turns * turns));
         }
         pushed.bodies.q[i] = {q[0], q[1], 0, 0};
         pushed.bodies.stiffness[i] = pushed.bodies.damping[i] = Vec3::zero();
         auto const& wrench = driven.constraint_force[i];
-        Vec3 const torque = transposed_times(k.orientation[i], wrench.torque), force = transposed_times(k.orientation[i], wrench.force);
+        Vec3 const torque = transposed_times(k.orientation[i], wrench.torque),
+                   force = transposed_times(k.orientation[i], wrench.force);
         Vec3 const axis = c.bodies.axis[i];
         if (type == JointType::prismatic) effort[0] = dot(axis, force);
         if (type == JointType::revolute) effort[0] = dot(axis, torque);
-        if (type == JointType::helical) effort[0] = dot(axis, torque) + c.bodies.pitch[i] * dot(axis, force);
+        if (type == JointType::helical)
+            effort[0] = dot(axis, torque) + c.bodies.pitch[i] * dot(axis, force);
         if (type == JointType::universal)  // the first axis in B: turned back about the second
-            effort = {{dot(to_matrix(from_axis_angle(axis, -q[1])) * c.bodies.first_axis[i], torque), dot(axis, torque), 0}};
+            effort = {
+                {dot(to_matrix(from_axis_angle(axis, -q[1])) * c.bodies.first_axis[i], torque),
+                 dot(axis, torque), 0}};
     }
     auto const found = oracle::dense<double>(pushed, loads_at_start());
     double const allowed = 64 * 5 * 0x1p-52 * growth(pushed, loads_at_start());
@@ -177,7 +201,9 @@ TEST_P(Motion, ForcesOnCarriedBeads) {
             c.bodies.carried.position.push_back(at);
             with_beads.bead_forces.push_back(force);
             auto& wrench = pushed.bodies.wrench[body];
-            wrench.first = wrench.first + cross(k.origin[body] + k.orientation[body] * at - k.com_position[body], force);
+            wrench.first =
+                wrench.first +
+                cross(k.origin[body] + k.orientation[body] * at - k.com_position[body], force);
             wrench.second = wrench.second + force;
         }
     auto const a = oracle::aba<double>(c, with_beads), b = oracle::aba<double>(pushed, loads);

@@ -21,7 +21,8 @@ TEST(Shrink, FindsTheOneBodyThatMatters) {
         double const culprit = chain.bodies.mass[7];
         auto const holds = [&](ChainSpec const& c) {
             oracle::aba<double>(c, {});  // each candidate is a chain that the oracles take
-            return std::find(c.bodies.mass.begin(), c.bodies.mass.end(), culprit) == c.bodies.mass.end();
+            return std::find(c.bodies.mass.begin(), c.bodies.mass.end(), culprit) ==
+                   c.bodies.mass.end();
         };
         Shrunk const found = shrink(chain, holds);
         ASSERT_EQ(found.chain.size(), 1U) << found.description;
@@ -32,12 +33,16 @@ TEST(Shrink, FindsTheOneBodyThatMatters) {
     }
 }
 
-/// Dropping bodies leaves a chain of the same kind: what is left of beads and linked bodies solves too.
+/// Dropping bodies leaves a chain of the same kind: what is left of beads and linked bodies solves
+/// too.
 TEST(Shrink, BeadsAndLinkedBodies) {
     for (Base const base : {Base::fixed, Base::free})
         for (Tip const tip : {Tip::free, Tip::jointed})
-            for (ChainSpec const& chain : {random_bead_chain(3, 9, base, tip), random_linked_chain(3, 9, base, tip)}) {
-                auto const holds = [](ChainSpec const& c) { return oracle::dense<double>(c, {}).com_acceleration.size() != c.size(); };
+            for (ChainSpec const& chain :
+                 {random_bead_chain(3, 9, base, tip), random_linked_chain(3, 9, base, tip)}) {
+                auto const holds = [](ChainSpec const& c) {
+                    return oracle::dense<double>(c, {}).com_acceleration.size() != c.size();
+                };
                 EXPECT_EQ(shrink(chain, holds).chain.size(), 1U);
             }
 }

@@ -25,10 +25,12 @@ chains:
 forces: {gravity: [0, 0, -9.81]}
 )";
 
-/// Steps of Runge-Kutta; the work is that of all driven joints, summed by Simpson's rule over pairs of steps.
+/// Steps of Runge-Kutta; the work is that of all driven joints, summed by Simpson's rule over pairs
+/// of steps.
 class Driven {
   public:
-    explicit Driven(int steps) : step_(1.0 / steps), steps_(steps), integrator_(make_runge_kutta4(system_)) {}
+    explicit Driven(int steps)
+        : step_(1.0 / steps), steps_(steps), integrator_(make_runge_kutta4(system_)) {}
     struct Result {
         double work, gain;
     };
@@ -50,7 +52,8 @@ class Driven {
         for (EnergyTerm const& term : system_.potential_energy()) e += term.value;
         return e;
     }
-    /// Constraint torques of driven joints (they turn, none slides) along the relative turning; what holds a joint does no work.
+    /// Constraint torques of driven joints (they turn, none slides) along the relative turning;
+    /// what holds a joint does no work.
     double power() {
         system_.evaluate();
         auto const force = system_.accelerations().joint_force;
@@ -74,9 +77,12 @@ class Driven {
 
 TEST(Drive, WorkIsTheEnergysRise) {
     Driven::Result const coarse = Driven(2000).run(), fine = Driven(8000).run();
-    double const error = std::abs(coarse.work - coarse.gain), least = std::abs(fine.work - fine.gain);
-    fmt::print("work {:.12f} J, energy's rise {:.12f} J; difference {:.1e} J in 2000 steps, {:.1e} J in 8000\n", fine.work, fine.gain,
-               error, least);
+    double const error = std::abs(coarse.work - coarse.gain),
+                 least = std::abs(fine.work - fine.gain);
+    fmt::print(
+        "work {:.12f} J, energy's rise {:.12f} J; difference {:.1e} J in 2000 steps, {:.1e} J in "
+        "8000\n",
+        fine.work, fine.gain, error, least);
     EXPECT_GT(error / least, 64.0);  // fourth order: 256
     EXPECT_LE(least, 1e-8 * std::abs(fine.gain));
 }

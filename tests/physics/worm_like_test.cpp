@@ -1,4 +1,5 @@
-// The generator `worm_like` against the discrete worm-like chain (src/dca/README.md, "Statistics of constrained chains").
+// The generator `worm_like` against the discrete worm-like chain (src/dca/README.md, "Statistics of
+// constrained chains").
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +20,8 @@ struct Mean {
 
 double square_of(int links, double length, double cosine) {
     return length * length *
-           (links * (1 + cosine) / (1 - cosine) - 2 * cosine * (1 - std::pow(cosine, links)) / ((1 - cosine) * (1 - cosine)));
+           (links * (1 + cosine) / (1 - cosine) -
+            2 * cosine * (1 - std::pow(cosine, links)) / ((1 - cosine) * (1 - cosine)));
 }
 
 class WormLike : public ::testing::TestWithParam<double> {};
@@ -30,7 +32,8 @@ TEST_P(WormLike, EndToEndDistanceIsThatOfTheDiscreteChain) {
     double constexpr length = 1;
     Mean square, cosine;
     for (int seed = 1; seed <= seeds; ++seed) {
-        Scene const scene = parse_scene(fmt::format("units: si\nchains: [{{name: a, generator: {{worm_like: {{bodies: {}, persistence: {}, "
+        Scene const scene = parse_scene(fmt::format("units: si\nchains: [{{name: a, generator: "
+                                                    "{{worm_like: {{bodies: {}, persistence: {}, "
                                                     "length: {}, seed: {}}}}}}}]\n",
                                                     beads, GetParam(), length, seed),
                                         "scene.yaml");
@@ -38,7 +41,8 @@ TEST_P(WormLike, EndToEndDistanceIsThatOfTheDiscreteChain) {
         Vec3 const across = x.back() - x.front();
         square.add(dot(across, across));
         Mean angles;
-        for (std::size_t k = 1; k + 1 < x.size(); ++k) angles.add(dot(x[k + 1] - x[k], x[k] - x[k - 1]) / (length * length));
+        for (std::size_t k = 1; k + 1 < x.size(); ++k)
+            angles.add(dot(x[k + 1] - x[k], x[k] - x[k - 1]) / (length * length));
         cosine.add(angles.value());
     }
     double const expected = square_of(beads - 1, length, cosine.value());
@@ -46,9 +50,11 @@ TEST_P(WormLike, EndToEndDistanceIsThatOfTheDiscreteChain) {
     double const error = std::hypot(square.error(), slope);
     double const exact = std::exp(-length / GetParam());
     fmt::print(
-        "persistence {}: <R^2> = {:.4f} +- {:.4f}, discrete chain {:.4f} ({:+.2f} standard errors); <cos> = {:.6f} +- {:.6f}, asked "
+        "persistence {}: <R^2> = {:.4f} +- {:.4f}, discrete chain {:.4f} ({:+.2f} standard "
+        "errors); <cos> = {:.6f} +- {:.6f}, asked "
         "{:.6f}\n",
-        GetParam(), square.value(), error, expected, (square.value() - expected) / error, cosine.value(), cosine.error(), exact);
+        GetParam(), square.value(), error, expected, (square.value() - expected) / error,
+        cosine.value(), cosine.error(), exact);
     EXPECT_LE(std::abs(square.value() - expected), 3 * error);
     EXPECT_LE(std::abs(cosine.value() - exact), 3 * cosine.error());
     EXPECT_LE(error, 0.01 * expected);

@@ -18,7 +18,10 @@ class Cache : public ::testing::Test {
         if (char const* const before = std::getenv("XDG_CACHE_HOME")) before_ = before;
         ::setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
     }
-    void TearDown() override { before_.empty() ? ::unsetenv("XDG_CACHE_HOME") : ::setenv("XDG_CACHE_HOME", before_.c_str(), 1); }
+    void TearDown() override {
+        before_.empty() ? ::unsetenv("XDG_CACHE_HOME")
+                        : ::setenv("XDG_CACHE_HOME", before_.c_str(), 1);
+    }
     /// A calibration with something in it.
     plan::Calibration learned() {
         plan::Planner planner(machine_, {}, 1024);
@@ -60,7 +63,8 @@ TEST_F(Cache, DamageIsMeasuredAnew) {
     negative["phases"].begin()->at(0).at(1).at(0) = -1;
     short_one["levels"].begin()->at(0).at(1).erase(0);
     empty.erase("phases");
-    for (std::string const& text : {std::string("{"), std::string(""), negative.dump(), short_one.dump(), empty.dump()}) {
+    for (std::string const& text :
+         {std::string("{"), std::string(""), negative.dump(), short_one.dump(), empty.dump()}) {
         std::ofstream(file) << text;
         EXPECT_EQ(plan::read_cache(machine_).points(), 0U) << text;
     }

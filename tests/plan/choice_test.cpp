@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "cuda/space/memory.hpp"
-#include "tests/plan/told_machine.hpp"
 #include "reader/load_scene.hpp"
+#include "tests/plan/told_machine.hpp"
 
 namespace catena::test {
 namespace {
@@ -18,17 +18,21 @@ TEST(Choice, PredictionsAreTheMachinesTimes) {
     for (std::int64_t const bodies : {1, 5, 16, 37, 1000, 16384, 100000, 5000000}) {
         plan::Machine const machine = told_machine(true);
         plan::Planner planner(machine, {}, 65536);
-        for (plan::Prediction const& p : planner.predict({{{scene::RandomJoint::revolute}, bodies, {}}})) {
+        for (plan::Prediction const& p :
+             planner.predict({{{scene::RandomJoint::revolute}, bodies, {}}})) {
             double const told = machine.measure({}, bodies, p.arrangement)[plan::evaluation];
-            // Between points the curve is straight in logarithms, the formula in numbers: 11 % at most over a factor of 4.
-            EXPECT_NEAR(p.seconds[plan::evaluation], told, 0.11 * told) << bodies << " " << p.arrangement.name();
+            // Between points the curve is straight in logarithms, the formula in numbers: 11 % at
+            // most over a factor of 4.
+            EXPECT_NEAR(p.seconds[plan::evaluation], told, 0.11 * told)
+                << bodies << " " << p.arrangement.name();
         }
     }
 }
 
 TEST(Choice, TheQuickestThatLeavesTheBits) {
     for (auto const& [bodies, with_gpu, without] :
-         {std::tuple<int, Arrangement, Arrangement>{10, {Backend::segments, 1}, {Backend::segments, 1}},
+         {std::tuple<int, Arrangement, Arrangement>{
+              10, {Backend::segments, 1}, {Backend::segments, 1}},
           {60, {Backend::openmp, 4}, {Backend::openmp, 4}},
           {10000, {Backend::cuda, 4}, {Backend::openmp, 4}}}) {
         EXPECT_EQ(choose(told_scene(bodies), told_machine(true)).arrangement, with_gpu) << bodies;
@@ -41,7 +45,8 @@ TEST(Choice, TheQuickestThatLeavesTheBits) {
 TEST(Choice, AnotherTreeIsNeverChosenUnasked) {
     plan::Machine machine = told_machine(false);
     machine.measure = [](plan::Family const&, std::int64_t bodies, Arrangement const& on) {
-        double const t = (on.backend == Backend::serial ? 1e-9 : 1e-6) * static_cast<double>(bodies);
+        double const t =
+            (on.backend == Backend::serial ? 1e-9 : 1e-6) * static_cast<double>(bodies);
         return plan::PhaseSeconds{t, t, t, t, t};
     };
     EXPECT_EQ(choose(told_scene(1000), machine).arrangement, (Arrangement{Backend::segments, 1}));
@@ -52,24 +57,28 @@ TEST(Choice, WhatDoesNotFitOnTheGpuStaysOnTheHost) {
     machine.free_gpu_memory = [] { return 9e6; };
     plan::Choice const choice = choose(told_scene(10000), machine);
     EXPECT_EQ(choice.arrangement, (Arrangement{Backend::openmp, 4}));
-    EXPECT_NE(choice.reason.find("GiB of GPU memory are needed"), std::string::npos) << choice.reason;
+    EXPECT_NE(choice.reason.find("GiB of GPU memory are needed"), std::string::npos)
+        << choice.reason;
 }
 
 TEST(Choice, ChainsGoWhereOpenMmTakesTheGpu) {
     Arrangement const core{Backend::segments, 1}, gpu{Backend::cuda, 4};
     plan::Machine const machine = told_machine(true);
-    Scene scene = parse_scene("chains: [{name: a, generator: {freely_jointed: {beads: 10, length: 1}}}]", "told.yaml");
+    Scene scene = parse_scene(
+        "chains: [{name: a, generator: {freely_jointed: {beads: 10, length: 1}}}]", "told.yaml");
     EXPECT_EQ(choose(scene, machine).arrangement, core);  // quicker
     scene.forces.openmm.emplace();
     EXPECT_EQ(choose(scene, machine).arrangement, gpu);
-    EXPECT_EQ(choose(scene, machine, 2).arrangement, core) << "OpenMM of several ranks computes on processors";
+    EXPECT_EQ(choose(scene, machine, 2).arrangement, core)
+        << "OpenMM of several ranks computes on processors";
     plan::Machine without = machine, small = machine;
     without.openmm_on_gpu = [] { return false; };
     EXPECT_EQ(choose(scene, without).arrangement, core);
     small.free_gpu_memory = [] { return 1e6; };
     EXPECT_EQ(choose(scene, small).arrangement, core);
     plan::Machine broken = machine;
-    broken.measure = [told = machine.measure](plan::Family const& family, std::int64_t bodies, Arrangement const& on) {
+    broken.measure = [told = machine.measure](plan::Family const& family, std::int64_t bodies,
+                                              Arrangement const& on) {
         if (on.backend == Backend::cuda) throw std::runtime_error("no kernels");
         return told(family, bodies, on);
     };
@@ -84,8 +93,9 @@ TEST(Choice, ChainsGoWhereOpenMmTakesTheGpu) {
     EXPECT_EQ(choose(bodies, machine).arrangement, core);
 }
 
-// Told: 1000 beads take 1 ms on one core, 270 us on four. Forces of a microsecond a bead hide that gain where there are many more beads:
-// of 10000 beads in chains of 10 a step takes 10 ms of forces and more.
+// Told: 1000 beads take 1 ms on one core, 270 us on four. Forces of a microsecond a bead hide that
+// gain where there are many more beads: of 10000 beads in chains of 10 a step takes 10 ms of forces
+// and more.
 TEST(Choice, ThreadsAreNotTakenForAGainThatIsSmallBesideTheForces) {
     plan::Machine machine = told_machine(false);
     machine.openmm_on_gpu = [] { return false; };
@@ -93,14 +103,18 @@ TEST(Choice, ThreadsAreNotTakenForAGainThatIsSmallBesideTheForces) {
         double const t = 2e-8 * static_cast<double>(bodies) / on.threads;
         return plan::PhaseSeconds{0.2 * t, 0.5 * t, 0.3 * t, t, t};
     };
-    Scene scene = parse_scene("chains: [{name: a, count: 10, generator: {freely_jointed: {beads: 1000, length: 1}}}]", "told.yaml");
+    Scene scene = parse_scene(
+        "chains: [{name: a, count: 10, generator: {freely_jointed: {beads: 1000, length: 1}}}]",
+        "told.yaml");
     EXPECT_EQ(choose(scene, machine).arrangement, (Arrangement{Backend::openmp, 4}));
     scene.forces.openmm.emplace();
     plan::Choice const choice = choose(scene, machine);
     EXPECT_EQ(choice.arrangement, (Arrangement{Backend::segments, 1}));
-    EXPECT_NE(choice.reason.find("beside forces of 10 ms and more"), std::string::npos) << choice.reason;
+    EXPECT_NE(choice.reason.find("beside forces of 10 ms and more"), std::string::npos)
+        << choice.reason;
     machine.openmm_on_gpu = [] { return true; };
-    EXPECT_EQ(choose(scene, machine).arrangement, (Arrangement{Backend::openmp, 4})) << "forces on a GPU are not so slow";
+    EXPECT_EQ(choose(scene, machine).arrangement, (Arrangement{Backend::openmp, 4}))
+        << "forces on a GPU are not so slow";
 }
 
 TEST(Choice, CoresThatOtherProgramsUseGetNoThreads) {
@@ -110,12 +124,14 @@ TEST(Choice, CoresThatOtherProgramsUseGetNoThreads) {
     machine.spare = 3;
     plan::Choice const some = choose(told_scene(10000), machine);
     EXPECT_EQ(some.arrangement, (Arrangement{Backend::openmp, 2}));
-    EXPECT_NE(some.reason.find("other programs leave 3 of 4 cores"), std::string::npos) << some.reason;
+    EXPECT_NE(some.reason.find("other programs leave 3 of 4 cores"), std::string::npos)
+        << some.reason;
     machine.spare = 1;
     EXPECT_EQ(choose(told_scene(10000), machine).arrangement, (Arrangement{Backend::segments, 1}));
 }
 
-/// As on another rank's GPU, or where OpenMM is there as well: known when everything is about to be made.
+/// As on another rank's GPU, or where OpenMM is there as well: known when everything is about to be
+/// made.
 TEST(Choice, AGpuThatTurnsOutTooSmallIsLeftOut) {
     std::vector<Backend> tried;
     std::string reason;
@@ -127,17 +143,20 @@ TEST(Choice, AGpuThatTurnsOutTooSmallIsLeftOut) {
     auto const action = [&](Scene const& scene, plan::Choice const& choice) {
         tried.push_back(scene.solver.backend);
         reason = choice.reason;
-        if (scene.solver.backend == Backend::cuda) throw cuda::TooLittleMemory("9 GiB are needed, rank 3", "solver.backend", "use others");
+        if (scene.solver.backend == Backend::cuda)
+            throw cuda::TooLittleMemory("9 GiB are needed, rank 3", "solver.backend", "use others");
     };
     plan::with_choice(told_scene(10000), chooser, action);
     EXPECT_EQ(tried, (std::vector<Backend>{Backend::cuda, Backend::openmp}));
     EXPECT_NE(reason.find("; 9 GiB are needed, rank 3"), std::string::npos) << reason;
-    EXPECT_THROW(plan::with_choice(told_scene(10000, "{backend: cuda}"), chooser, action), InputError);  // asked for
+    EXPECT_THROW(plan::with_choice(told_scene(10000, "{backend: cuda}"), chooser, action),
+                 InputError);  // asked for
 }
 
 TEST(Choice, AGpuThatFailsIsLeftOut) {
     plan::Machine machine = told_machine(true);
-    machine.measure = [told = machine.measure](plan::Family const& family, std::int64_t bodies, Arrangement const& on) {
+    machine.measure = [told = machine.measure](plan::Family const& family, std::int64_t bodies,
+                                               Arrangement const& on) {
         if (on.backend == Backend::cuda) throw std::runtime_error("no kernels");
         return told(family, bodies, on);
     };
@@ -148,12 +167,15 @@ TEST(Choice, AGpuThatFailsIsLeftOut) {
 
 TEST(Choice, NothingIsMeasuredWhereNothingIsOpen) {
     plan::Machine machine = told_machine(false);
-    machine.measure = [](auto const&, auto, auto const&) -> plan::PhaseSeconds { throw std::logic_error("measured"); };
+    machine.measure = [](auto const&, auto, auto const&) -> plan::PhaseSeconds {
+        throw std::logic_error("measured");
+    };
     EXPECT_EQ(choose(told_scene(1000, "{backend: serial}"), machine).reason, "asked for");
     machine.alike.resize(1);
     EXPECT_EQ(choose(told_scene(1000), machine).arrangement, (Arrangement{Backend::segments, 1}));
     auto const alone = serial_communicator();
-    EXPECT_EQ(plan::choose(told_scene(10, "{backend: openmp, threads: 3}"), Axes::joint, *alone).arrangement,
+    EXPECT_EQ(plan::choose(told_scene(10, "{backend: openmp, threads: 3}"), Axes::joint, *alone)
+                  .arrangement,
               (Arrangement{Backend::openmp, 3}));
 }
 
@@ -179,8 +201,11 @@ TEST(Choice, SharesAreTheGroupsOfTheScene) {
         "{name: d, base: fixed, generator: {random: {joint: helical, bodies: 7, seed: 1}}}]",
         "told.yaml");
     std::map<std::string, std::int64_t> found;
-    for (plan::Share const& share : plan::shares_of(scene, Axes::joint, 1)) found[share.family.name()] = share.bodies;
-    EXPECT_EQ(found, (std::map<std::string, std::int64_t>{{"link", 150}, {"planar", 33}, {"link with bodies", 10}, {"prismatic", 7}}));
+    for (plan::Share const& share : plan::shares_of(scene, Axes::joint, 1))
+        found[share.family.name()] = share.bodies;
+    EXPECT_EQ(found,
+              (std::map<std::string, std::int64_t>{
+                  {"link", 150}, {"planar", 33}, {"link with bodies", 10}, {"prismatic", 7}}));
     auto const alone = serial_communicator();
     for (plan::Family const& family : plan::all_families()) {  // a sample is what it stands for
         Scene const sample = plan::sample(family, 20);

@@ -1,4 +1,5 @@
-// The memory that `plan` names beside what a run's arrays take: operators new and delete count here.
+// The memory that `plan` names beside what a run's arrays take: operators new and delete count
+// here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -7,8 +8,8 @@
 #include <cstdlib>
 #include <new>
 
-#include "plan/describe.hpp"
 #include "integrate/stepper.hpp"
+#include "plan/describe.hpp"
 #include "reader/load_scene.hpp"
 
 namespace {
@@ -71,20 +72,25 @@ Bytes bytes_of(std::string const& integrator, std::string const& chain) {
     return {memory.state + memory.solver, static_cast<double>(allocated - before)};
 }
 
-std::string const rod = fmt::format("{{elastic_rod: {{bodies: {}, mass: 650, length: 0.34, radius: 1, bend: 50, twist: 100}}}}", rods);
-std::string const free_joints = fmt::format("{{random: {{bodies: {}, joint: spherical, seed: 1, loads: false}}}}", rods);
+std::string const rod = fmt::format(
+    "{{elastic_rod: {{bodies: {}, mass: 650, length: 0.34, radius: 1, bend: 50, twist: 100}}}}",
+    rods);
+std::string const free_joints =
+    fmt::format("{{random: {{bodies: {}, joint: spherical, seed: 1, loads: false}}}}", rods);
 
 /// An estimate: loads are counted as if every joint had some.
 TEST(HostMemory, IsWithinATenthOfWhatIsTaken) {
     for (std::string const& chain : {rod, free_joints})
-        for (char const* const integrator : {"rk4", "dormand-prince", "velocity-verlet", "staggered", "baoab", "implicit-baoab", "rattle",
-                                             "g-baoab", "implicit-g-baoab"}) {
+        for (char const* const integrator :
+             {"rk4", "dormand-prince", "velocity-verlet", "staggered", "baoab", "implicit-baoab",
+              "rattle", "g-baoab", "implicit-g-baoab"}) {
             Bytes const bytes = bytes_of(integrator, chain);
             EXPECT_NEAR(bytes.planned / bytes.taken, 1, 0.1) << integrator << ", " << chain;
         }
 }
 
-/// What an integrator keeps beside another of its kind: compliances, rotors, noise. Half a number a body for paddings and lists.
+/// What an integrator keeps beside another of its kind: compliances, rotors, noise. Half a number a
+/// body for paddings and lists.
 TEST(HostMemory, KnowsWhatSpringsAndNoiseTake) {
     struct Pair {
         char const *more, *less;
@@ -99,8 +105,10 @@ TEST(HostMemory, KnowsWhatSpringsAndNoiseTake) {
                           {"implicit-g-baoab", "g-baoab", free_joints, 0}}) {
         Bytes const more = bytes_of(p.more, p.chain), less = bytes_of(p.less, p.chain);
         double constexpr number = rods * sizeof(double);
-        EXPECT_NEAR((more.taken - less.taken) / number, p.numbers, 0.5) << p.more << ", " << p.chain;
-        EXPECT_NEAR((more.planned - less.planned) / number, p.numbers, 1e-9) << p.more << ", " << p.chain;
+        EXPECT_NEAR((more.taken - less.taken) / number, p.numbers, 0.5)
+            << p.more << ", " << p.chain;
+        EXPECT_NEAR((more.planned - less.planned) / number, p.numbers, 1e-9)
+            << p.more << ", " << p.chain;
     }
 }
 

@@ -41,13 +41,14 @@ TEST(Blocking, ShortSeriesHaveErrorsThatCoverTheirMeans) {
     int beyond = 0;
     double squares = 0;
     for (int s = 0; s < series; ++s) {
-        Blocked const found = blocked_mean(autoregressive(1, 300, 0.8, static_cast<std::uint64_t>(s)));
+        Blocked const found =
+            blocked_mean(autoregressive(1, 300, 0.8, static_cast<std::uint64_t>(s)));
         double const deviation = (found.mean - 5) / found.error;
         squares += deviation * deviation;
         beyond += std::abs(deviation) > 3;
     }
     EXPECT_NEAR(std::sqrt(squares / series), 1, 0.1);  // known to 1 / sqrt(800)
-    EXPECT_LE(beyond, 8);                              // 1 of normal errors; some have 16 blocks only
+    EXPECT_LE(beyond, 8);  // 1 of normal errors; some have 16 blocks only
 }
 
 TEST(Blocking, SamplesThatFillNoBlockCount) {
@@ -63,7 +64,9 @@ TEST(Blocking, ManyCopiesAreBlocksEnough) {
     Blocked const found = blocked_mean(autoregressive(200, 300, 0.999, 3));
     EXPECT_TRUE(found.plateau);
     double const keep = 0.999, n = 300;  // of one copy's mean
-    double const variance = ((1 + keep) / (1 - keep) - 2 * keep * (1 - std::pow(keep, n)) / (n * std::pow(1 - keep, 2))) / n;
+    double const variance = ((1 + keep) / (1 - keep) -
+                             2 * keep * (1 - std::pow(keep, n)) / (n * std::pow(1 - keep, 2))) /
+                            n;
     EXPECT_NEAR(found.error / std::sqrt(variance / 200), 1, 0.15);
 }
 

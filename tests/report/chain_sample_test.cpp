@@ -29,7 +29,8 @@ std::vector<Vec3> random_directions(int count, std::mt19937_64& draw) {
 }
 
 /// -d/dw of ln (det T)^1/2, summed over bonds, by differences.
-double turned(std::vector<Vec3> const& e, std::vector<double> const& length, std::vector<double> const& mass) {
+double turned(std::vector<Vec3> const& e, std::vector<double> const& length,
+              std::vector<double> const& mass) {
     double constexpr h = 1e-5;
     double sum = 0;
     for (std::size_t j = 1; j < e.size(); ++j) {
@@ -68,7 +69,8 @@ std::array<std::pair<double, double>, n> gauss() {
         double x = std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5)), slope = 1;
         for (int newton = 0; newton < 50; ++newton) {
             double p = 1, before = 0;
-            for (int k = 1; k <= n; ++k) before = std::exchange(p, ((2 * k - 1) * x * p - (k - 1) * before) / k);
+            for (int k = 1; k <= n; ++k)
+                before = std::exchange(p, ((2 * k - 1) * x * p - (k - 1) * before) / k);
             slope = n * (x * p - before) / (x * x - 1);
             x -= p / slope;
         }
@@ -77,7 +79,8 @@ std::array<std::pair<double, double>, n> gauss() {
     return found;
 }
 
-/// Springs between neighbours but one, and between the ends of four beads: smooth ones, k / 2 (d^2 - rest^2)^2.
+/// Springs between neighbours but one, and between the ends of four beads: smooth ones, k / 2 (d^2
+/// - rest^2)^2.
 struct Springs {
     double stiffness = 100;
     double energy(Beads const& x, Beads* force) const {
@@ -94,7 +97,8 @@ struct Springs {
     }
 };
 
-/// The temperature that `measured` gives of four beads distributed by `weight` at kT, integrated over both angles and the dihedral.
+/// The temperature that `measured` gives of four beads distributed by `weight` at kT, integrated
+/// over both angles and the dihedral.
 double temperature_over_true(BondMeasure weight, BondMeasure measured) {
     double constexpr kt = 2.5;
     std::vector<double> const length{0.38, 0.41, 0.36}, mass{57, 186, 71, 131};
@@ -104,14 +108,18 @@ double temperature_over_true(BondMeasure weight, BondMeasure measured) {
     for (auto const& [u1, w1] : knots)
         for (auto const& [u2, w2] : knots)
             for (int t = 0; t < turns; ++t) {
-                double const first = std::numbers::pi / 2 * (1 + u1), second = std::numbers::pi / 2 * (1 + u2);
-                double const c1 = std::cos(first), s1 = std::sin(first), c2 = std::cos(second), s2 = std::sin(second);
+                double const first = std::numbers::pi / 2 * (1 + u1),
+                             second = std::numbers::pi / 2 * (1 + u2);
+                double const c1 = std::cos(first), s1 = std::sin(first), c2 = std::cos(second),
+                             s2 = std::sin(second);
                 double const phi = 2 * std::numbers::pi * t / turns;
-                std::vector<Vec3> const e{{c1, s1, 0}, {1, 0, 0}, {c2, s2 * std::cos(phi), s2 * std::sin(phi)}};
+                std::vector<Vec3> const e{
+                    {c1, s1, 0}, {1, 0, 0}, {c2, s2 * std::cos(phi), s2 * std::sin(phi)}};
                 Beads const x = beads_of(e, length);
                 Beads force(4, Vec3::zero());
                 double const energy = Springs().energy(x, &force);
-                double const metric = weight == BondMeasure::rigid ? std::exp(half_log_det(e, mass)) : 1.0;
+                double const metric =
+                    weight == BondMeasure::rigid ? std::exp(half_log_det(e, mass)) : 1.0;
                 double const p = w1 * s1 * w2 * s2 * metric * std::exp(-energy / kt);
                 ChainSample const s = sample_chain(x, force, mass, measured);
                 virial += p * s.virial;
@@ -140,8 +148,10 @@ TEST(ChainSample, AFreelyJointedChainHasNoDivergenceInItsMeasure) {
     int constexpr samples = 20000;
     for (int i = 0; i < samples; ++i) {
         std::vector<Vec3> const e = random_directions(19, draw);
-        double const weight = std::exp(half_log_det(e, mass) - half_log_det(std::vector<Vec3>(19, Vec3{1, 0, 0}), mass));
-        double const d = weight * sample_chain(beads_of(e, length), none, mass, BondMeasure::rigid).divergence;
+        double const weight = std::exp(half_log_det(e, mass) -
+                                       half_log_det(std::vector<Vec3>(19, Vec3{1, 0, 0}), mass));
+        double const d =
+            weight * sample_chain(beads_of(e, length), none, mass, BondMeasure::rigid).divergence;
         weights += weight;
         sum += d;
         square += d * d;

@@ -11,13 +11,16 @@ namespace {
 std::unique_ptr<Communicator> const alone = serial_communicator();
 
 Scene swinging(std::string const& joint, std::string const& more = "") {
-    return parse_scene("units: si\nchains: [{name: a, base: fixed, generator: {random: {bodies: 4, joint: " + joint + ", seed: 4" +
-                           (joint == "link" ? "" : ", loads: false") + "}}}]\nforces: {gravity: [0, -3, -5]}\n" + more,
-                       "scene.yaml", {});
+    return parse_scene(
+        "units: si\nchains: [{name: a, base: fixed, generator: {random: {bodies: 4, joint: " +
+            joint + ", seed: 4" + (joint == "link" ? "" : ", loads: false") +
+            "}}}]\nforces: {gravity: [0, -3, -5]}\n" + more,
+        "scene.yaml", {});
 }
 
 TEST(IntegratorErrors, EveryIntegratorHasItsOrder) {
-    for (auto const& [joint, curves] : {std::pair{"revolute", 3U}, {"spherical", 5U}, {"link", 2U}}) {
+    for (auto const& [joint, curves] :
+         {std::pair{"revolute", 3U}, {"spherical", 5U}, {"link", 2U}}) {
         IntegratorStudy const study = study_integrator_errors(swinging(joint), *alone, 0.25, 8, 1);
         ASSERT_EQ(study.curves.size(), curves) << joint;
         EXPECT_TRUE(study.valid()) << joint;
@@ -27,7 +30,8 @@ TEST(IntegratorErrors, EveryIntegratorHasItsOrder) {
             ASSERT_TRUE(curve.slope) << joint << " " << curve.name;
             EXPECT_NEAR(*curve.slope, curve.order, 0.1) << joint << " " << curve.name;
             for (std::size_t i = 1; i < curve.points.size(); ++i)
-                EXPECT_LT(*curve.points[i].energy_error, *curve.points[i - 1].energy_error) << joint << " " << curve.name;
+                EXPECT_LT(*curve.points[i].energy_error, *curve.points[i - 1].energy_error)
+                    << joint << " " << curve.name;
         }
     }
 }
@@ -49,13 +53,15 @@ TEST(IntegratorErrors, AdaptiveErrorsFollowTheTolerance) {
     EXPECT_FALSE(curve.as_promised());
 }
 
-/// A clamped rod that starts to bend in its slowest mode; its twist limits explicit steps to some 2e-3 at a stiffness of 2.
+/// A clamped rod that starts to bend in its slowest mode; its twist limits explicit steps to some
+/// 2e-3 at a stiffness of 2.
 Scene stiff(double stiffness) {
     std::string text = "units: si\nchains:\n  - name: a\n    base: fixed\n    bodies:\n";
     std::string const springs = fmt::format("[{0}, {0}, {0}]", stiffness);
     for (double const rate : {0.867, 0.568, 0.292, 0.083})
         text += fmt::format(
-            "      - {{mass: 0.1, com: [0.05, 0, 0], inertia: [5e-6, 8.6e-5, 8.6e-5], joint: {{type: spherical, translation: [{}, 0, 0], "
+            "      - {{mass: 0.1, com: [0.05, 0, 0], inertia: [5e-6, 8.6e-5, 8.6e-5], joint: "
+            "{{type: spherical, translation: [{}, 0, 0], "
             "stiffness: {}, qd: [0, {}, {}]}}}}\n",
             rate == 0.867 ? 0 : 0.1, springs, rate, -0.5 * rate);
     return parse_scene(text, "scene.yaml", {});
@@ -89,7 +95,8 @@ TEST(IntegratorErrors, ImplicitSpringsGoOnWhereExplicitOnesCannot) {
 /// No step of the study is short enough for explicit integrators, whose orders cannot be seen then.
 TEST(IntegratorErrors, SpringsThatAreTooStiffForExplicitStepsAreNoFault) {
     IntegratorStudy const study = study_integrator_errors(stiff(100), *alone, 0.25, 5, 1);
-    for (IntegratorCurve const& curve : study.curves) EXPECT_EQ(curve.too_stiff, curve.scheme == Scheme::explicit_steps) << curve.name;
+    for (IntegratorCurve const& curve : study.curves)
+        EXPECT_EQ(curve.too_stiff, curve.scheme == Scheme::explicit_steps) << curve.name;
 }
 
 TEST(IntegratorErrors, SpringsAlongSomeCoordinatesAloneAreNotTakenImplicitly) {
@@ -97,17 +104,21 @@ TEST(IntegratorErrors, SpringsAlongSomeCoordinatesAloneAreNotTakenImplicitly) {
     scene.chains[0].bodies.stiffness[1][0] = 0;
     IntegratorStudy const study = study_integrator_errors(scene, *alone, 0.01, 4, 1);
     EXPECT_FALSE(study.has_implicit());
-    EXPECT_EQ(study.no_implicit, "a joint has springs along some of its coordinates alone, or ten decades apart");
+    EXPECT_EQ(study.no_implicit,
+              "a joint has springs along some of its coordinates alone, or ten decades apart");
 }
 
 /// Refinement changes roundings alone, and takes its time.
 TEST(IntegratorErrors, RefinementIsHeeded) {
-    IntegratorStudy const plain = study_integrator_errors(swinging("spherical"), *alone, 0.25, 6, 5);
-    IntegratorStudy const refined = study_integrator_errors(swinging("spherical", "solver: {refine: 2}\n"), *alone, 0.25, 6, 5);
+    IntegratorStudy const plain =
+        study_integrator_errors(swinging("spherical"), *alone, 0.25, 6, 5);
+    IntegratorStudy const refined =
+        study_integrator_errors(swinging("spherical", "solver: {refine: 2}\n"), *alone, 0.25, 6, 5);
     EXPECT_EQ(plain.refine, 0);
     EXPECT_EQ(refined.refine, 2);
     for (std::size_t i = 0; i < plain.curves.size(); ++i) {
-        EXPECT_NEAR(refined.curves[i].points[0].error, plain.curves[i].points[0].error, 1e-11) << plain.curves[i].name;
+        EXPECT_NEAR(refined.curves[i].points[0].error, plain.curves[i].points[0].error, 1e-11)
+            << plain.curves[i].name;
     }
 }
 
@@ -132,7 +143,8 @@ TEST(IntegratorErrors, AnotherOrderThanPromisedIsInvalid) {
 /// Steps that are too wide for a reference to converge, or even to come to an end.
 TEST(IntegratorErrors, AReferenceThatDoesNotConvergeIsInvalid) {
     for (double const time : {5.0, 40.0}) {
-        IntegratorStudy const study = study_integrator_errors(swinging("revolute"), *alone, time, 6, 1);
+        IntegratorStudy const study =
+            study_integrator_errors(swinging("revolute"), *alone, time, 6, 1);
         EXPECT_GT(study.reference_error, 1e-3) << time;
         EXPECT_FALSE(study.valid()) << time;
         for (IntegratorCurve const& curve : study.curves) {
@@ -143,8 +155,10 @@ TEST(IntegratorErrors, AReferenceThatDoesNotConvergeIsInvalid) {
 
 /// Beads that fly apart freely on no link: every scheme is exact.
 TEST(IntegratorErrors, WhatHasNoErrorNeedsNoOrder) {
-    Scene const scene = parse_scene("units: si\nchains: [{name: a, base: free, generator: {random: {bodies: 1, joint: link, seed: 2}}}]\n",
-                                    "scene.yaml", {});
+    Scene const scene = parse_scene(
+        "units: si\nchains: [{name: a, base: free, generator: {random: {bodies: 1, joint: link, "
+        "seed: 2}}}]\n",
+        "scene.yaml", {});
     IntegratorStudy const study = study_integrator_errors(scene, *alone, 1, 5, 1);
     ASSERT_FALSE(study.curves.empty());
     for (IntegratorCurve const& curve : study.curves) EXPECT_TRUE(curve.exact) << curve.name;
@@ -158,7 +172,8 @@ TEST(IntegratorErrors, WorkIsNoErrorOfTheEnergy) {
     IntegratorStudy const study = study_integrator_errors(scene, *alone, 0.25, 8, 1);
     EXPECT_FALSE(study.no_energy_error.empty());
     for (IntegratorCurve const& curve : study.curves)
-        for (IntegratorPoint const& point : curve.points) EXPECT_FALSE(point.energy_error) << curve.name;
+        for (IntegratorPoint const& point : curve.points)
+            EXPECT_FALSE(point.energy_error) << curve.name;
     EXPECT_TRUE(study.valid());  // the order is that of the positions
 }
 
@@ -169,12 +184,14 @@ TEST(IntegratorErrors, ScenesThatLoseEnergyAreNotCompared) {
     EXPECT_EQ(why_integrators_cannot_be_compared(scene), "its drag changes with velocities");
 }
 
-/// RATTLE's energy stays about a constant; the classical Runge-Kutta scheme at a wide step loses some all the time.
+/// RATTLE's energy stays about a constant; the classical Runge-Kutta scheme at a wide step loses
+/// some all the time.
 TEST(Drift, IsFoundWhereThereIsOneAndNotElsewhere) {
     DriftStudy const kept = study_drift(swinging("link"), *alone, Integrator::rattle, 0.002, 20000);
     EXPECT_TRUE(kept.valid()) << kept.slope << " +- " << kept.slope_error;
     EXPECT_LT(std::abs(kept.slope) * 40, 0.01 * kept.kinetic_energy);
-    DriftStudy const lost = study_drift(swinging("spherical"), *alone, Integrator::rk4, 0.05, 20000);
+    DriftStudy const lost =
+        study_drift(swinging("spherical"), *alone, Integrator::rk4, 0.05, 20000);
     EXPECT_LT(lost.slope, 0);  // the classical scheme dissipates
     EXPECT_FALSE(lost.valid()) << lost.slope << " +- " << lost.slope_error;
 }

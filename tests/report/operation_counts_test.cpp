@@ -33,15 +33,20 @@ TEST(OperationCounts, AMergeOfLinksByHand) {
     EXPECT_EQ(link.disassembly.sum(), 2 + 2 + 1);  // two products, two sums, one scaling
 }
 
-/// K directions: sums of z and of both biases, L S L^T, the two solves, and the three blocks of the joined segment.
+/// K directions: sums of z and of both biases, L S L^T, the two solves, and the three blocks of the
+/// joined segment.
 TEST(OperationCounts, AMergeByFormula) {
     for (JointOperations const& joint : count_operations())
         for (HandleOperations const& h : {joint.projected, joint.full}) {
-            std::int64_t const k = h.directions, pairs = k * (k - 1) / 2, triangle = k * (k + 1) / 2, triples = (k + 1) * k * (k - 1) / 6;
+            std::int64_t const k = h.directions, pairs = k * (k - 1) / 2,
+                               triangle = k * (k + 1) / 2, triples = (k + 1) * k * (k - 1) / 6;
             EXPECT_EQ(h.assembly_matrices.divisions, k) << joint.joint;
             EXPECT_EQ(h.assembly_matrices.additions, triangle) << joint.joint;
-            // factor: `triples` products; solves: 2 k pairs; blocks: 2 k triangle and, but for its first term, k^3.
-            EXPECT_EQ(h.assembly_matrices.fused, triples + 2 * k * pairs + 2 * k * triangle + k * k * (k - 1)) << joint.joint;
+            // factor: `triples` products; solves: 2 k pairs; blocks: 2 k triangle and, but for its
+            // first term, k^3.
+            EXPECT_EQ(h.assembly_matrices.fused,
+                      triples + 2 * k * pairs + 2 * k * triangle + k * k * (k - 1))
+                << joint.joint;
             EXPECT_EQ(h.assembly_matrices.square_roots, 0);
         }
 }
@@ -58,7 +63,8 @@ TEST(OperationCounts, EveryJointHasFewerDirectionsThanFullHandles) {
 TEST(ChapterFigures, AreInTheProgram) {
     ASSERT_EQ(chapter_figures().size(), 3U);
     for (auto const& [figure, rows] : chapter_figures()) EXPECT_EQ(rows.size(), 12U) << figure;
-    EXPECT_EQ(chapter_figures().at("full_step").at(2048), (ChapterRow{402.3, 331.6, 290.7, 249, 240, 257.8}));
+    EXPECT_EQ(chapter_figures().at("full_step").at(2048),
+              (ChapterRow{402.3, 331.6, 290.7, 249, 240, 257.8}));
     EXPECT_EQ(chapter_figures().at("transfer").at(8)[1], 0);
 }
 

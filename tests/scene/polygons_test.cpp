@@ -14,12 +14,11 @@ namespace {
 TEST(Polygons, are_regular_and_spin_about_their_centre) {
     for (char const* const joint : {"spherical", "revolute"}) {
         ChainSpec const chain =
-            parse_scene(
-                fmt::format(
-                    "chains: [{{base: free, generator: {{polygon: {{bodies: 7, joint: {}, length: 2, mass: 3, spin: [1, 2, 3]}}}}, tip: "
-                    "{{ring: {{type: spherical, translation: [2, 0, 0]}}}}}}]",
-                    joint),
-                "s.yaml")
+            parse_scene(fmt::format("chains: [{{base: free, generator: {{polygon: {{bodies: 7, "
+                                    "joint: {}, length: 2, mass: 3, spin: [1, 2, 3]}}}}, tip: "
+                                    "{{ring: {{type: spherical, translation: [2, 0, 0]}}}}}}]",
+                                    joint),
+                        "s.yaml")
                 .chains[0];
         auto const at = oracle::kinematics<double>(chain, {});
         Vec3 momentum = Vec3::zero(), centre = Vec3::zero();
@@ -30,10 +29,15 @@ TEST(Polygons, are_regular_and_spin_about_their_centre) {
         }
         EXPECT_LE(norm(momentum), 64 * 0x1p-52 * 3 * 2 * 4) << joint;
         for (std::size_t k = 0; k < 7; ++k)
-            EXPECT_NEAR(norm(at.com_position[k] - centre), 1 / std::tan(std::acos(-1.0) / 7), 64 * 0x1p-52) << joint;
+            EXPECT_NEAR(norm(at.com_position[k] - centre), 1 / std::tan(std::acos(-1.0) / 7),
+                        64 * 0x1p-52)
+                << joint;
     }
     ChainSpec const beads =
-        parse_scene("chains: [{generator: {polygon: {bodies: 100, joint: link, length: 0.5}}, tip: ring}]", "s.yaml").chains[0];
+        parse_scene(
+            "chains: [{generator: {polygon: {bodies: 100, joint: link, length: 0.5}}, tip: ring}]",
+            "s.yaml")
+            .chains[0];
     EXPECT_TRUE(beads.is_ring());
     EXPECT_NEAR(beads.tip_joint.length, 0.5, 1e-12);
 }

@@ -14,8 +14,11 @@
 
 namespace catena::test {
 
-/// The message of the InputError that the scene gives; "accepted" if it gives none. Any other exception is the caller's.
-inline std::string refusal_of(std::string const& yaml, std::vector<std::string> const& overrides = {}, std::string const& file = "s.yaml") {
+/// The message of the InputError that the scene gives; "accepted" if it gives none. Any other
+/// exception is the caller's.
+inline std::string refusal_of(std::string const& yaml,
+                              std::vector<std::string> const& overrides = {},
+                              std::string const& file = "s.yaml") {
     try {
         parse_scene(yaml, file, overrides);
     } catch (InputError const& error) {
@@ -29,8 +32,12 @@ struct Refusal {
     char const* yaml;
     char const* message;
 };
-inline std::ostream& operator<<(std::ostream& stream, Refusal const& refusal) { return stream << refusal.yaml; }
-inline std::string name_of_case(testing::TestParamInfo<Refusal> const& info) { return info.param.name; }
+inline std::ostream& operator<<(std::ostream& stream, Refusal const& refusal) {
+    return stream << refusal.yaml;
+}
+inline std::string name_of_case(testing::TestParamInfo<Refusal> const& info) {
+    return info.param.name;
+}
 
 class Refused : public testing::TestWithParam<Refusal> {};
 

@@ -9,7 +9,8 @@ namespace {
 TEST_P(Refused, in_one_line) {
     std::string const message = refusal_of(GetParam().yaml);
     EXPECT_EQ(message, GetParam().message);
-    static std::regex const grammar(R"(not in this version: \S.* \(s\.yaml: .*\)|\S.* \(s\.yaml.*\): \S.*)");
+    static std::regex const grammar(
+        R"(not in this version: \S.* \(s\.yaml: .*\)|\S.* \(s\.yaml.*\): \S.*)");
     EXPECT_TRUE(std::regex_match(message, grammar)) << message;
 }
 

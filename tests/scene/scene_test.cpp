@@ -1,9 +1,9 @@
 // Whole scenes: every section's values and defaults, and the hash.
 #include <map>
 
+#include "reader/load_scene.hpp"
 #include "scene/deciding.hpp"
 #include "tests/scene/refusal.hpp"
-#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {
@@ -76,7 +76,9 @@ TEST(Scenes, every_section) {
 }
 
 TEST(Scenes, defaults) {
-    Scene const s = parse_scene("units: si\nchains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]\nbox: none", "folder/walk.yaml");
+    Scene const s = parse_scene(
+        "units: si\nchains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]\nbox: none",
+        "folder/walk.yaml");
     EXPECT_EQ(s.title, "walk");
     EXPECT_TRUE(s.si);
     EXPECT_EQ(s.boltzmann(), 1.380649e-23);
@@ -91,25 +93,36 @@ TEST(Scenes, defaults) {
 }
 
 TEST(Scenes, the_force_field_takes_the_temperature_of_the_run) {
-    std::string const chain = "chains: [{sequence: GG, model: calvados2}]\nforces: {openmm: {builder: calvados2}}\n";
+    std::string const chain =
+        "chains: [{sequence: GG, model: calvados2}]\nforces: {openmm: {builder: calvados2}}\n";
     EXPECT_EQ(parse_scene(chain, "s.yaml").forces.openmm->temperature, 300);
-    EXPECT_EQ(parse_scene(chain + "dynamics: {integrator: g-baoab, step: 0.01, temperature: 350}", "s.yaml").forces.openmm->temperature,
+    EXPECT_EQ(parse_scene(chain + "dynamics: {integrator: g-baoab, step: 0.01, temperature: 350}",
+                          "s.yaml")
+                  .forces.openmm->temperature,
               350);
     EXPECT_FALSE(parse_scene(chain, "s.yaml").forces.openmm->ph.has_value());
 }
 
 TEST(Scenes, layers_of_forces) {
     auto const layers = [](std::string const& key) {
-        return parse_scene("chains: [{sequence: GG, model: calvados2}]\nforces: {openmm: {builder: calvados2" + key + "}}", "s.yaml")
+        return parse_scene(
+                   "chains: [{sequence: GG, model: calvados2}]\nforces: {openmm: {builder: "
+                   "calvados2" +
+                       key + "}}",
+                   "s.yaml")
             .forces.openmm->layers;
     };
     EXPECT_EQ(layers(""), "auto");
-    for (char const* const value : {"auto", "all", "none"}) EXPECT_EQ(layers(std::string(", layers: ") + value), value);
+    for (char const* const value : {"auto", "all", "none"})
+        EXPECT_EQ(layers(std::string(", layers: ") + value), value);
 }
 
 TEST(Scenes, numbers_are_read_to_the_last_bit) {
     auto const gravity = [](std::string const& x) {
-        return parse_scene("chains: [{sequence: G, model: calvados2}]\nforces: {gravity: [" + x + ", 0, 0]}", "s.yaml").forces.gravity[0];
+        return parse_scene("chains: [{sequence: G, model: calvados2}]\nforces: {gravity: [" + x +
+                               ", 0, 0]}",
+                           "s.yaml")
+            .forces.gravity[0];
     };
     EXPECT_EQ(gravity("0.1"), 0.1);
     EXPECT_EQ(gravity("+1.5e-3"), 1.5e-3);
@@ -121,30 +134,38 @@ TEST(Scenes, numbers_are_read_to_the_last_bit) {
 }
 
 TEST(Hash, tells_what_decides_the_motion) {
-    auto const hash = [](std::vector<std::string> const& overrides) { return parse_scene(sketch, "s.yaml", overrides).hash; };
+    auto const hash = [](std::vector<std::string> const& overrides) {
+        return parse_scene(sketch, "s.yaml", overrides).hash;
+    };
     std::string const plain = hash({});
     EXPECT_EQ(plain.size(), 32u);
     for (char const* const same :
-         {"title=other", "dynamics.steps=5", "solver.backend=serial", "solver.threads=1", "output.every=7", "output.observables=[energy]",
-          "forces.openmm.platform=Reference", "forces.openmm.threads=1", "forces.openmm.path=host", "forces.openmm.layers=all",
-          "forces.openmm.split=ghosts", "forces.openmm.replicate=false", "forces.openmm.audit=false"})
+         {"title=other", "dynamics.steps=5", "solver.backend=serial", "solver.threads=1",
+          "output.every=7", "output.observables=[energy]", "forces.openmm.platform=Reference",
+          "forces.openmm.threads=1", "forces.openmm.path=host", "forces.openmm.layers=all",
+          "forces.openmm.split=ghosts", "forces.openmm.replicate=false",
+          "forces.openmm.audit=false"})
         EXPECT_EQ(hash({same}), plain) << same;
     for (char const* const other :
-         {"dynamics.step=0.011", "dynamics.seed=2", "dynamics.friction=0.4", "dynamics.temperature=301", "dynamics.integrator=rattle",
-          "dynamics.constraint_tolerance=1e-8", "box.periodic[0]=61", "box=none", "forces.gravity=[0, 1, 3]", "forces.openmm.ph=7",
-          "forces.openmm.temperature=300", "forces.openmm.switch_width=0", "forces.openmm=null", "chains[0].sequence=MDVFMKGLSS",
+         {"dynamics.step=0.011", "dynamics.seed=2", "dynamics.friction=0.4",
+          "dynamics.temperature=301", "dynamics.integrator=rattle",
+          "dynamics.constraint_tolerance=1e-8", "box.periodic[0]=61", "box=none",
+          "forces.gravity=[0, 1, 3]", "forces.openmm.ph=7", "forces.openmm.temperature=300",
+          "forces.openmm.switch_width=0", "forces.openmm=null", "chains[0].sequence=MDVFMKGLSS",
           "chains[0].velocities=zero", "chains[0].name=b", "chains[0].conformation=self_avoiding"})
         EXPECT_NE(hash({other}), plain) << other;
 }
 
-/// A checkpoint of today must fit the scene of tomorrow: these values change only with a new version of the hash.
+/// A checkpoint of today must fit the scene of tomorrow: these values change only with a new
+/// version of the hash.
 TEST(Hash, stays_the_same) {
-    EXPECT_EQ(parse_scene(
-                  "chains: [{base: fixed, bodies: [{mass: 1.5, inertia: [1, 1, 1.5], joint: {type: revolute, axis: [0, 0, 1], q: 0.25}}]}]",
-                  "s.yaml")
+    EXPECT_EQ(parse_scene("chains: [{base: fixed, bodies: [{mass: 1.5, inertia: [1, 1, 1.5], "
+                          "joint: {type: revolute, axis: [0, 0, 1], q: 0.25}}]}]",
+                          "s.yaml")
                   .hash,
               "82852a9ae651130dec0961ac9813f517");
-    EXPECT_EQ(parse_scene("chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, position: [0, 0, 1], joint: "
+    EXPECT_EQ(parse_scene("chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, "
+                          "{mass: 1, position: [0, 0, 1], joint: "
                           "{type: link}}]}]",
                           "s.yaml")
                   .hash,
@@ -153,14 +174,17 @@ TEST(Hash, stays_the_same) {
 
 std::map<std::string, std::string> deciding_values_of(std::string const& yaml) {
     std::map<std::string, std::string> values;
-    for (scene::DecidingValue const& each : scene::deciding_values(parse_scene(yaml, "s.yaml"))) values[each.key] = each.value;
+    for (scene::DecidingValue const& each : scene::deciding_values(parse_scene(yaml, "s.yaml")))
+        values[each.key] = each.value;
     return values;
 }
 
 /// What changes the hash can be named.
 TEST(Deciding, relaxation_is_among_what_a_restart_compares) {
     std::string const chain = "chains: [{sequence: GG, model: calvados2}]\n";
-    auto const changed = scene::changes(deciding_values_of(chain), scene::deciding_values(parse_scene(chain + "relax: true", "s.yaml")));
+    auto const changed =
+        scene::changes(deciding_values_of(chain),
+                       scene::deciding_values(parse_scene(chain + "relax: true", "s.yaml")));
     ASSERT_EQ(changed.size(), 1U);
     EXPECT_EQ(changed[0].key, "relax");
     EXPECT_EQ(changed[0].role, scene::Role::start);
@@ -168,10 +192,12 @@ TEST(Deciding, relaxation_is_among_what_a_restart_compares) {
 
 TEST(Deciding, ends_of_many_chains_fit_a_line) {
     std::string const few =
-        "forces: {openmm: {builder: calvados2}}\nchains: [{name: a, sequence: GG, model: calvados2, charge_termini: N}]";
+        "forces: {openmm: {builder: calvados2}}\nchains: [{name: a, sequence: GG, model: "
+        "calvados2, charge_termini: N}]";
     EXPECT_EQ(deciding_values_of(few).at("forces.openmm.charge_termini"), "a: [1, 0]");
     std::string const many =
-        "forces: {openmm: {builder: calvados2}}\nchains: [{count: 500, sequence: GG, model: calvados2, charge_termini: N}]";
+        "forces: {openmm: {builder: calvados2}}\nchains: [{count: 500, sequence: GG, model: "
+        "calvados2, charge_termini: N}]";
     std::string const value = deciding_values_of(many).at("forces.openmm.charge_termini");
     EXPECT_EQ(value.substr(0, 12), "500 entries ");
     EXPECT_LT(value.size(), 40U);

@@ -14,12 +14,15 @@ struct NamedSolver {
     std::unique_ptr<ChainSolver> solver;
 };
 
-/// Answers as `reference` does, and expects that the others answer with the same bits and refuse with the same words.
-std::unique_ptr<ChainSolver> compared_solver(ChainGroup const&, std::unique_ptr<ChainSolver> reference, std::vector<NamedSolver> others);
+/// Answers as `reference` does, and expects that the others answer with the same bits and refuse
+/// with the same words.
+std::unique_ptr<ChainSolver> compared_solver(ChainGroup const&,
+                                             std::unique_ptr<ChainSolver> reference,
+                                             std::vector<NamedSolver> others);
 
-/// One evaluation of a group by such a solver, and then, where `at_once`, one that takes matrices and biases together. A matrix that is not
-/// positive definite is no failure. Collective.
-void evaluate_compared(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver> compared,
-                       bool at_once);
+/// One evaluation of a group by such a solver, and then, where `at_once`, one that takes matrices
+/// and biases together. A matrix that is not positive definite is no failure. Collective.
+void evaluate_compared(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                       std::unique_ptr<ChainSolver> compared, bool at_once);
 
 }  // namespace catena::test

@@ -1,7 +1,8 @@
-// CUDA's words for a host compiler, so that kernels run where there is no GPU. A block is a thread of the host and its threads are fibers
-// of that: from barrier to barrier they go one after the other, each time in another order, and what passes between them without a barrier
-// comes too late for some. Blocks of a cluster, or that wait for each other, go side by side. The thread sanitizer takes every fiber for a
-// thread.
+// CUDA's words for a host compiler, so that kernels run where there is no GPU. A block is a thread
+// of the host and its threads are fibers of that: from barrier to barrier they go one after the
+// other, each time in another order, and what passes between them without a barrier comes too late
+// for some. Blocks of a cluster, or that wait for each other, go side by side. The thread sanitizer
+// takes every fiber for a thread.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -52,7 +53,8 @@
 #define __launch_bounds__(...)
 #define __forceinline__ inline
 
-/// _longjmp() without the check that it leads down the same stack, which some compilers put before it.
+/// _longjmp() without the check that it leads down the same stack, which some compilers put before
+/// it.
 extern "C" [[noreturn]] void catena_jump_to_another_stack(jmp_buf, int) __asm__("_longjmp");
 
 namespace catena::cuda_on_host {
@@ -80,8 +82,9 @@ inline void leave(void*) {}
 #endif
 }  // namespace watch
 
-/// Where a fiber, or what resumes it, has stopped. swapcontext() asks the system for the signals' mask at every switch, which takes longer
-/// than all that fibers do between two of them; sanitizers know no other way.
+/// Where a fiber, or what resumes it, has stopped. swapcontext() asks the system for the signals'
+/// mask at every switch, which takes longer than all that fibers do between two of them; sanitizers
+/// know no other way.
 class Stop {
   public:
     void begin_at(stack_t const& stack, void (*entry)()) {
@@ -112,16 +115,18 @@ constexpr std::size_t numbers_to_see_overruns = 64;
 
 }  // namespace catena::cuda_on_host
 
-inline constinit thread_local catena::cuda_on_host::Index threadIdx{}, blockIdx{}, blockDim{}, gridDim{};
+inline constinit thread_local catena::cuda_on_host::Index threadIdx{}, blockIdx{}, blockDim{},
+    gridDim{};
 
 namespace catena::cuda::kernels {
-alignas(16) inline constinit thread_local double shared_numbers[cuda_on_host::most_shared_bytes / sizeof(double) +
-                                                                cuda_on_host::numbers_to_see_overruns]{};
+alignas(16) inline constinit thread_local double shared_numbers
+    [cuda_on_host::most_shared_bytes / sizeof(double) + cuda_on_host::numbers_to_see_overruns]{};
 }  // namespace catena::cuda::kernels
 
 namespace catena::cuda_on_host {
 
-/// Of a block's fibers, one block after the other. Launches leave theirs to later ones, which need no new pages then.
+/// Of a block's fibers, one block after the other. Launches leave theirs to later ones, which need
+/// no new pages then.
 class Stacks {
   public:
     explicit Stacks(std::size_t count) {
@@ -154,7 +159,8 @@ class Stacks {
 class Block {
   public:
     /// `cluster`: where its cluster's blocks meet; null for a block alone.
-    Block(unsigned threads, Stacks const& stacks, std::barrier<>* cluster, std::function<void()> const& kernel)
+    Block(unsigned threads, Stacks const& stacks, std::barrier<>* cluster,
+          std::function<void()> const& kernel)
         : kernel_(kernel), cluster_(cluster), fibers_(threads) {
         here_ = this;
         for (std::size_t t = 0; t < threads; ++t) {
@@ -179,18 +185,22 @@ class Block {
             watch::arrive(&left_);
             for (std::size_t const w : order)
                 if (warps[w].waits_for == Whole::warp) resume(w, warps[w], random);
-            auto const waits = [&](Whole whole) { return [whole](Warp const& warp) { return warp.waits_for == whole; }; };
+            auto const waits = [&](Whole whole) {
+                return [whole](Warp const& warp) { return warp.waits_for == whole; };
+            };
             over = std::all_of(warps.begin(), warps.end(), waits(Whole::nobody));
             if (over || std::any_of(warps.begin(), warps.end(), waits(Whole::warp))) continue;
             for (Warp const& warp : warps)
-                if (warp.line != warps[0].line || warp.waits_for != warps[0].waits_for) fail(warp.line, warps[0].line);
+                if (warp.line != warps[0].line || warp.waits_for != warps[0].waits_for)
+                    fail(warp.line, warps[0].line);
             if (warps[0].waits_for == Whole::cluster) cluster_->arrive_and_wait();
             for (Warp& warp : warps) warp.waits_for = Whole::warp;
         }
         if (cluster_) cluster_->arrive_and_drop();
     }
     enum class Whole { nobody, warp, block, cluster };
-    /// Where the running fiber waits for the others. Alone, it waits for no cluster: a GPU without clusters knows nothing of them.
+    /// Where the running fiber waits for the others. Alone, it waits for no cluster: a GPU without
+    /// clusters knows nothing of them.
     static void wait(int line, Whole whole) {
         if (whole != Whole::cluster || here_->cluster_) here_->leave_fiber(line, whole);
     }
@@ -200,12 +210,14 @@ class Block {
         std::size_t const own = threadIdx.x;
         fibers[own].given = value;
         wait(line, Whole::warp);
-        double const found = fibers[own / lanes * lanes + static_cast<std::size_t>(lane) % lanes].given;
+        double const found =
+            fibers[own / lanes * lanes + static_cast<std::size_t>(lane) % lanes].given;
         wait(line, Whole::warp);
         return found;
     }
 
-    /// Copies to shared memory that a thread has started: they come when it waits for them, but what was there is lost at once.
+    /// Copies to shared memory that a thread has started: they come when it waits for them, but
+    /// what was there is lost at once.
     static void start_copy(double* to, double const* from) {
         *to = std::numeric_limits<double>::quiet_NaN();
         here_->fibers_[threadIdx.x].copies.push_back({to, from});
@@ -218,7 +230,8 @@ class Block {
         Fiber& fiber = here_->fibers_[threadIdx.x];
         if (fiber.together.size() <= left) return;
         std::size_t const end = fiber.together[fiber.together.size() - 1 - left];
-        for (; fiber.come < end; ++fiber.come) *fiber.copies[fiber.come].to = *fiber.copies[fiber.come].from;
+        for (; fiber.come < end; ++fiber.come)
+            *fiber.copies[fiber.come].to = *fiber.copies[fiber.come].from;
         if (fiber.come < fiber.copies.size()) return;
         fiber.copies.clear();
         fiber.together.clear();
@@ -249,7 +262,8 @@ class Block {
     };
     static constexpr std::size_t lanes = 32;
     static void fail(int line, int other) {
-        ADD_FAILURE() << "threads of a block wait in lines " << line << " and " << other << " (0: nowhere)";
+        ADD_FAILURE() << "threads of a block wait in lines " << line << " and " << other
+                      << " (0: nowhere)";
         std::abort();  // nothing says how to go on
     }
     /// Up to where its lanes wait.
@@ -262,21 +276,27 @@ class Block {
         watch::leave(&arrived_);
         Fiber const& lane = fibers_[first];
         for (std::size_t const t : order)
-            if (fibers_[t].line != lane.line || fibers_[t].waits_for != lane.waits_for) fail(fibers_[t].line, lane.line);
+            if (fibers_[t].line != lane.line || fibers_[t].waits_for != lane.waits_for)
+                fail(fibers_[t].line, lane.line);
         warp = {lane.line, lane.waits_for};
     }
     static void enter() {
         watch::leave(&here_->left_);
         here_->kernel_();
         if (!here_->fibers_[threadIdx.x].waited_for_launch) {
-            ADD_FAILURE() << "a thread has not waited for the launch before";  // as cuda/device/launch.cuh asks of every kernel
+            ADD_FAILURE()
+                << "a thread has not waited for the launch before";  // as cuda/device/launch.cuh
+                                                                     // asks of every kernel
             std::abort();
         }
-        if (!here_->fibers_[threadIdx.x].copies.empty()) ADD_FAILURE() << "a thread has not waited for its copies";
+        if (!here_->fibers_[threadIdx.x].copies.empty())
+            ADD_FAILURE() << "a thread has not waited for its copies";
         here_->leave_fiber(0, Whole::nobody);
     }
     /// No race with the fibers that read it.
-    __attribute__((noinline, no_sanitize("thread"))) static void number_thread(unsigned t) { threadIdx.x = t; }
+    __attribute__((noinline, no_sanitize("thread"))) static void number_thread(unsigned t) {
+        threadIdx.x = t;
+    }
     void resume(unsigned t) {
         number_thread(t);
         watch::before_switch(fibers_[t].watched);
@@ -321,7 +341,8 @@ struct Launch {
 };
 
 /// Block `b`. Its shared memory is full of NaN at first.
-inline void run_block(unsigned b, Launch const& grid, Stacks const& stacks, std::barrier<>* cluster, std::function<void()> const& kernel) {
+inline void run_block(unsigned b, Launch const& grid, Stacks const& stacks, std::barrier<>* cluster,
+                      std::function<void()> const& kernel) {
     constexpr double unset = std::numeric_limits<double>::quiet_NaN();
     std::span const own(cuda::kernels::shared_numbers, grid.numbers + numbers_to_see_overruns);
     std::fill(own.begin(), own.end(), unset);
@@ -331,15 +352,19 @@ inline void run_block(unsigned b, Launch const& grid, Stacks const& stacks, std:
     blockDim.x = grid.threads;
     Block(grid.threads, stacks, cluster, kernel).run();
     for (double const beyond : own.last(numbers_to_see_overruns))
-        if (std::bit_cast<std::uint64_t>(beyond) != std::bit_cast<std::uint64_t>(unset)) ADD_FAILURE() << "wrote beyond shared memory";
+        if (std::bit_cast<std::uint64_t>(beyond) != std::bit_cast<std::uint64_t>(unset))
+            ADD_FAILURE() << "wrote beyond shared memory";
 }
 
 template <class... Parameters>
-void launch(Launch const& grid, void (*kernel)(Parameters...), std::type_identity_t<Parameters> const&... parameters) {
+void launch(Launch const& grid, void (*kernel)(Parameters...),
+            std::type_identity_t<Parameters> const&... parameters) {
     ASSERT_LE(grid.numbers * sizeof(double), most_shared_bytes);
     ASSERT_TRUE(grid.cluster == 1 || grid.cluster == grid.blocks);
     std::function<void()> const of_thread = [&] { kernel(parameters...); };
-    unsigned const workers = grid.all_at_once ? grid.blocks : grid.cluster > 1 ? grid.cluster : std::min(grid.blocks, 2U);
+    unsigned const workers = grid.all_at_once   ? grid.blocks
+                             : grid.cluster > 1 ? grid.cluster
+                                                : std::min(grid.blocks, 2U);
     std::barrier<> cluster(workers);
     Letters here(grid.blocks);
     std::vector<std::jthread> threads;
@@ -358,25 +383,32 @@ void launch(Launch const& grid, void (*kernel)(Parameters...), std::type_identit
 inline void __syncthreads(int line = __builtin_LINE()) {
     catena::cuda_on_host::Block::wait(line, catena::cuda_on_host::Block::Whole::block);
 }
-inline void __syncwarp(int line = __builtin_LINE()) { catena::cuda_on_host::Block::wait(line, catena::cuda_on_host::Block::Whole::warp); }
+inline void __syncwarp(int line = __builtin_LINE()) {
+    catena::cuda_on_host::Block::wait(line, catena::cuda_on_host::Block::Whole::warp);
+}
 template <class T>
 T __shfl_sync(unsigned, T value, int lane, int line = __builtin_LINE()) {
-    return static_cast<T>(catena::cuda_on_host::Block::of_lane(static_cast<double>(value), lane, line));
+    return static_cast<T>(
+        catena::cuda_on_host::Block::of_lane(static_cast<double>(value), lane, line));
 }
 inline int __all_sync(unsigned, int says, int line = __builtin_LINE()) {
-    for (int apart = 16; apart > 0; apart /= 2) says &= __shfl_sync(0xffffffffu, says, static_cast<int>(threadIdx.x) ^ apart, line);
+    for (int apart = 16; apart > 0; apart /= 2)
+        says &= __shfl_sync(0xffffffffu, says, static_cast<int>(threadIdx.x) ^ apart, line);
     return says;
 }
 inline unsigned __ballot_sync(unsigned, int says, int line = __builtin_LINE()) {
     unsigned ballot = (says ? 1U : 0U) << threadIdx.x % 32;
-    for (int apart = 1; apart < 32; apart *= 2) ballot |= __shfl_sync(0xffffffffu, ballot, static_cast<int>(threadIdx.x) ^ apart, line);
+    for (int apart = 1; apart < 32; apart *= 2)
+        ballot |= __shfl_sync(0xffffffffu, ballot, static_cast<int>(threadIdx.x) ^ apart, line);
     return ballot;
 }
 inline double __longlong_as_double(long long bits) { return std::bit_cast<double>(bits); }
 inline long long __double_as_longlong(double value) { return std::bit_cast<long long>(value); }
 namespace catena::cuda::kernels {
 
-inline void start_copy(double* to_shared, double const* from) { cuda_on_host::Block::start_copy(to_shared, from); }
+inline void start_copy(double* to_shared, double const* from) {
+    cuda_on_host::Block::start_copy(to_shared, from);
+}
 inline void close_copies() { cuda_on_host::Block::close_copies(); }
 template <int left>
 void wait_for_copies() {
@@ -388,7 +420,8 @@ class Inbox {
     explicit Inbox(std::uint64_t*) {}
     static void open(int bytes) { expected_ = bytes; }
     static void send(int block, double* at, double value) {
-        cuda_on_host::Letters::Inbox& to = cuda_on_host::letters->of_block[static_cast<std::size_t>(block)];
+        cuda_on_host::Letters::Inbox& to =
+            cuda_on_host::letters->of_block[static_cast<std::size_t>(block)];
         to.memory[at - shared_numbers] = value;
         to.bytes.fetch_add(sizeof(value), std::memory_order_release);
     }
@@ -396,7 +429,8 @@ class Inbox {
         std::atomic<int> const& bytes = cuda_on_host::letters->of_block[blockIdx.x].bytes;
         bool all = false;
         while (!all) {  // lanes see it come one after the other, and go on together
-            all = cuda_on_host::Block::of_lane(bytes.load(std::memory_order_acquire) == expected_ ? 1 : 0, 0, line) > 0;
+            all = cuda_on_host::Block::of_lane(
+                      bytes.load(std::memory_order_acquire) == expected_ ? 1 : 0, 0, line) > 0;
         }
     }
 
@@ -415,7 +449,8 @@ struct LetterBox {
     }
     Halves get() const {
         std::this_thread::yield();  // other blocks are on their way
-        return {memory[0].load(std::memory_order_relaxed), memory[1].load(std::memory_order_relaxed)};
+        return {memory[0].load(std::memory_order_relaxed),
+                memory[1].load(std::memory_order_relaxed)};
     }
 };
 inline void arrive_at_cluster() {}

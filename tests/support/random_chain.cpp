@@ -8,7 +8,8 @@
 namespace catena::test {
 namespace {
 
-// Of the standard library, not those under test: the last bits of a chain's axes are part of its seed.
+// Of the standard library, not those under test: the last bits of a chain's axes are part of its
+// seed.
 Quat about_axis(Vec3 const& axis, double angle) {
     double const s = std::sin(0.5 * angle);
     return {std::cos(0.5 * angle), s * axis[0], s * axis[1], s * axis[2]};
@@ -20,9 +21,11 @@ Quat about_vector(Vec3 const& v) {
 
 double random_mass(Random& random) { return std::pow(10.0, random.uniform(-0.5, 0.5)); }
 
-/// From random second moments of mass about random principal axes: positive definite, triangle inequality kept.
+/// From random second moments of mass about random principal axes: positive definite, triangle
+/// inequality kept.
 Sym3 random_inertia(Random& random, double mass) {
-    double const a = mass * std::pow(random.uniform(0.03, 0.3), 2), b = mass * std::pow(random.uniform(0.03, 0.3), 2),
+    double const a = mass * std::pow(random.uniform(0.03, 0.3), 2),
+                 b = mass * std::pow(random.uniform(0.03, 0.3), 2),
                  c = mass * std::pow(random.uniform(0.03, 0.3), 2);
     Mat3 const r = to_matrix(random.orientation());
     double const principal[] = {b + c, a + c, a + b};
@@ -54,7 +57,9 @@ JointType random_joint(Random& random, RandomChainOptions const& options, std::s
         case RandomJoints::helical:
             return helical;
         case RandomJoints::weld:
-            return random.chance(0.5) ? weld : one_of(random, {revolute, spherical, universal, prismatic, helical});
+            return random.chance(0.5)
+                       ? weld
+                       : one_of(random, {revolute, spherical, universal, prismatic, helical});
         case RandomJoints::any:
             return one_of(random, {revolute, spherical, universal, weld, prismatic, helical});
         default:
@@ -73,11 +78,13 @@ Vec3 of_joint(JointType type, Vec3 v) {
     return v;
 }
 /// Coordinates in [-size, size), shifts in a fifth of that.
-std::array<double, 4> random_coordinates(Random& random, JointType type, double size, Quat const& rotation) {
+std::array<double, 4> random_coordinates(Random& random, JointType type, double size,
+                                         Quat const& rotation) {
     if (coordinates(type) == 3) return as_array(rotation);
     std::array<double, 4> q{0, 0, 0, 0};
     for (int i = 0; i < coordinates(type); ++i)
-        q[static_cast<std::size_t>(i)] = random.uniform(-size, size) * (type == JointType::prismatic ? 0.2 : 1);
+        q[static_cast<std::size_t>(i)] =
+            random.uniform(-size, size) * (type == JointType::prismatic ? 0.2 : 1);
     return q;
 }
 /// At least some 25 degrees off `axis`.
@@ -89,12 +96,15 @@ Vec3 direction_off(Random& random, Vec3 const& axis) {
 
 Vec3 const planar_axis{{0, 0, 1}};
 
-void append_geometry(Random& random, RandomChainOptions const& options, JointType type, BodyArrays& b) {
-    bool const planar = options.joints == RandomJoints::planar, any_first = type == JointType::universal;
+void append_geometry(Random& random, RandomChainOptions const& options, JointType type,
+                     BodyArrays& b) {
+    bool const planar = options.joints == RandomJoints::planar,
+               any_first = type == JointType::universal;
     b.joint.push_back(type);
     b.axis.push_back(planar ? planar_axis : random.direction());
     bool const level = planar && type == JointType::revolute;
-    b.rotation.push_back(to_matrix(level ? about_axis(planar_axis, random.uniform(-3, 3)) : random.orientation()));
+    b.rotation.push_back(
+        to_matrix(level ? about_axis(planar_axis, random.uniform(-3, 3)) : random.orientation()));
     b.translation.push_back(random.uniform(0.2, 0.6) * random.direction());
     if (any_first || !b.first_axis.empty()) {
         b.first_axis.resize(b.joint.size(), Vec3::zero());
@@ -102,7 +112,8 @@ void append_geometry(Random& random, RandomChainOptions const& options, JointTyp
     }
     if (type == JointType::helical || !b.pitch.empty()) {
         b.pitch.resize(b.joint.size(), 0);
-        if (type == JointType::helical) b.pitch.back() = (random.chance(0.5) ? 1 : -1) * random.uniform(0.02, 0.2);
+        if (type == JointType::helical)
+            b.pitch.back() = (random.chance(0.5) ? 1 : -1) * random.uniform(0.02, 0.2);
     }
 }
 
@@ -111,8 +122,9 @@ void append_drive(Random& random, RandomChainOptions const& options, BodyArrays&
     bool const can = coordinates(type) == 1 || coordinates(type) == 2;
     if (options.driven == 0 || !can || !random.chance(options.driven)) return;
     DrivenJoint drive{static_cast<std::int64_t>(b.joint.size() - 1), {}};
-    for (Course& c : drive.course)
-        c = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 0.3), random.uniform(0, 1), random.uniform(-3, 3)};
+    for (PrescribedMotion& c : drive.course)
+        c = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 0.3),
+             random.uniform(0, 1), random.uniform(-3, 3)};
     b.driven.push_back(drive);
 }
 
@@ -134,15 +146,18 @@ void append_joint(Random& random, RandomChainOptions const& options, BodyArrays&
     b.rest.push_back(random_coordinates(random, type, 1, rest));
 }
 
-/// A tip joint of the options' type in an arbitrary state; a planar chain's revolute tip keeps to the plane.
+/// A tip joint of the options' type in an arbitrary state; a planar chain's revolute tip keeps to
+/// the plane.
 TipJoint random_tip(Random& random, RandomChainOptions const& options) {
     TipJoint tip;
     tip.type = *options.tip;
-    bool const level = options.joints == RandomJoints::planar && tip.type == JointType::revolute && options.base == Base::fixed;
+    bool const level = options.joints == RandomJoints::planar && tip.type == JointType::revolute &&
+                       options.base == Base::fixed;
     tip.axis = level ? planar_axis : random.direction();
     tip.first_axis = direction_off(random, tip.axis);
     tip.pitch = random.uniform(0.02, 0.2);
-    tip.rotation = to_matrix(level ? about_axis(planar_axis, random.uniform(-3, 3)) : random.orientation());
+    tip.rotation =
+        to_matrix(level ? about_axis(planar_axis, random.uniform(-3, 3)) : random.orientation());
     tip.translation = random.uniform(0.2, 0.6) * random.direction();
     tip.q = random_coordinates(random, tip.type, 3, random.orientation());
     return tip;
@@ -165,11 +180,13 @@ void join_to_first(ChainSpec& chain, TipJoint tip, double time) {
     oracle::Loads loads;
     loads.time = time;
     auto const at = oracle::kinematics<double>(chain, loads);
-    scene::Pose const moved = scene::joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
+    scene::Pose const moved =
+        scene::joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
     Mat3 const to_last = transpose(at.orientation.back());
     tip.ring = true;
     tip.rotation = to_last * (at.orientation.front() * transpose(to_matrix(moved.orientation)));
-    tip.translation = to_last * (at.origin.front() - at.origin.back()) - tip.rotation * moved.origin;
+    tip.translation =
+        to_last * (at.origin.front() - at.origin.back()) - tip.rotation * moved.origin;
     join_to_ground(chain, tip, time);
 }
 /// Where a chain on links starts: at its random anchor if the base is fixed.
@@ -235,10 +252,12 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
         b.free_position = random.vector(1);
         b.free_velocity = options.moving ? random.vector(1) : Vec3::zero();
     }
-    for (std::size_t k = 0; k < options.bodies && options.drag; ++k) b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});
+    for (std::size_t k = 0; k < options.bodies && options.drag; ++k)
+        b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});
     if (!options.tip || options.bodies == 0) return chain;
     TipJoint const tip = random_tip(random, options);
-    options.ring ? join_to_first(chain, tip, options.time) : join_to_ground(chain, tip, options.time);
+    options.ring ? join_to_first(chain, tip, options.time)
+                 : join_to_ground(chain, tip, options.time);
     return chain;
 }
 
@@ -272,7 +291,8 @@ ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base,
     for (std::size_t k = 0; k < bodies; ++k) {
         bool const bead = random.chance(0.5);
         Quat const orientation = bead ? Quat::identity() : random.orientation();
-        Vec3 const zero = Vec3::zero(), inboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction(),
+        Vec3 const zero = Vec3::zero(),
+                   inboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction(),
                    outboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction();
         b.mass.push_back(random_mass(random));
         b.inertia.push_back(bead ? Sym3::zero() : random_inertia(random, b.mass.back()));
@@ -302,8 +322,10 @@ ChainSpec closed(ChainSpec chain) {
     TipJoint tip;
     tip.ring = true;
     tip.type = JointType::link;
-    tip.length = chain.is_beads() ? norm(chain.beads.position[0] - chain.beads.position[last])
-                                  : norm(end(0, chain.linked.inboard[0]) - end(last, chain.linked.outboard[last]));
+    tip.length =
+        chain.is_beads()
+            ? norm(chain.beads.position[0] - chain.beads.position[last])
+            : norm(end(0, chain.linked.inboard[0]) - end(last, chain.linked.outboard[last]));
     join_to_ground(chain, tip);
     return chain;
 }

@@ -24,36 +24,51 @@ class Random {
     std::uint64_t state_;
 };
 
-/// mixed: revolute and spherical; weld: welds among any other joints; planar: revolute, every axis parallel to all the others
-/// (a free base: but for body 1's own motion); any: every kind.
-enum class RandomJoints { revolute, spherical, mixed, universal, weld, prismatic, helical, planar, any };
+/// mixed: revolute and spherical; weld: welds among any other joints; planar: revolute, every axis
+/// parallel to all the others (a free base: but for body 1's own motion); any: every kind.
+enum class RandomJoints {
+    revolute,
+    spherical,
+    mixed,
+    universal,
+    weld,
+    prismatic,
+    helical,
+    planar,
+    any
+};
 
 struct RandomChainOptions {
     std::size_t bodies = 8;
     RandomJoints joints = RandomJoints::mixed;
     Base base = Base::fixed;
-    bool moving = true;                           // velocities
-    bool loaded = true;                           // joint torques and wrenches
-    bool springs = false;                         // joint springs (unequal about the three axes) and dampers
-    bool drag = false;                            // of every body
-    double driven = 0;                            // probability that a joint that can be driven is
-    std::optional<JointType> tip = std::nullopt;  // type of the joint of the last body to ground; velocities are made to fit
-    bool ring = false;                            // that joint is to the first body instead; base: free
-    double time = 0;                              // at which they are made to fit: decides the rates of driven joints
+    bool moving = true;    // velocities
+    bool loaded = true;    // joint torques and wrenches
+    bool springs = false;  // joint springs (unequal about the three axes) and dampers
+    bool drag = false;     // of every body
+    double driven = 0;     // probability that a joint that can be driven is
+    std::optional<JointType> tip =
+        std::nullopt;   // type of the joint of the last body to ground; velocities are made to fit
+    bool ring = false;  // that joint is to the first body instead; base: free
+    double time = 0;    // at which they are made to fit: decides the rates of driven joints
 };
 
-/// Open chains of the seeds: every kind of joints, base, load and drive in turn; 1 to `most` bodies.
+/// Open chains of the seeds: every kind of joints, base, load and drive in turn; 1 to `most`
+/// bodies.
 RandomChainOptions options_in_turn(std::uint64_t seed, std::size_t most);
 
 /// Rigid bodies of mass 0.3 .. 3, size about 0.3, any shape a real body can have.
 ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options);
 
-/// Point beads of mass 0.3 .. 3 on links of 0.2 .. 0.6; velocities keep the lengths to rounding. A jointed tip: a link of that
-/// size from the last bead to the ground.
+/// Point beads of mass 0.3 .. 3 on links of 0.2 .. 0.6; velocities keep the lengths to rounding. A
+/// jointed tip: a link of that size from the last bead to the ground.
 ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip = Tip::free);
-/// Rigid bodies and beads mixed, on links of 0.2 .. 0.6; velocities keep the lengths to rounding. Ends as random_bead_chain's.
-ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base, Tip tip = Tip::free);
-/// A free chain of links with its last body joined to its first by one more, as long as they are apart; velocities are made to fit.
+/// Rigid bodies and beads mixed, on links of 0.2 .. 0.6; velocities keep the lengths to rounding.
+/// Ends as random_bead_chain's.
+ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base,
+                              Tip tip = Tip::free);
+/// A free chain of links with its last body joined to its first by one more, as long as they are
+/// apart; velocities are made to fit.
 ChainSpec closed(ChainSpec chain);
 /// A torque and a force on each body.
 std::vector<std::pair<Vec3, Vec3>> random_wrenches(std::uint64_t seed, std::size_t bodies);

@@ -16,9 +16,13 @@ Json read(std::string const& name) {
     return Json::parse(file);
 }
 
-Vec3 vector3(Json const& v) { return {{v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()}}; }
+Vec3 vector3(Json const& v) {
+    return {{v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()}};
+}
 /// A revolute joint's number as {x, 0, 0}, a spherical joint's three as they are.
-Vec3 joint_value(Json const& v) { return v.is_number() ? Vec3{{v.get<double>(), 0, 0}} : vector3(v); }
+Vec3 joint_value(Json const& v) {
+    return v.is_number() ? Vec3{{v.get<double>(), 0, 0}} : vector3(v);
+}
 std::vector<Vec3> vectors(Json const& list) {
     std::vector<Vec3> result;
     for (Json const& v : list) result.push_back(joint_value(v));
@@ -27,7 +31,9 @@ std::vector<Vec3> vectors(Json const& list) {
 Mat3 matrix3(Json const& rows) {
     Mat3 m;
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) m(i, j) = rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)).get<double>();
+        for (int j = 0; j < 3; ++j)
+            m(i, j) =
+                rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)).get<double>();
     return m;
 }
 Sym3 symmetric3(Json const& rows) {
@@ -51,7 +57,9 @@ void append_body(BodyArrays& bodies, Json const& body) {
         bodies.q.push_back(body.at("q").get<std::array<double, 4>>());
     bodies.qd.push_back(joint_value(body.at("qd")));
     bodies.torque.push_back(joint_value(body.at("tau")));
-    bodies.wrench.push_back({vector3(wrench), {{wrench.at(3).get<double>(), wrench.at(4).get<double>(), wrench.at(5).get<double>()}}});
+    bodies.wrench.push_back(
+        {vector3(wrench),
+         {{wrench.at(3).get<double>(), wrench.at(4).get<double>(), wrench.at(5).get<double>()}}});
 }
 
 ReferenceChain pinocchio(std::string const& file) {
@@ -114,7 +122,8 @@ ReferenceChain rods(Json const& data) {
 
 std::vector<ReferenceChain> const& reference_chains() {
     static std::vector<ReferenceChain> const chains = [] {
-        std::vector<ReferenceChain> all{pinocchio("pinocchio-chain3.json"), pinocchio("pinocchio-chain50.json")};
+        std::vector<ReferenceChain> all{pinocchio("pinocchio-chain3.json"),
+                                        pinocchio("pinocchio-chain50.json")};
         for (char const* file : {"pendulum-rods-n8.json", "pendulum-rods-n32.json"}) {
             Json const json = read(file);
             for (Json const& data : json.at("cases")) all.push_back(rods(data));

@@ -1,4 +1,5 @@
-// Third-party and extended-precision accelerations (tests/data/reference) as chains and what is expected of them.
+// Third-party and extended-precision accelerations (tests/data/reference) as chains and what is
+// expected of them.
 #pragma once
 
 #include <map>
@@ -10,20 +11,25 @@
 
 namespace catena::test {
 
-/// Entry k of every array belongs to body k + 1; W ground axes. Arrays that a file does not give are empty.
+/// Entry k of every array belongs to body k + 1; W ground axes. Arrays that a file does not give
+/// are empty.
 struct ReferenceChain {
-    std::string name;  // "chain3", "chain50", "rods-8 rest", "rods-8 moving", "rods-32 rest", "rods-32 moving"
+    std::string name;  // "chain3", "chain50", "rods-8 rest", "rods-8 moving", "rods-32 rest",
+                       // "rods-32 moving"
     ChainSpec chain;
-    Vec3 gravity = Vec3::zero();                                                   // W
-    std::vector<Vec3> qdd;                                                         // as in the contract: revolute {q'', 0, 0}; spherical: B
+    Vec3 gravity = Vec3::zero();  // W
+    std::vector<Vec3> qdd;        // as in the contract: revolute {q'', 0, 0}; spherical: B
     std::vector<Vec3> com_position, com_velocity, omega, com_acceleration, alpha;  // W
-    std::vector<Vec3> pin_force;                                                   // rods: whole force on the rod at its inboard pin, W
-    std::vector<std::string> qdd_digits, alpha_digits;                             // rods: 50 digits of q'' and of the absolute alpha_z
+    std::vector<Vec3> pin_force;  // rods: whole force on the rod at its inboard pin, W
+    std::vector<std::string> qdd_digits,
+        alpha_digits;  // rods: 50 digits of q'' and of the absolute alpha_z
     std::optional<double> kinetic_energy, potential_energy;
     double condition = 0;  // of the joint-space inertia
-    /// How far other programs are from `qdd` relative to its largest component ("simbody_double", "mujoco_double",
-    /// "pinocchio_double_aba_local", ...; rods: "pinocchio_double_relative_to_largest"), and the change of `qdd` when every
-    /// input moves by 2^-52 of itself ("change_when_every_input_moves_by_2pow_minus52_relative"); chain3 and chain50.
+    /// How far other programs are from `qdd` relative to its largest component ("simbody_double",
+    /// "mujoco_double", "pinocchio_double_aba_local", ...; rods:
+    /// "pinocchio_double_relative_to_largest"), and the change of `qdd` when every input moves by
+    /// 2^-52 of itself ("change_when_every_input_moves_by_2pow_minus52_relative"); chain3 and
+    /// chain50.
     std::map<std::string, double> agreement;
 };
 
@@ -32,9 +38,11 @@ std::vector<ReferenceChain> const& reference_chains();
 /// One of them by its name.
 ReferenceChain const& reference_chain(std::string const& name);
 
-/// Largest |component| of a - b over the largest |component| of b (Real: double, long double, ...; b: the reference).
+/// Largest |component| of a - b over the largest |component| of b (Real: double, long double, ...;
+/// b: the reference).
 template <class Real>
-Real relative_difference(std::vector<Vector<Real, 3>> const& a, std::vector<Vector<Real, 3>> const& b) {
+Real relative_difference(std::vector<Vector<Real, 3>> const& a,
+                         std::vector<Vector<Real, 3>> const& b) {
     Real difference(0), largest(0);
     for (std::size_t k = 0; k < b.size(); ++k)
         for (int i = 0; i < 3; ++i) {
@@ -48,7 +56,8 @@ Real relative_difference(std::vector<Vector<Real, 3>> const& a, std::vector<Vect
 template <class To, class From>
 std::vector<Vector<To, 3>> converted(std::vector<Vector<From, 3>> const& values) {
     std::vector<Vector<To, 3>> result;
-    for (auto const& v : values) result.push_back({{static_cast<To>(v[0]), static_cast<To>(v[1]), static_cast<To>(v[2])}});
+    for (auto const& v : values)
+        result.push_back({{static_cast<To>(v[0]), static_cast<To>(v[1]), static_cast<To>(v[2])}});
     return result;
 }
 

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "dca/host_space.hpp"
-#include "tree/scan_then.hpp"
 #include "tests/support/cuda_on_host.hpp"
 #include "tests/support/shared_by_host.hpp"
+#include "tree/scan_then.hpp"
 
 // After CUDA's words.
 #include "cuda/sweeps/scan_walk.cuh"
@@ -28,24 +28,31 @@ class ScanSpace : public HostSpace {
     /// That reach each other's memory; null: none do.
     static inline Communicator const* ranks = nullptr;
     using Direct = SharedByHost;
-    Direct connect(dca::Schedule const& schedule, int width, int /*beside*/) const { return {ranks, schedule, width}; }
+    Direct connect(dca::Schedule const& schedule, int width, int /*beside*/) const {
+        return {ranks, schedule, width};
+    }
     using HostSpace::exchange;
     template <class Numbers, int... D>
-    void exchange(Direct const& direct, Numbers const& numbers, BodyExchange<D> const&... beside) const {
+    void exchange(Direct const& direct, Numbers const& numbers,
+                  BodyExchange<D> const&... beside) const {
         direct(numbers);
         (exchange(*direct.communicator(), beside), ...);
     }
 
     class ScanTree {
       public:
-        ScanTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-                 std::int64_t slots)
+        ScanTree(std::vector<dca::Run> const& runs,
+                 std::vector<std::vector<dca::Merge>> const& levels,
+                 std::vector<dca::Root> const& roots, std::int64_t slots)
             : plan_(dca::plan_scan(runs, levels, roots, slots, most)) {
             most_stages = std::max(most_stages, plan_.size());
             for (dca::ScanStage const& stage : plan_)
-                stages_.push_back({static_cast<unsigned>(stage.blocks.size()), stage.levels, static_cast<int>(stage.width),
-                                   stage.of_runs ? cuda::view_of(runs, runs.data()) : cuda::RunsView{}, stage.slot.data(),
-                                   stage.merges.data(), stage.tops.data(), stage.blocks.data(), stage.level_end.data()});
+                stages_.push_back(
+                    {static_cast<unsigned>(stage.blocks.size()), stage.levels,
+                     static_cast<int>(stage.width),
+                     stage.of_runs ? cuda::view_of(runs, runs.data()) : cuda::RunsView{},
+                     stage.slot.data(), stage.merges.data(), stage.tops.data(), stage.blocks.data(),
+                     stage.level_end.data()});
         }
 
       private:
@@ -66,20 +73,25 @@ class ScanSpace : public HostSpace {
         walk(tree).climb_and_descend(scan);
     }
     template <class Scan, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count, Action const& action) const {
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count,
+                           Action const& action) const {
         if (walk(tree).at_once(scan, count, action)) return;
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
     template <class Scan, class T, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items, Action const& action) const {
-        if (walk(tree).at_once(scan, std::ssize(items), cuda::kernels::OfItem<T, Action>{items.data(), action})) return;
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items,
+                           Action const& action) const {
+        if (walk(tree).at_once(scan, std::ssize(items),
+                               cuda::kernels::OfItem<T, Action>{items.data(), action}))
+            return;
         climb_and_descend(tree, scan);
         over(items, action);
     }
     static bool has_threads_for_bodies(ScanTree const& tree) { return walk(tree).is_one_block(); }
     template <class Numbers, class Scan, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                     ScanTree const& top, Scan const& scan,
                      BodyExchange<D> const&... beside) const {
         auto const show = [&] {
             if (threadIdx.x == 0) exchange(direct, numbers, beside...);
@@ -87,13 +99,16 @@ class ScanSpace : public HostSpace {
         return walk(tree).turn_shared(scan, show, Launches{top});
     }
     template <class Numbers, class Scan, class T, class Action, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top,
-                     dca::ScanThen<Scan, std::span<T const>, Action> const& all, BodyExchange<D> const&... beside) const {
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                     ScanTree const& top,
+                     dca::ScanThen<Scan, std::span<T const>, Action> const& all,
+                     BodyExchange<D> const&... beside) const {
         auto const show = [&] {
             if (threadIdx.x == 0) exchange(direct, numbers, beside...);
         };
-        return walk(tree).turn_shared(all.scan, show, Launches{top}, std::ssize(all.items),
-                                      cuda::kernels::OfItem<T, Action>{all.items.data(), all.action});
+        return walk(tree).turn_shared(
+            all.scan, show, Launches{top}, std::ssize(all.items),
+            cuda::kernels::OfItem<T, Action>{all.items.data(), all.action});
     }
 
   private:
@@ -120,27 +135,32 @@ class ScanSpace : public HostSpace {
             auto const& stage = tree.stages_.front();
             unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(stage, count);
             blocks_of_clusters.insert(blocks);
-            cuda_on_host::launch({blocks, cuda::kernels::most_of_scan, cuda::kernels::numbers_of_turn<Scan>(stage, blocks), blocks},
-                                 cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count, action);
+            cuda_on_host::launch({blocks, cuda::kernels::most_of_scan,
+                                  cuda::kernels::numbers_of_turn<Scan>(stage, blocks), blocks},
+                                 cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count,
+                                 action);
             return true;
         }
         template <class Scan, class Exchange>
         void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
             auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
             ++shared_turns;
-            cuda_on_host::launch({1, cuda::kernels::most_of_scan, numbers<Scan>(own) + numbers<Scan>(above)},
-                                 cuda::kernels::turn_shared_scan<Scan, Exchange>, own, above, exchange, scan);
+            cuda_on_host::launch(
+                {1, cuda::kernels::most_of_scan, numbers<Scan>(own) + numbers<Scan>(above)},
+                cuda::kernels::turn_shared_scan<Scan, Exchange>, own, above, exchange, scan);
         }
         template <class Scan, class Exchange, class Action>
-        bool turn_shared_then(Scan const& scan, Exchange const& exchange, Launches const& top, std::int64_t count,
-                              Action const& action) const {
+        bool turn_shared_then(Scan const& scan, Exchange const& exchange, Launches const& top,
+                              std::int64_t count, Action const& action) const {
             auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
             unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(own, count);
             ++shared_turns;
             blocks_of_clusters.insert(blocks);
             cuda_on_host::launch(
-                {blocks, cuda::kernels::most_of_scan, cuda::kernels::numbers_of_turn<Scan>(own, blocks) + numbers<Scan>(above), blocks},
-                cuda::kernels::turn_shared_scan_then<Scan, Exchange, Action>, own, above, exchange, scan, count, action);
+                {blocks, cuda::kernels::most_of_scan,
+                 cuda::kernels::numbers_of_turn<Scan>(own, blocks) + numbers<Scan>(above), blocks},
+                cuda::kernels::turn_shared_scan_then<Scan, Exchange, Action>, own, above, exchange,
+                scan, count, action);
             return true;
         }
 
@@ -150,12 +170,17 @@ class ScanSpace : public HostSpace {
             return static_cast<std::size_t>(cuda::kernels::BlockOfScan<Scan>::size(stage));
         }
         template <class Scan>
-        void launch(void (*kernel)(cuda::kernels::DeviceScanStage, Scan), std::size_t i, Scan const& scan) const {
+        void launch(void (*kernel)(cuda::kernels::DeviceScanStage, Scan), std::size_t i,
+                    Scan const& scan) const {
             auto const& stage = tree.stages_[i];
-            cuda_on_host::launch({stage.blocks, cuda::kernels::threads_of_scan(stage), numbers<Scan>(stage)}, kernel, stage, scan);
+            cuda_on_host::launch(
+                {stage.blocks, cuda::kernels::threads_of_scan(stage), numbers<Scan>(stage)}, kernel,
+                stage, scan);
         }
     };
-    static cuda::ScanWalk<Launches> walk(ScanTree const& tree) { return cuda::ScanWalk<Launches>({tree}); }
+    static cuda::ScanWalk<Launches> walk(ScanTree const& tree) {
+        return cuda::ScanWalk<Launches>({tree});
+    }
 };
 
 }  // namespace catena::test

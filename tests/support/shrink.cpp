@@ -21,7 +21,8 @@ struct Cut {
     void operator()(CarriedBeads& beads) const {
         if (beads.offset.size() != size + 1) return;
         std::int64_t const begin = beads.offset[first], end = beads.offset[last];
-        Cut const of_beads{static_cast<std::size_t>(begin), static_cast<std::size_t>(end), beads.position.size()};
+        Cut const of_beads{static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
+                           beads.position.size()};
         of_beads(beads.position), of_beads(beads.mass), of_beads(beads.residue);
         Cut{first, last + 1, size + 1}(beads.offset);
         for (std::int64_t& o : beads.offset) o -= begin;
@@ -38,8 +39,10 @@ struct Cut {
 void cut_bodies(ChainSpec& chain, Cut const& cut) {
     BodyArrays& b = chain.bodies;
     cut(b.driven), cut(b.carried);
-    cut(b.mass), cut(b.com), cut(b.inertia), cut(b.joint), cut(b.axis), cut(b.rotation), cut(b.translation), cut(b.q), cut(b.qd);
-    cut(b.first_axis), cut(b.pitch), cut(b.torque), cut(b.stiffness), cut(b.damping), cut(b.rest), cut(b.wrench), cut(b.drag);
+    cut(b.mass), cut(b.com), cut(b.inertia), cut(b.joint), cut(b.axis), cut(b.rotation),
+        cut(b.translation), cut(b.q), cut(b.qd);
+    cut(b.first_axis), cut(b.pitch), cut(b.torque), cut(b.stiffness), cut(b.damping), cut(b.rest),
+        cut(b.wrench), cut(b.drag);
     if (chain.base == Base::fixed || cut.first == 0) return;
     auto const clear = [](auto& values, auto zero) {
         if (!values.empty()) values[0] = zero;
@@ -47,7 +50,8 @@ void cut_bodies(ChainSpec& chain, Cut const& cut) {
     b.joint[0] = JointType::free;  // where its joint frame was; nothing else is left of the joint
     b.q[0] = {1, 0, 0, 0};
     b.free_position = b.translation[0];
-    clear(b.torque, Vec3::zero()), clear(b.stiffness, Vec3::zero()), clear(b.damping, Vec3::zero()), clear(b.first_axis, Vec3::zero());
+    clear(b.torque, Vec3::zero()), clear(b.stiffness, Vec3::zero()), clear(b.damping, Vec3::zero()),
+        clear(b.first_axis, Vec3::zero());
     clear(b.pitch, 0.0), clear(b.rest, b.q[0]);
     std::erase_if(b.driven, [](DrivenJoint const& d) { return d.body == 0; });
 }
@@ -63,7 +67,8 @@ ChainSpec part(ChainSpec chain, std::size_t first, std::size_t last, double time
         LinkedArrays& b = chain.linked;
         if (first > 0) b.anchor = b.position[first - 1];
         cut(b.carried);
-        cut(b.mass), cut(b.inertia), cut(b.position), cut(b.velocity), cut(b.orientation), cut(b.omega), cut(b.inboard), cut(b.outboard);
+        cut(b.mass), cut(b.inertia), cut(b.position), cut(b.velocity), cut(b.orientation),
+            cut(b.omega), cut(b.inboard), cut(b.outboard);
         cut(b.length);
     } else {
         cut_bodies(chain, cut);
@@ -75,7 +80,8 @@ ChainSpec part(ChainSpec chain, std::size_t first, std::size_t last, double time
 void zero(std::vector<Vec3>& values) { std::fill(values.begin(), values.end(), Vec3::zero()); }
 
 void clear_velocities(ChainSpec& chain) {
-    zero(chain.bodies.qd), zero(chain.beads.velocity), zero(chain.linked.velocity), zero(chain.linked.omega);
+    zero(chain.bodies.qd), zero(chain.beads.velocity), zero(chain.linked.velocity),
+        zero(chain.linked.omega);
     chain.bodies.free_velocity = Vec3::zero();
 }
 
@@ -93,7 +99,8 @@ std::vector<void (*)(ChainSpec&)> simplifications() {
 
 class Shrinking {
   public:
-    Shrinking(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds, double time)
+    Shrinking(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds,
+              double time)
         : chain_(chain), holds_(holds), time_(time) {}
 
     ChainSpec run() {
@@ -127,59 +134,81 @@ class Shrinking {
     double time_;
 };
 
-std::string text(Vec3 const& v) { return fmt::format("({:.17g}, {:.17g}, {:.17g})", v[0], v[1], v[2]); }
-std::string text(std::array<double, 4> const& q) { return fmt::format("({:.17g}, {:.17g}, {:.17g}, {:.17g})", q[0], q[1], q[2], q[3]); }
-std::string text(Sym3 const& s) { return fmt::format("[{:.17g}]", fmt::join(s.data, s.data + 6, ", ")); }
-std::string text(Mat3 const& m) { return fmt::format("[{:.17g}]", fmt::join(m.data, m.data + 9, ", ")); }
+std::string text(Vec3 const& v) {
+    return fmt::format("({:.17g}, {:.17g}, {:.17g})", v[0], v[1], v[2]);
+}
+std::string text(std::array<double, 4> const& q) {
+    return fmt::format("({:.17g}, {:.17g}, {:.17g}, {:.17g})", q[0], q[1], q[2], q[3]);
+}
+std::string text(Sym3 const& s) {
+    return fmt::format("[{:.17g}]", fmt::join(s.data, s.data + 6, ", "));
+}
+std::string text(Mat3 const& m) {
+    return fmt::format("[{:.17g}]", fmt::join(m.data, m.data + 9, ", "));
+}
 
 std::string describe_body(BodyArrays const& b, std::size_t k) {
-    std::string line = fmt::format("  {} {}: mass {:.17g}, com {}, inertia {}, axis {}, rotation {}, translation {}, q {}, qd {}", k + 1,
-                                   name_of(b.joint[k]), b.mass[k], text(b.com[k]), text(b.inertia[k]), text(b.axis[k]), text(b.rotation[k]),
-                                   text(b.translation[k]), text(b.q[k]), text(b.qd[k]));
+    std::string line = fmt::format(
+        "  {} {}: mass {:.17g}, com {}, inertia {}, axis {}, rotation {}, translation {}, q {}, qd "
+        "{}",
+        k + 1, name_of(b.joint[k]), b.mass[k], text(b.com[k]), text(b.inertia[k]), text(b.axis[k]),
+        text(b.rotation[k]), text(b.translation[k]), text(b.q[k]), text(b.qd[k]));
     auto const add = [&](char const* name, auto const& values) {
         if (!values.empty()) line += fmt::format(", {} {}", name, text(values[k]));
     };
     if (b.joint[k] == JointType::universal) line += ", first axis " + text(b.first_axis[k]);
     if (b.joint[k] == JointType::helical) line += fmt::format(", pitch {:.17g}", b.pitch[k]);
-    add("torque", b.torque), add("stiffness", b.stiffness), add("damping", b.damping), add("rest", b.rest);
-    if (!b.wrench.empty()) line += fmt::format(", wrench {} {}", text(b.wrench[k].first), text(b.wrench[k].second));
+    add("torque", b.torque), add("stiffness", b.stiffness), add("damping", b.damping),
+        add("rest", b.rest);
+    if (!b.wrench.empty())
+        line += fmt::format(", wrench {} {}", text(b.wrench[k].first), text(b.wrench[k].second));
     if (!b.drag.empty()) line += fmt::format(", drag {:.17g} {:.17g}", b.drag[k][0], b.drag[k][1]);
     for (DrivenJoint const& d : b.driven)
         if (static_cast<std::size_t>(d.body) == k)
-            for (Course const& c : d.course)
-                line +=
-                    fmt::format(", driven {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", c.offset, c.rate, c.amplitude, c.frequency, c.phase);
+            for (PrescribedMotion const& c : d.course)
+                line += fmt::format(", driven {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", c.offset,
+                                    c.rate, c.amplitude, c.frequency, c.phase);
     return line + "\n";
 }
 
 }  // namespace
 
 std::string describe(ChainSpec const& chain) {
-    std::string lines = fmt::format("{} bodies, base {}, tip {}\n", chain.size(), chain.base == Base::fixed ? "fixed" : "free",
-                                    chain.tip == Tip::free ? "free" : name_of(chain.tip_joint.type));
+    std::string lines = fmt::format(
+        "{} bodies, base {}, tip {}\n", chain.size(), chain.base == Base::fixed ? "fixed" : "free",
+        chain.tip == Tip::free ? "free" : name_of(chain.tip_joint.type));
     BodyArrays const& b = chain.bodies;
     if (b.size() > 0 && chain.base == Base::free)
-        lines += fmt::format("  position {}, velocity {}\n", text(b.free_position), text(b.free_velocity));
+        lines += fmt::format("  position {}, velocity {}\n", text(b.free_position),
+                             text(b.free_velocity));
     for (std::size_t k = 0; k < b.size(); ++k) lines += describe_body(b, k);
     for (std::size_t k = 0; k < chain.beads.size(); ++k)
-        lines += fmt::format("  {} bead: mass {:.17g}, position {}, velocity {}\n", k + 1, chain.beads.mass[k],
-                             text(chain.beads.position[k]), text(chain.beads.velocity[k]));
+        lines += fmt::format("  {} bead: mass {:.17g}, position {}, velocity {}\n", k + 1,
+                             chain.beads.mass[k], text(chain.beads.position[k]),
+                             text(chain.beads.velocity[k]));
     LinkedArrays const& l = chain.linked;
     for (std::size_t k = 0; k < l.size(); ++k)
-        lines += fmt::format("  {} {}: mass {:.17g}, inertia {}, position {}, velocity {}, q {}, omega {}, inboard {}, outboard {}\n",
-                             k + 1, l.is_bead(k) ? "bead" : "body", l.mass[k], text(l.inertia[k]), text(l.position[k]), text(l.velocity[k]),
-                             text(l.orientation[k]), text(l.omega[k]), text(l.inboard[k]), text(l.outboard[k]));
+        lines += fmt::format(
+            "  {} {}: mass {:.17g}, inertia {}, position {}, velocity {}, q {}, omega {}, inboard "
+            "{}, outboard {}\n",
+            k + 1, l.is_bead(k) ? "bead" : "body", l.mass[k], text(l.inertia[k]),
+            text(l.position[k]), text(l.velocity[k]), text(l.orientation[k]), text(l.omega[k]),
+            text(l.inboard[k]), text(l.outboard[k]));
     if (chain.base == Base::fixed && b.size() == 0)
-        lines += fmt::format("  anchor {}\n", text(chain.is_beads() ? chain.beads.anchor : l.anchor));
+        lines +=
+            fmt::format("  anchor {}\n", text(chain.is_beads() ? chain.beads.anchor : l.anchor));
     TipJoint const& t = chain.tip_joint;
     if (chain.tip == Tip::jointed)
-        lines +=
-            fmt::format("  tip: axis {}, first axis {}, pitch {:.17g}, rotation {}, translation {}, q {}, anchor {}\n", text(t.axis),
-                        text(t.first_axis), t.pitch, text(t.rotation), text(t.translation), text(t.q), t.anchor ? text(*t.anchor) : "none");
+        lines += fmt::format(
+            "  tip: axis {}, first axis {}, pitch {:.17g}, rotation {}, translation {}, q {}, "
+            "anchor {}\n",
+            text(t.axis), text(t.first_axis), t.pitch, text(t.rotation), text(t.translation),
+            text(t.q), t.anchor ? text(*t.anchor) : "none");
     return lines;
 }
 
-Shrunk shrink(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds, double time) {
+Shrunk shrink(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds,
+              double time) {
     ChainSpec const smallest = Shrinking(chain, holds, time).run();
     return {smallest, describe(smallest)};
 }

@@ -12,8 +12,8 @@
 #include "tests/support/shared_by_host.hpp"
 
 // After CUDA's words.
-#include "cuda/sweeps/revolute_teams.cuh"
 #include "cuda/short/short_chain.cuh"
+#include "cuda/sweeps/revolute_teams.cuh"
 #include "cuda/sweeps/stage_walk.cuh"
 
 namespace catena::test {
@@ -22,10 +22,11 @@ namespace kernels = cuda::kernels;
 struct StagedGpu {
     dca::StageSizes sizes;
     bool runs_apart = false;               // also where they are few, and a thread each
-    std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
+    std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned
+                                           // take what they have to do in turns
     bool short_chains = false;             // by themselves
     bool ranks_reach_each_other = false;
-    bool narrow_teams = false;                                   // for runs on hinges, also where these are few
+    bool narrow_teams = false;  // for runs on revolute joints, also where these are few
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
     std::int64_t fewest_groups_below_stages = cuda::fewest_groups_below_stages;
     bool lanes_above_groups = false;  // one cluster, wherever it can
@@ -38,7 +39,7 @@ struct StagesSeen {
     std::set<unsigned> blocks_of_short_chains;
     std::set<unsigned> blocks_that_turn_shared;  // below the one that speaks to other ranks
     std::set<unsigned> blocks_above_groups;
-    std::set<int> lanes_of_teams;  // of runs on hinges
+    std::set<int> lanes_of_teams;  // of runs on revolute joints
     int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, groups = 0;
 };
 
@@ -53,7 +54,9 @@ class StageSpace : public HostSpace {
     /// That reach each other's memory; null: none do.
     static inline Communicator const* ranks = nullptr;
     using Direct = SharedByHost;
-    Direct connect(dca::Schedule const& schedule, int width, int /*beside*/) const { return {ranks, schedule, width}; }
+    Direct connect(dca::Schedule const& schedule, int width, int /*beside*/) const {
+        return {ranks, schedule, width};
+    }
     template <class Numbers>
     void exchange(Direct const& direct, Numbers const& numbers) const {
         direct(numbers);
@@ -61,24 +64,31 @@ class StageSpace : public HostSpace {
 
     class Tree {
       public:
-        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
-            : runs_(cuda::view_of(runs, runs.data())), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
+        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
+             std::vector<dca::Root> const& roots, std::int64_t slots,
+             std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
+            : runs_(cuda::view_of(runs, runs.data())),
+              sizes_(gpu.sizes),
+              threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             sizes_.runs_apart = records.whole_runs;
             cuda::PlanByGroups plan =
-                cuda::plan_by_groups(runs, levels, roots, slots, restricted, records, sizes_, gpu.fewest_groups_below_stages);
+                cuda::plan_by_groups(runs, levels, roots, slots, restricted, records, sizes_,
+                                     gpu.fewest_groups_below_stages);
             plan_ = std::move(plan.stages);
             groups_ = std::move(plan.groups);
             stages_above_groups_ = plan.stages_above_groups;
-            if (stages_above_groups_) seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
+            if (stages_above_groups_)
+                seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
             if (!stages_above_groups_ && gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
             if (!gpu.runs_apart)
-                lanes_of_teams_ = gpu.narrow_teams ? kernels::lanes_of_narrow_team : kernels::lanes_of_teams(std::ssize(runs));
-            if (gpu.short_chains) short_ = kernels::one_chain_of(runs, levels, roots, dca::part_length);
+                lanes_of_teams_ = gpu.narrow_teams ? kernels::lanes_of_narrow_team
+                                                   : kernels::lanes_of_teams(std::ssize(runs));
+            if (gpu.short_chains)
+                short_ = kernels::one_chain_of(runs, levels, roots, dca::part_length);
             if (gpu.lanes_above_groups && !groups_.empty())
                 above_groups_ = kernels::one_chain_of(runs, levels, roots, cuda::bodies_of_group);
             together_.emplace(plan_, sizes_);
@@ -115,7 +125,8 @@ class StageSpace : public HostSpace {
 
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
-        for (std::vector<double>& kept : tree.kept_) std::fill(kept.begin(), kept.end(), std::numeric_limits<double>::quiet_NaN());
+        for (std::vector<double>& kept : tree.kept_)
+            std::fill(kept.begin(), kept.end(), std::numeric_limits<double>::quiet_NaN());
         walk(tree).climb(sweep);
     }
     template <class Sweep>
@@ -133,7 +144,8 @@ class StageSpace : public HostSpace {
     }
 
     template <class Numbers, class Sweep>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, Tree const& tree, Tree const& top, Sweep const& sweep) const {
+    bool turn_shared(Direct const& direct, Numbers const& numbers, Tree const& tree,
+                     Tree const& top, Sweep const& sweep) const {
         return walk(tree).turn_shared(sweep, Exchange<Numbers>{direct, numbers}, Launches{top});
     }
 
@@ -174,7 +186,8 @@ class StageSpace : public HostSpace {
     }
     template <class Sweep>
     static bool turn_short(Tree const& tree, Sweep const& sweep) {
-        cuda_on_host::Launch const cluster = cluster_of<kernels::ShortWarp<Sweep>>(tree, tree.short_);
+        cuda_on_host::Launch const cluster =
+            cluster_of<kernels::ShortWarp<Sweep>>(tree, tree.short_);
         if (cluster.numbers > cuda_on_host::most_shared_bytes / sizeof(double)) return false;
         seen.blocks_of_short_chains.insert(cluster.blocks);
         cuda_on_host::launch(cluster, kernels::turn_short<Sweep>, tree.short_, sweep);
@@ -182,7 +195,8 @@ class StageSpace : public HostSpace {
     }
     template <class Warp>
     static cuda_on_host::Launch cluster_of(Tree const& tree, kernels::OneChain const& chain) {
-        kernels::ClusterGrid const grid = kernels::grid_of_cluster<Warp>(chain, tree.most_blocks_of_cluster_);
+        kernels::ClusterGrid const grid =
+            kernels::grid_of_cluster<Warp>(chain, tree.most_blocks_of_cluster_);
         return {grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks};
     }
     /// Of StageWalk.
@@ -191,7 +205,9 @@ class StageSpace : public HostSpace {
 
         std::size_t stages() const { return tree.plan_.stages.size(); }
         bool runs_apart() const { return tree.plan_.runs_apart; }
-        bool gathers() const { return !tree.plan_.stages.empty() && tree.plan_.stages.back().gathers; }
+        bool gathers() const {
+            return !tree.plan_.stages.empty() && tree.plan_.stages.back().gathers;
+        }
         unsigned blocks(std::size_t i) const { return static_cast<unsigned>(stage(i).blocks()); }
         bool takes_runs(std::size_t i) const { return stage(i).of_runs; }
         template <class Sweep>
@@ -217,18 +233,24 @@ class StageSpace : public HostSpace {
         }
         /// As DeviceTree's.
         template <class Sweep, class Exchange>
-        bool can_turn(std::size_t first, Sweep const& sweep, Exchange const&, Launches const& top) const {
-            return can_turn(first, sweep) && grid_of_turn<Sweep>(first, &top).numbers <= cuda_on_host::most_shared_bytes / sizeof(double);
+        bool can_turn(std::size_t first, Sweep const& sweep, Exchange const&,
+                      Launches const& top) const {
+            return can_turn(first, sweep) && grid_of_turn<Sweep>(first, &top).numbers <=
+                                                 cuda_on_host::most_shared_bytes / sizeof(double);
         }
         template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
-            seen.blocks_that_turn_shared.insert(first + 1 < stages() ? view(tree, stage(first)).blocks : 0);
+        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
+                  Launches const& top) const {
+            seen.blocks_that_turn_shared.insert(
+                first + 1 < stages() ? view(tree, stage(first)).blocks : 0);
             turn(first, sweep, exchange, &top);
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { over_runs(kernel, grid, sweep); };
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
+                over_runs(kernel, grid, sweep);
+            };
             if (kernels::climb_by_teams<Sweep>(tree.lanes_of_teams_, runs, by_teams)) {
                 seen.lanes_of_teams.insert(tree.lanes_of_teams_);
                 return;
@@ -239,19 +261,24 @@ class StageSpace : public HostSpace {
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { over_runs(kernel, grid, sweep); };
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
+                over_runs(kernel, grid, sweep);
+            };
             if (kernels::descend_by_teams<Sweep>(tree.lanes_of_teams_, runs, by_teams)) return;
-            kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_);
+            kernels::RunsGrid const grid =
+                kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_);
             over_runs(kernels::descend_runs<Sweep>, grid, sweep);
         }
         bool stages_above_groups() const { return tree.stages_above_groups_; }
         template <class Sweep>
         void climb_groups(Sweep const& sweep) const {
-            over_runs(kernels::climb_groups<Sweep>, kernels::grid_of_climb<Sweep>(tree.runs_.count, tree.shared_bytes_), sweep);
+            over_runs(kernels::climb_groups<Sweep>,
+                      kernels::grid_of_climb<Sweep>(tree.runs_.count, tree.shared_bytes_), sweep);
         }
         template <class Sweep>
         void descend_groups(Sweep const& sweep) const {
-            over_runs(kernels::descend_groups<Sweep>, kernels::grid_of_descent<Sweep>(tree.runs_.count, tree.shared_bytes_), sweep);
+            over_runs(kernels::descend_groups<Sweep>,
+                      kernels::grid_of_descent<Sweep>(tree.runs_.count, tree.shared_bytes_), sweep);
         }
         template <class Sweep>
         bool can_turn_groups() const {
@@ -259,7 +286,8 @@ class StageSpace : public HostSpace {
         }
         template <class Sweep>
         void turn_groups(Sweep const& sweep) const {
-            cuda_on_host::Launch const cluster = cluster_of<kernels::GroupLanes<Sweep>>(tree, tree.above_groups_);
+            cuda_on_host::Launch const cluster =
+                cluster_of<kernels::GroupLanes<Sweep>>(tree, tree.above_groups_);
             seen.blocks_above_groups.insert(cluster.blocks);
             cuda_on_host::launch(cluster, kernels::turn_groups<Sweep>, tree.above_groups_,
                                  cuda::view_of_groups(tree.groups_, tree.groups_.data()), sweep);
@@ -272,28 +300,37 @@ class StageSpace : public HostSpace {
             bool const together = first + 1 < stages();
             dca::Stage const &lower = stage(first), &upper = tree.plan_.stages.back();
             auto const of = [&](dca::Stage const& one) {
-                return kernels::threads_for<Sweep>(threads_for(one), kernels::threads_of_turn<Sweep>);
+                return kernels::threads_for<Sweep>(threads_for(one),
+                                                   kernels::threads_of_turn<Sweep>);
             };
-            int const threads = std::max({of(lower), of(upper), top ? kernels::threads_among_ranks<Sweep> : 0});
+            int const threads =
+                std::max({of(lower), of(upper), top ? kernels::threads_among_ranks<Sweep> : 0});
             EXPECT_LE(threads, kernels::threads_of_turn<Sweep>);
             std::size_t shared = numbers<Sweep>(view(tree, upper), threads);
             if (top) shared += numbers<Sweep>(view(top->tree, top->stage(0)), threads);
             if (together) shared = std::max(shared, numbers<Sweep>(view(tree, lower), threads));
             std::int64_t const blocks = upper.blocks() + (together ? lower.blocks() : 0);
-            return {static_cast<unsigned>(blocks), static_cast<unsigned>(threads), shared, 1, together};
+            return {static_cast<unsigned>(blocks), static_cast<unsigned>(threads), shared, 1,
+                    together};
         }
         /// `top`: null where nothing is above.
         template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Launches const* top) const {
+        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
+                  Launches const* top) const {
             see_stages();
             bool const together = first + 1 < stages();
             kernels::DeviceStage const here = view(tree, tree.plan_.stages.back()),
-                                       below = together ? view(tree, stage(first)) : kernels::DeviceStage{},
-                                       above = top ? view(top->tree, top->stage(0)) : kernels::DeviceStage{};
-            kernels::TurnLetters letters;
-            if (together) letters = {{tree.up_.data(), here.layout.items}, {tree.down_.data(), here.forces}, tree.launches_.data()};
-            cuda_on_host::launch(grid_of_turn<Sweep>(first, top), kernels::turn<Sweep, Exchange>, below, here, above, letters, exchange,
-                                 sweep);
+                                       below = together ? view(tree, stage(first))
+                                                        : kernels::DeviceStage{},
+                                       above = top ? view(top->tree, top->stage(0))
+                                                   : kernels::DeviceStage{};
+            kernels::TopLaunchLetters letters;
+            if (together)
+                letters = {{tree.up_.data(), here.layout.items},
+                           {tree.down_.data(), here.forces},
+                           tree.launches_.data()};
+            cuda_on_host::launch(grid_of_turn<Sweep>(first, top), kernels::turn<Sweep, Exchange>,
+                                 below, here, above, letters, exchange, sweep);
         }
         int threads_for(dca::Stage const& stage) const {
             int const wanted = dca::threads_for(stage, tree.sizes_);
@@ -308,23 +345,33 @@ class StageSpace : public HostSpace {
             return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage, of_threads));
         }
         template <class Sweep>
-        void launch(void (*kernel)(kernels::DeviceStage, Sweep), dca::Stage const& stage, Sweep const& sweep) const {
+        void launch(void (*kernel)(kernels::DeviceStage, Sweep), dca::Stage const& stage,
+                    Sweep const& sweep) const {
             see_stages();
-            int const threads = kernels::threads_for<Sweep>(threads_for(stage), kernels::threads_of<Sweep>);
+            int const threads =
+                kernels::threads_for<Sweep>(threads_for(stage), kernels::threads_of<Sweep>);
             auto const here = view(tree, stage);
-            cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
+            cuda_on_host::launch(
+                {here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)},
+                kernel, here, sweep);
         }
         template <class Sweep>
-        void over_runs(void (*kernel)(cuda::RunsView, cuda::GroupsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
-            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_,
+        void over_runs(void (*kernel)(cuda::RunsView, cuda::GroupsView, Sweep),
+                       kernels::RunsGrid const& grid, Sweep const& sweep) const {
+            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)},
+                                 kernel, tree.runs_,
                                  cuda::view_of_groups(tree.groups_, tree.groups_.data()), sweep);
         }
         template <class Sweep>
-        void over_runs(void (*kernel)(cuda::RunsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
-            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_, sweep);
+        void over_runs(void (*kernel)(cuda::RunsView, Sweep), kernels::RunsGrid const& grid,
+                       Sweep const& sweep) const {
+            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)},
+                                 kernel, tree.runs_, sweep);
         }
     };
-    static cuda::StageWalk<Launches> walk(Tree const& tree) { return cuda::StageWalk<Launches>({tree}); }
+    static cuda::StageWalk<Launches> walk(Tree const& tree) {
+        return cuda::StageWalk<Launches>({tree});
+    }
 };
 
 }  // namespace catena::test

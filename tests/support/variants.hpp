@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "math/executor.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
+#include "math/executor.hpp"
 #include "tests/support/gpu.hpp"
 
 namespace catena::test {

@@ -1,4 +1,5 @@
-// As many bodies as a vector has lanes, one after the other, as a place (dca/lane_access.hpp): their numbers stand next to each other.
+// As many bodies as a vector has lanes, one after the other, as a place (dca/lane_access.hpp):
+// their numbers stand next to each other.
 #pragma once
 
 #include "dca/lane_access.hpp"

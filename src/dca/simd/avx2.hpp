@@ -19,7 +19,8 @@ class Real {
     /// Bit j: lane j is not a positive finite number.
     unsigned not_positive() const {
         __m256d const zero = _mm256_setzero_pd();
-        __m256d const good = _mm256_and_pd(_mm256_cmp_pd(v_, zero, _CMP_GT_OQ), _mm256_cmp_pd(v_ - v_, zero, _CMP_EQ_OQ));
+        __m256d const good = _mm256_and_pd(_mm256_cmp_pd(v_, zero, _CMP_GT_OQ),
+                                           _mm256_cmp_pd(v_ - v_, zero, _CMP_EQ_OQ));
         return 0xfU & ~static_cast<unsigned>(_mm256_movemask_pd(good));
     }
 
@@ -29,10 +30,14 @@ class Real {
     friend Real operator/(Real a, Real b) { return Real(a.v_ / b.v_); }
     friend Real operator-(Real a) { return Real(-a.v_); }
     friend Real fused(Real a, Real b, Real c) { return Real(_mm256_fmadd_pd(a.v_, b.v_, c.v_)); }
-    friend Real less_product(Real a, Real b, Real c) { return Real(_mm256_fnmadd_pd(a.v_, b.v_, c.v_)); }
+    friend Real less_product(Real a, Real b, Real c) {
+        return Real(_mm256_fnmadd_pd(a.v_, b.v_, c.v_));
+    }
     friend Real sqrt(Real a) { return Real(_mm256_sqrt_pd(a.v_)); }
     friend Real floor(Real a) { return Real(_mm256_floor_pd(a.v_)); }
-    friend Real truncated(Real a) { return Real(_mm256_round_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }
+    friend Real truncated(Real a) {
+        return Real(_mm256_round_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC));
+    }
     /// a < b ? yes : no in every lane.
     friend Real where_less(Real a, Real b, Real yes, Real no) {
         return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_cmp_pd(a.v_, b.v_, _CMP_LT_OQ)));
@@ -40,7 +45,8 @@ class Real {
     /// `yes` in the lanes whose bits are set.
     static Real choose(unsigned which, Real yes, Real no) {
         __m256i const bits = _mm256_set_epi64x(8, 4, 2, 1);
-        __m256i const chosen = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(static_cast<long long>(which)), bits), bits);
+        __m256i const chosen = _mm256_cmpeq_epi64(
+            _mm256_and_si256(_mm256_set1_epi64x(static_cast<long long>(which)), bits), bits);
         return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_castsi256_pd(chosen)));
     }
     /// Whether one is beyond +-bound.
@@ -53,7 +59,8 @@ class Real {
     static Real pick(double const* origin, std::int64_t const* at) {
         return Real(_mm256_set_pd(origin[at[3]], origin[at[2]], origin[at[1]], origin[at[0]]));
     }
-    /// Numbers 0 to 3 from origin + at[j] in lane j: vector i, at `to` + i lanes, gets number i of every lane.
+    /// Numbers 0 to 3 from origin + at[j] in lane j: vector i, at `to` + i lanes, gets number i of
+    /// every lane.
     static void read_four(double const* origin, std::int64_t const* at, double* to) {
         __m256d rows[lanes];
         for (int j = 0; j < lanes; ++j) rows[j] = _mm256_loadu_pd(origin + at[j]);

@@ -19,7 +19,8 @@ class Real {
     /// Bit j: lane j is not a positive finite number.
     unsigned not_positive() const {
         __m512d const zero = _mm512_setzero_pd();
-        return 0xffU & ~static_cast<unsigned>(_mm512_cmp_pd_mask(v_, zero, _CMP_GT_OQ) & _mm512_cmp_pd_mask(v_ - v_, zero, _CMP_EQ_OQ));
+        return 0xffU & ~static_cast<unsigned>(_mm512_cmp_pd_mask(v_, zero, _CMP_GT_OQ) &
+                                              _mm512_cmp_pd_mask(v_ - v_, zero, _CMP_EQ_OQ));
     }
 
     friend Real operator+(Real a, Real b) { return Real(a.v_ + b.v_); }
@@ -28,30 +29,42 @@ class Real {
     friend Real operator/(Real a, Real b) { return Real(a.v_ / b.v_); }
     friend Real operator-(Real a) { return Real(-a.v_); }
     friend Real fused(Real a, Real b, Real c) { return Real(_mm512_fmadd_pd(a.v_, b.v_, c.v_)); }
-    friend Real less_product(Real a, Real b, Real c) { return Real(_mm512_fnmadd_pd(a.v_, b.v_, c.v_)); }
+    friend Real less_product(Real a, Real b, Real c) {
+        return Real(_mm512_fnmadd_pd(a.v_, b.v_, c.v_));
+    }
     friend Real sqrt(Real a) { return Real(_mm512_sqrt_pd(a.v_)); }
-    friend Real floor(Real a) { return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)); }
-    friend Real truncated(Real a) { return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }
+    friend Real floor(Real a) {
+        return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+    }
+    friend Real truncated(Real a) {
+        return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC));
+    }
     /// a < b ? yes : no in every lane.
     friend Real where_less(Real a, Real b, Real yes, Real no) {
-        return Real(_mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v_, b.v_, _CMP_LT_OQ), no.v_, yes.v_));
+        return Real(
+            _mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v_, b.v_, _CMP_LT_OQ), no.v_, yes.v_));
     }
     /// `yes` in the lanes whose bits are set.
     static Real choose(unsigned which, Real yes, Real no) {
         return Real(_mm512_mask_blend_pd(static_cast<__mmask8>(which), no.v_, yes.v_));
     }
     /// Whether one is beyond +-bound.
-    friend bool any_above(Real a, double bound) { return _mm512_cmp_pd_mask(_mm512_abs_pd(a.v_), _mm512_set1_pd(bound), _CMP_GT_OQ) != 0; }
+    friend bool any_above(Real a, double bound) {
+        return _mm512_cmp_pd_mask(_mm512_abs_pd(a.v_), _mm512_set1_pd(bound), _CMP_GT_OQ) != 0;
+    }
 
     /// origin[at[j]] in lane j.
     static Real pick(double const* origin, std::int64_t const* at) {
-        return Real(_mm512_set_pd(origin[at[7]], origin[at[6]], origin[at[5]], origin[at[4]], origin[at[3]], origin[at[2]], origin[at[1]],
-                                  origin[at[0]]));
+        return Real(_mm512_set_pd(origin[at[7]], origin[at[6]], origin[at[5]], origin[at[4]],
+                                  origin[at[3]], origin[at[2]], origin[at[1]], origin[at[0]]));
     }
-    /// Numbers 0 to 3 from origin + at[j] in lane j: vector i, at `to` + i lanes, gets number i of every lane.
+    /// Numbers 0 to 3 from origin + at[j] in lane j: vector i, at `to` + i lanes, gets number i of
+    /// every lane.
     static void read_four(double const* origin, std::int64_t const* at, double* to) {
-        __m512d const a = rows(origin + at[0], origin + at[2]), b = rows(origin + at[1], origin + at[3]);
-        __m512d const c = rows(origin + at[4], origin + at[6]), d = rows(origin + at[5], origin + at[7]);
+        __m512d const a = rows(origin + at[0], origin + at[2]),
+                      b = rows(origin + at[1], origin + at[3]);
+        __m512d const c = rows(origin + at[4], origin + at[6]),
+                      d = rows(origin + at[5], origin + at[7]);
         __m512d const ab = _mm512_unpacklo_pd(a, b), cd = _mm512_unpacklo_pd(c, d);
         __m512d const ab_odd = _mm512_unpackhi_pd(a, b), cd_odd = _mm512_unpackhi_pd(c, d);
         _mm512_store_pd(to, _mm512_shuffle_f64x2(ab, cd, 0x88));
@@ -65,16 +78,21 @@ class Real {
         __m512d const c = _mm512_load_pd(from + 2 * lanes), d = _mm512_load_pd(from + 3 * lanes);
         __m512d const ab = _mm512_unpacklo_pd(a, b), cd = _mm512_unpacklo_pd(c, d);
         __m512d const ab_odd = _mm512_unpackhi_pd(a, b), cd_odd = _mm512_unpackhi_pd(c, d);
-        put_rows(_mm512_castpd512_pd256(ab), _mm512_castpd512_pd256(cd), origin + at[0], origin + at[2]);
-        put_rows(_mm512_castpd512_pd256(ab_odd), _mm512_castpd512_pd256(cd_odd), origin + at[1], origin + at[3]);
-        put_rows(_mm512_extractf64x4_pd(ab, 1), _mm512_extractf64x4_pd(cd, 1), origin + at[4], origin + at[6]);
-        put_rows(_mm512_extractf64x4_pd(ab_odd, 1), _mm512_extractf64x4_pd(cd_odd, 1), origin + at[5], origin + at[7]);
+        put_rows(_mm512_castpd512_pd256(ab), _mm512_castpd512_pd256(cd), origin + at[0],
+                 origin + at[2]);
+        put_rows(_mm512_castpd512_pd256(ab_odd), _mm512_castpd512_pd256(cd_odd), origin + at[1],
+                 origin + at[3]);
+        put_rows(_mm512_extractf64x4_pd(ab, 1), _mm512_extractf64x4_pd(cd, 1), origin + at[4],
+                 origin + at[6]);
+        put_rows(_mm512_extractf64x4_pd(ab_odd, 1), _mm512_extractf64x4_pd(cd_odd, 1),
+                 origin + at[5], origin + at[7]);
     }
 
   private:
     explicit Real(__m512d v) : v_(v) {}
     static __m512d rows(double const* low, double const* high) {
-        return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
+        return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)),
+                                  _mm256_loadu_pd(high), 1);
     }
     static void put_rows(__m256d first, __m256d second, double* low, double* high) {
         _mm256_storeu_pd(low, _mm256_permute2f128_pd(first, second, 0x20));

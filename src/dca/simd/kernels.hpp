@@ -1,4 +1,5 @@
-// What the lanes of a vector do with their runs: the operations of fused_sweep.hpp and tree_sweeps.hpp, in the same order, on vectors.
+// What the lanes of a vector do with their runs: the operations of fused_sweep.hpp and
+// tree_sweeps.hpp, in the same order, on vectors.
 #pragma once
 
 #include <new>
@@ -23,10 +24,11 @@ struct NodeInLanes {
     }
 };
 template <class Real, int K>
-inline constexpr bool fits_nodes =
-    sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real) && sizeof(OneSided<Real, K>) == passed_numbers<K> * sizeof(Real);
+inline constexpr bool fits_nodes = sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real) &&
+                                   sizeof(OneSided<Real, K>) == passed_numbers<K> * sizeof(Real);
 template <class Leaf, class Real, int K>
-void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, Symmetric<Real, K> const& factor) {
+void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further,
+           Symmetric<Real, K> const& factor) {
     unsigned bad = 0;
     for (int i = 0; i < K; ++i) bad |= factor(i, i).not_positive();
     note_lost<Real>(sweeps, number, further, bad);
@@ -45,7 +47,8 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
     using Node = NodeInLanes<Real, K>;
     using Passed = OneSided<Real, K>;
     static_assert(fits_nodes<Real, K>);
-    static constexpr int numbers_of_node = node_numbers<K> * lanes, numbers_of_passed = passed_numbers<K> * lanes;
+    static constexpr int numbers_of_node = node_numbers<K> * lanes,
+                         numbers_of_passed = passed_numbers<K> * lanes;
 
   public:
     explicit RunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
@@ -87,9 +90,13 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
     }
 
   private:
-    double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_run<K>(work_.keeps_all) * lanes; }
+    double* place_of(std::int64_t item) const {
+        return work_.nodes + item * kept_of_run<K>(work_.keeps_all) * lanes;
+    }
     /// Of the joint inboard of part p, which is not the first.
-    double* place_of_node(std::int64_t item, int p) const { return place_of(item) + (p - 1) * numbers_of_node; }
+    double* place_of_node(std::int64_t item, int p) const {
+        return place_of(item) + (p - 1) * numbers_of_node;
+    }
     /// Of what the run's body i passes on. Precondition: all is kept.
     double* place_of_passed(std::int64_t item, int i) const {
         return place_of(item) + (parts_of_run - 1) * numbers_of_node + i * numbers_of_passed;
@@ -110,9 +117,11 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
     }
     void keep(std::int64_t item, int p, int i, Passed const& passed) const {
         if constexpr (!Leaf::beads)
-            if (work_.keeps_all) store_vectors<Real>(place_of_passed(item, p * part_length + i), passed);
+            if (work_.keeps_all)
+                store_vectors<Real>(place_of_passed(item, p * part_length + i), passed);
     }
-    void append(Segment& segment, Segment const& outboard, Node& node, RunsInLanes const& runs, int body) const {
+    void append(Segment& segment, Segment const& outboard, Node& node, RunsInLanes const& runs,
+                int body) const {
         node.append(segment, outboard);
         watch(work_.sweeps, runs.body, body, node.joint.factor);
     }
@@ -145,7 +154,8 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         back(kept, first, next, [&](int i) { return passed[i].gain * next + passed[i].offset; });
     }
     /// As Evaluation::forces.
-    void use_kept(RunsInLanes const& runs, std::int64_t item, int p, Directions const& first, Directions next) {
+    void use_kept(RunsInLanes const& runs, std::int64_t item, int p, Directions const& first,
+                  Directions next) {
         Elimination<Real, K> passed[part_length];
         Kept kept[part_length];
         auto bodies = bodies_.walk(begin_);
@@ -168,7 +178,8 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         kept[i] = bodies_.keep(body);
         return bodies_.segment(body, kept[i]);
     }
-    /// From the last body, whose outboard joint's force is `next`; force(i) is that at body i's inboard joint.
+    /// From the last body, whose outboard joint's force is `next`; force(i) is that at body i's
+    /// inboard joint.
     template <class Force>
     void back(Kept const* kept, Directions const& first, Directions& next, Force const& force) {
         each_body<unrolled<K>>(0, part_length, [&](int from_end) {
@@ -185,7 +196,8 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
 };
 
 template <class Real, class Leaf>
-using Runs = std::conditional_t<Leaf::by_inertia, HingedRunsSideBySide<Real, Leaf>, RunsSideBySide<Real, Leaf>>;
+using Runs = std::conditional_t<Leaf::by_inertia, RevoluteRunsSideBySide<Real, Leaf>,
+                                RunsSideBySide<Real, Leaf>>;
 
 template <class Real, class Leaf>
 [[gnu::flatten]] void climb_runs(RunWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
@@ -193,9 +205,11 @@ template <class Real, class Leaf>
     for (std::int64_t item = begin; item < end; ++item) runs.climb(item);
 }
 template <class Real, class Leaf>
-[[gnu::flatten]] void descend_runs(RunWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
+[[gnu::flatten]] void descend_runs(RunWork<Leaf> const& work, std::int64_t begin,
+                                   std::int64_t end) {
     Runs<Real, Leaf> runs(work);
-    for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
+    for (std::int64_t item = end; item-- > begin;)
+        runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>
 [[gnu::always_inline]] inline void prefetch_merge(MergeWork<Leaf> const& work, std::int64_t item) {
@@ -208,7 +222,8 @@ template <class Real, class Leaf>
     prefetch_to_write<Real>(work.nodes, item * numbers_of_node, numbers_of_node);
 }
 template <class Real, class Leaf>
-[[gnu::flatten]] void climb_merges(MergeWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
+[[gnu::flatten]] void climb_merges(MergeWork<Leaf> const& work, std::int64_t begin,
+                                   std::int64_t end) {
     constexpr int K = Leaf::K, numbers_of_node = node_numbers<K> * Real::lanes;
     auto const& [sweeps, merges, nodes, asks_ahead] = work;
     for (std::int64_t item = begin; item < end; ++item) {
@@ -228,7 +243,8 @@ template <class Real, class Leaf>
     }
 }
 template <class Real, class Leaf>
-[[gnu::flatten]] void descend_merges(MergeWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
+[[gnu::flatten]] void descend_merges(MergeWork<Leaf> const& work, std::int64_t begin,
+                                     std::int64_t end) {
     constexpr int K = Leaf::K;
     auto const& [sweeps, merges, nodes, asks_ahead] = work;
     for (std::int64_t item = begin; item < end; ++item) {
@@ -243,7 +259,8 @@ template <class Real, class Leaf>
 }
 template <class Real, class Leaf>
 RunKernels<Leaf> kernels() {
-    return {climb_runs<Real, Leaf>, descend_runs<Real, Leaf>, climb_merges<Real, Leaf>, descend_merges<Real, Leaf>};
+    return {climb_runs<Real, Leaf>, descend_runs<Real, Leaf>, climb_merges<Real, Leaf>,
+            descend_merges<Real, Leaf>};
 }
 
 }  // namespace catena::dca

@@ -1,8 +1,9 @@
-// Records (math/records.hpp) of as many places as a vector has lanes, a number of all of them in each vector.
+// Records (math/records.hpp) of as many places as a vector has lanes, a number of all of them in
+// each vector.
 #pragma once
 
-#include "math/records.hpp"
 #include "dca/simd/prefetch.hpp"
+#include "math/records.hpp"
 
 namespace catena::dca {
 
@@ -14,13 +15,15 @@ template <class Real, class Record>
 void store_vectors(double* to, Record const& record) {
     auto const* const values = reinterpret_cast<Real const*>(&record);
     CATENA_UNROLL_RECORD
-    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n].store(to + n * Real::lanes);
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n)
+        values[n].store(to + n * Real::lanes);
 }
 template <class Real, class Record>
 void load_vectors(double const* from, Record& record) {
     auto* const values = reinterpret_cast<Real*>(&record);
     CATENA_UNROLL_RECORD
-    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n] = Real::load(from + n * Real::lanes);
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n)
+        values[n] = Real::load(from + n * Real::lanes);
 }
 
 /// In the lanes whose bits are set `yes`, of all vectors.
@@ -29,10 +32,12 @@ void choose(unsigned lanes, Record const& yes, Record& all) {
     auto const* const from = reinterpret_cast<Real const*>(&yes);
     auto* const to = reinterpret_cast<Real*>(&all);
     CATENA_UNROLL_RECORD
-    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) to[n] = Real::choose(lanes, from[n], to[n]);
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n)
+        to[n] = Real::choose(lanes, from[n], to[n]);
 }
 
-/// action(n) for numbers n to n + 3, which together are all of `count`; some twice where they are not a multiple of four.
+/// action(n) for numbers n to n + 3, which together are all of `count`; some twice where they are
+/// not a multiple of four.
 template <int count, class Action>
 void by_four(Action const& action) {
     static_assert(count >= 4);
@@ -69,7 +74,8 @@ void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& r
 
 /// Of as many places as a vector has lanes.
 template <class Real, class OfOne, Order order>
-[[gnu::always_inline]] inline void prefetch_records(RecordsView<OfOne, order> from, std::int64_t const* index) {
+[[gnu::always_inline]] inline void prefetch_records(RecordsView<OfOne, order> from,
+                                                    std::int64_t const* index) {
     constexpr int count = RecordsView<OfOne, order>::numbers;
     for (int j = 0; j < Real::lanes; ++j) prefetch<Real>(from.origin, index[j] * count, count);
 }

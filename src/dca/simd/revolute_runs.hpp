@@ -1,27 +1,28 @@
-// Runs on hinges side by side, one a lane: they go by their inertias (floating_run.hpp).
+// Runs on revolute joints side by side, one a lane: they go by their inertias (floating_run.hpp).
 #pragma once
 
 #include "dca/simd/runs_in_tile.hpp"
 
 namespace catena::dca {
 
-/// Runs on hinges, by their inertias: as Evaluation::climb and descend.
+/// Runs on revolute joints, by their inertias: as Evaluation::climb and descend.
 template <class Real, class Leaf>
-class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
+class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
-    static constexpr int numbers_of_hinge = hinge_numbers * lanes;
+    static constexpr int numbers_of_revolute = revolute_numbers * lanes;
     using Base = RunsInTile<Real, Leaf>;
     using Base::work_, Base::bodies_, Base::out_, Base::fill, Base::empty, Base::ask, Base::in_tile;
-    static_assert(sizeof(ReleasedHinge<Real>) == released_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == met_numbers * sizeof(Real) &&
+    static_assert(sizeof(ReleasedRevolute<Real>) == released_numbers * sizeof(Real) &&
+                  sizeof(RunsEnd<Real>) == met_numbers * sizeof(Real) &&
                   sizeof(BodyInRun<Real>) == passed_body_numbers * sizeof(Real));
     using Vector3 = Vector<Real, 3>;
     using Matrix3 = Matrix<Real, 3, 3>;
 
   public:
-    explicit HingedRunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
+    explicit RevoluteRunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
 
     void climb(std::int64_t item) {
-        if (hinges().given) {
+        if (revolutes().given) {
             FollowedBodies bodies(*this, item);
             climb(item, bodies);
         } else {
@@ -29,7 +30,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                 if (i % part_length == 0) fill(runs, i / part_length, 1);
                 ask(runs, i, 1);
                 Column<Real> const here{i % part_length};
-                auto b = bodies_.leaf.hinged_at_rest(bodies_.loads, here);
+                auto b = bodies_.leaf.revolute_at_rest(bodies_.loads, here);
                 Vector3 const omega = omega_at(here);
                 set_moving(runs, i, omega, b);
                 bodies_.leaf.add_gyroscopic(bodies_.loads, omega, b);
@@ -49,32 +50,36 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         BodyAcceleration<Real> of_late;  // first bodies, in the lanes where others go on after them
         int part = parts_of_run;
         ask(runs, 0, -1);
-        descend_hinges<Real>(
+        descend_revolutes<Real>(
             count, out_.by_all_bodies(),
             [&](int i) {
                 if (i / part_length != part) fill(runs, part = i / part_length, -1);
                 Column<Real> const here{i % part_length};
-                omega = !hinges().given ? omega_at(here) : i == 0 ? pick<Real>(work_.loads.omega, runs.body) : kept.omega(i);
+                omega = !revolutes().given ? omega_at(here)
+                        : i == 0           ? pick<Real>(work_.loads.omega, runs.body)
+                                           : kept.omega(i);
                 auto frame = bodies_.leaf.frame_at_rest(here);
                 set_moving(runs, i, omega, frame);
                 return frame;
             },
             kept, first, next,
-            [&](int i, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
+            [&](int i, RevoluteFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
                 Column<Real> const here{i % part_length};
                 if (out_.acceleration.origin) {
                     write(out_.alpha, here, a.alpha);
                     write(out_.acceleration, here, a.a);
                 }
                 if (out_.joint_force) {
-                    Vector<Real, K> force = i == 0 ? first : pass_on(runs, i, kept, omega, frame, a, passed);
+                    Vector<Real, K> force =
+                        i == 0 ? first : pass_on(runs, i, kept, omega, frame, a, passed);
                     if (runs.begins[i] != 0) choose<Real>(runs.begins[i], first, force);
                     write_directions<K>(out_.joint_force, here, force);
                 }
-                if (!out_.hinge_acceleration.origin) {
+                if (!out_.revolute_acceleration.origin) {
                     if (i > 0) return;
                     empty(runs, 0);
-                    scatter_accelerations(runs.body, 0, a, [&](int j) { return (runs.late >> j & 1) != 0; });
+                    scatter_accelerations(runs.body, 0, a,
+                                          [&](int j) { return (runs.late >> j & 1) != 0; });
                 } else if (i == 0) {
                     begin_at(runs, frame, a);
                 } else if (i == count - 1) {
@@ -83,61 +88,81 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             },
             [&](int i, BodyAcceleration<Real>& a) {
                 if (runs.late == 0 || runs.begins[i] == 0) return;
-                i > 0 ? choose<Real>(runs.begins[i], a, of_late) : choose<Real>(runs.late, of_late, a);
+                i > 0 ? choose<Real>(runs.begins[i], a, of_late)
+                      : choose<Real>(runs.late, of_late, a);
             },
-            [&](int i, Real const& of_hinge) {
+            [&](int i, Real const& of_revolute) {
                 ask(runs, i, -1);
-                turn(runs, i, of_hinge);
+                turn(runs, i, of_revolute);
             });
     }
 
   private:
     struct Kept {
-        HingedRunsSideBySide const& all;
+        RevoluteRunsSideBySide const& all;
         RunsInLanes const& runs;
         double* place;
 
-        void put(int i, ReleasedHinge<Real> const& hinge) {
-            double* const kept = of_hinge(i);
-            int const further = ahead * numbers_of_hinge + (i + ahead < count ? 0 : numbers_of_end);
-            if (asks_ahead()) prefetch_to_write<Real>(kept, further, numbers_of_hinge);
+        void put(int i, ReleasedRevolute<Real> const& revolute) {
+            double* const kept = of_revolute(i);
+            int const further =
+                ahead * numbers_of_revolute + (i + ahead < count ? 0 : numbers_of_end);
+            if (asks_ahead()) prefetch_to_write<Real>(kept, further, numbers_of_revolute);
             if (asks_ahead() && i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
-            store_vectors<Real>(kept, hinge);
-            watch(i, hinge.inverse.not_positive());
+            store_vectors<Real>(kept, revolute);
+            watch(i, revolute.inverse.not_positive());
         }
-        void put(int i, ReleasedHinge<Real> const& hinge, BodyInRun<Real> const& body, BodyAcceleration<Real> const& swing) {
-            put(i, hinge);
-            store_vectors<Real>(of_hinge(i) + released_numbers * lanes, body);
-            if (i == count - 2 || all.out_.by_all_bodies()) store_vectors<Real>(of_hinge(i) + at_swing, swing);
+        void put(int i, ReleasedRevolute<Real> const& revolute, BodyInRun<Real> const& body,
+                 BodyAcceleration<Real> const& swing) {
+            put(i, revolute);
+            store_vectors<Real>(of_revolute(i) + released_numbers * lanes, body);
+            if (i == count - 2 || all.out_.by_all_bodies())
+                store_vectors<Real>(of_revolute(i) + at_swing, swing);
         }
         /// Outboard of joint i, in the body's axes.
-        void put_omega(int i, Vector3 const& omega) { store_vectors<Real>(of_hinge(i) + at_omega, omega); }
-        void put_axes(Matrix3 const& axes) { store_vectors<Real>(place + met_numbers * lanes, axes); }
+        void put_omega(int i, Vector3 const& omega) {
+            store_vectors<Real>(of_revolute(i) + at_omega, omega);
+        }
+        void put_axes(Matrix3 const& axes) {
+            store_vectors<Real>(place + met_numbers * lanes, axes);
+        }
         /// What turns to the last body's axes.
-        void put_orientation(Matrix3 const& from_ground) { store_vectors<Real>(place + at_orientation, from_ground); }
-        Vector3 omega(int i) const { return load<Vector3>(of_hinge(i) + at_omega); }
-        BodyAcceleration<Real> swing(int i) const { return load<BodyAcceleration<Real>>(of_hinge(i) + at_swing); }
+        void put_orientation(Matrix3 const& from_ground) {
+            store_vectors<Real>(place + at_orientation, from_ground);
+        }
+        Vector3 omega(int i) const { return load<Vector3>(of_revolute(i) + at_omega); }
+        BodyAcceleration<Real> swing(int i) const {
+            return load<BodyAcceleration<Real>>(of_revolute(i) + at_swing);
+        }
         Matrix3 axes() const { return load<Matrix3>(place + met_numbers * lanes); }
         Matrix3 orientation() const { return load<Matrix3>(place + at_orientation); }
         void put(RunsEnd<Real> const& end) {
             store_vectors<Real>(place, end);
             for (int i = 0; i < 6; ++i) watch(count - 1, end.factor(i, i).not_positive());
         }
-        ReleasedHinge<Real> hinge(int i) const {
-            double const* const kept = of_hinge(i);
-            if (asks_ahead()) prefetch<Real>(kept, -ahead * numbers_of_hinge - (i > ahead ? 0 : numbers_of_end), numbers_of_hinge);
-            return load<ReleasedHinge<Real>>(kept);
+        ReleasedRevolute<Real> revolute(int i) const {
+            double const* const kept = of_revolute(i);
+            if (asks_ahead())
+                prefetch<Real>(kept,
+                               -ahead * numbers_of_revolute - (i > ahead ? 0 : numbers_of_end),
+                               numbers_of_revolute);
+            return load<ReleasedRevolute<Real>>(kept);
         }
-        BodyInRun<Real> body(int i) const { return load<BodyInRun<Real>>(of_hinge(i) + released_numbers * lanes); }
+        BodyInRun<Real> body(int i) const {
+            return load<BodyInRun<Real>>(of_revolute(i) + released_numbers * lanes);
+        }
         RunsEnd<Real> end() const {
-            if (asks_ahead()) prefetch<Real>(place, -kept_of_hinged_run * lanes, met_numbers * lanes);
+            if (asks_ahead())
+                prefetch<Real>(place, -kept_of_revolute_run * lanes, met_numbers * lanes);
             return load<RunsEnd<Real>>(place);
         }
 
       private:
-        // What is asked for is so many hinges further, in the order of items: the next one's end lies between.
+        // What is asked for is so many revolute joints further, in the order of items: the next
+        // one's end lies between.
         static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
-        static constexpr int at_omega = (released_numbers + passed_body_numbers) * lanes, at_swing = at_omega + 3 * lanes,
+        static constexpr int at_omega = (released_numbers + passed_body_numbers) * lanes,
+                             at_swing = at_omega + 3 * lanes,
                              at_orientation = (met_numbers + 9) * lanes;
         template <class Record>
         static Record load(double const* from) {
@@ -146,22 +171,25 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             return record;
         }
         bool asks_ahead() const { return all.work_.asks_ahead; }
-        double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
+        double* of_revolute(int i) const {
+            return place + end_numbers * lanes + (i - 1) * numbers_of_revolute;
+        }
         void watch(int i, unsigned bad) const {
             for (int j = 0; bad != 0 && j < lanes; ++j)
                 if (i <= runs.skipped[j]) bad &= ~(1U << j);
             note_lost<Real>(all.work_.sweeps, runs.column, i, bad);
         }
     };
-    /// As BodiesOfRun, of runs whose hinges' loads are given: what moves is found in the runs' axes from what moves before.
+    /// As BodiesOfRun, of runs whose revolute joints' loads are given: what moves is found in the
+    /// runs' axes from what moves before.
     class FollowedBodies {
       public:
-        FollowedBodies(HingedRunsSideBySide& all, std::int64_t item)
+        FollowedBodies(RevoluteRunsSideBySide& all, std::int64_t item)
             : all_(all), runs_(all.work_.runs[item]), kept_{all, runs_, all.place_of(item)} {}
-        HingedBody<Real> first() {
+        ArticulatedBody<Real> first() {
             all_.fill(runs_, 0, 1);
             all_.ask(runs_, 0, 1);
-            auto body = leaf().hinged_at_rest(all_.bodies_.loads, Column<Real>{0});
+            auto body = leaf().revolute_at_rest(all_.bodies_.loads, Column<Real>{0});
             Vector3 const omega = pick<Real>(all_.work_.loads.omega, runs_.body);
             if (all_.has_wrenches()) from_ground_ = all_.first_from_ground(runs_);
             all_.set_moving(runs_, 0, omega, body);
@@ -174,20 +202,22 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
-            BodyOnHinge<Real> const on_hinge = leaf().on_hinge(all_.bodies_.loads, here);
-            state.turn = state.turn * on_hinge.turn;
+            BodyOnRevolute<Real> const on_revolute = leaf().on_revolute(all_.bodies_.loads, here);
+            state.turn = state.turn * on_revolute.turn;
             turn_ = to_matrix_of_unit(state.turn);
-            LoadedBodyInRun<Real> body = state.go_on(follow(on_hinge, turn_, state.omega));
+            LoadedBodyInRun<Real> body = state.go_on(follow(on_revolute, turn_, state.omega));
             all_.add_wrench(here, from_ground_, body.torque, body.force);
             if (i >= count - 2 || all_.out_.by_all_bodies()) keep_omega(i);
             return body;
         }
-        HingedBody<Real> last(int i) {
+        ArticulatedBody<Real> last(int i) {
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
-            auto body = leaf().hinged_at_rest(all_.bodies_.loads, here);
+            auto body = leaf().revolute_at_rest(all_.bodies_.loads, here);
             Matrix3 const turn = axes_ * transpose(body.e1);
-            Vector3 const omega = transposed_times(turn, state.omega) + read(all_.bodies_.loads.hinge_rate, here)[0] * body.e1.column(2);
+            Vector3 const omega =
+                transposed_times(turn, state.omega) +
+                read(all_.bodies_.loads.revolute_rate, here)[0] * body.e1.column(2);
             all_.set_moving(runs_, i, omega, body);
             leaf().add_gyroscopic(all_.bodies_.loads, omega, body);
             Matrix3 from_ground;
@@ -200,7 +230,8 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             return body;
         }
         OutboardHandle<Real> before_last() {
-            axes_ = turn_ * axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
+            axes_ = turn_ *
+                    axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
             return {axes_, state.inward};
         }
         using State = FollowedState<Real>;
@@ -216,19 +247,21 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             kept_.put_omega(i, omega);
         }
         Vector3 first_omega() const { return pick<Real>(all_.work_.loads.omega, runs_.body); }
-        HingedRunsSideBySide& all_;
+        RevoluteRunsSideBySide& all_;
         RunsInLanes const& runs_;
         Kept kept_;
-        Matrix3 turn_, axes_, from_ground_;  // of the body come to; of the last hinge; what turns to the run's axes
+        Matrix3 turn_, axes_, from_ground_;  // of the body come to; of the last revolute joint;
+                                             // what turns to the run's axes
     };
     template <class Bodies>
     void climb(std::int64_t item, Bodies&& bodies) {
         RunsInLanes const& runs = work_.runs[item];
-        InertiaRun<Real> begun;
+        FloatingRun<Real> begun;
         typename std::remove_reference_t<Bodies>::State first;
-        auto const segment = climb_hinges<Real>(
-            count, bodies, [&](int i) { return torque_about(i); }, Kept{*this, runs, place_of(item)},
-            [&](int i, InertiaRun<Real>& run, auto& all) {
+        auto const segment = climb_revolutes<Real>(
+            count, bodies, [&](int i) { return torque_about(i); },
+            Kept{*this, runs, place_of(item)},
+            [&](int i, FloatingRun<Real>& run, auto& all) {
                 if (runs.late == 0 || runs.begins[i] == 0) return;
                 if (i == 0) {
                     begun = run;
@@ -241,36 +274,45 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
     }
-    double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
+    double* place_of(std::int64_t item) const {
+        return work_.nodes + item * kept_of_revolute_run * lanes;
+    }
     GroupView const& group() const { return work_.group; }
     Vector3 omega_at(Column<Real> const& here) const {
         return bodies_.loads.omega.origin ? read(bodies_.loads.omega, here) : Vector3::zero();
     }
-    HingeLoads const& hinges() const { return bodies_.loads.hinges; }
-    bool has_wrenches() const { return hinges().torque.origin; }
+    RevoluteLoads const& revolutes() const { return bodies_.loads.revolutes; }
+    bool has_wrenches() const { return revolutes().torque.origin; }
     Matrix3 first_from_ground(RunsInLanes const& runs) const {
-        return transpose(to_matrix(as_quaternion(pick<Real>(work_.loads.hinges.orientation, runs.body))));
+        return transpose(
+            to_matrix(as_quaternion(pick<Real>(work_.loads.revolutes.orientation, runs.body))));
     }
-    /// Of the hinge inboard of body i, within the run.
+    /// Of the revolute joint inboard of body i, within the run.
     Real torque_about(int i) const {
-        return in_tile().hinge_torque.origin ? read(in_tile().hinge_torque, Column<Real>{i % part_length})[0] : Real(0);
+        return in_tile().revolute_torque.origin
+                   ? read(in_tile().revolute_torque, Column<Real>{i % part_length})[0]
+                   : Real(0);
     }
-    void add_wrench(Column<Real> const& here, Matrix3 const& from_ground, Vector3& torque, Vector3& force) const {
+    void add_wrench(Column<Real> const& here, Matrix3 const& from_ground, Vector3& torque,
+                    Vector3& force) const {
         if (!has_wrenches()) return;
-        torque = torque + from_ground * read(hinges().torque, here);
-        force = force + from_ground * read(hinges().force, here);
+        torque = torque + from_ground * read(revolutes().torque, here);
+        force = force + from_ground * read(revolutes().force, here);
     }
-    /// What acts on body i from outside and by the joints at the runs' ends, where hinges' loads are given.
-    void push(RunsInLanes const& runs, int i, Matrix3 const& from_ground, HingedBody<Real>& body) const {
+    /// What acts on body i from outside and by the joints at the runs' ends, where revolute joints'
+    /// loads are given.
+    void push(RunsInLanes const& runs, int i, Matrix3 const& from_ground,
+              ArticulatedBody<Real>& body) const {
         add_wrench({i % part_length}, from_ground, body.torque, body.force);
-        if (!in_tile().hinge_torque.origin) return;
-        ConstView<3> const& of_joints = work_.loads.hinges.joint_torque;
+        if (!in_tile().revolute_torque.origin) return;
+        ConstView<3> const& of_joints = work_.loads.revolutes.joint_torque;
         if (i == 0) body.torque = body.torque + body.e1 * pick<Real>(of_joints, runs.body);
         if (i < count - 1) return;
         alignas(64) double next[lanes];
         for (int j = 0; j < lanes; ++j) {
             std::int64_t const last = runs.column[j] + count - 1;
-            next[j] = group().is_last[last] ? 0.0 : of_joints.at(last + 1, HingeLoads::about_hinge);
+            next[j] =
+                group().is_last[last] ? 0.0 : of_joints.at(last + 1, RevoluteLoads::about_revolute);
         }
         body.torque = body.torque - Real::load(next) * body.e2.column(2);
     }
@@ -278,54 +320,67 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     struct PassedOn {
         Vector<Real, K> force;
         Matrix3 e1, from_ground;
-        Real torque;  // about the hinge between them, within the run
+        Real torque;  // about the revolute joint between them, within the run
     };
-    Vector<Real, K> pass_on(RunsInLanes const& runs, int i, Kept const& kept, Vector3 const& omega, HingedFrame<Real> const& frame,
-                            BodyAcceleration<Real> const& a, PassedOn& passed) const {
-        auto body = bodies_.leaf.hinged_at_rest(bodies_.loads, Column<Real>{i % part_length});
+    Vector<Real, K> pass_on(RunsInLanes const& runs, int i, Kept const& kept, Vector3 const& omega,
+                            RevoluteFrame<Real> const& frame, BodyAcceleration<Real> const& a,
+                            PassedOn& passed) const {
+        auto body = bodies_.leaf.revolute_at_rest(bodies_.loads, Column<Real>{i % part_length});
         bodies_.leaf.add_gyroscopic(bodies_.loads, omega, body);
         if (has_wrenches())
-            passed.from_ground =
-                i == count - 1 ? kept.orientation() : transposed_times(passed.e1 * transpose(frame.e2), passed.from_ground);
+            passed.from_ground = i == count - 1 ? kept.orientation()
+                                                : transposed_times(passed.e1 * transpose(frame.e2),
+                                                                   passed.from_ground);
         push(runs, i, passed.from_ground, body);
-        // Its own hinge's torque is along none of the force's directions.
+        // Its own revolute joint's torque is along none of the force's directions.
         body.torque = body.torque - passed.torque * body.e2.column(2);
         passed.force = inboard_force(body, a, passed.force);
         passed.e1 = frame.e1;
         passed.torque = torque_about(i);
         return passed.force;
     }
-    void set_moving(RunsInLanes const& runs, int i, Vector3 const& omega, HingedFrame<Real>& frame) const {
+    void set_moving(RunsInLanes const& runs, int i, Vector3 const& omega,
+                    RevoluteFrame<Real>& frame) const {
         bodies_.leaf.set_moving(bodies_.loads, Column<Real>{i % part_length}, omega, frame);
         if (i == 0) take_first_biases(runs, frame);
     }
     /// In lanes whose runs begin a chain.
-    void take_first_biases(RunsInLanes const& runs, HingedFrame<Real>& body) const {
-        if (!bodies_.loads.hinge_rate.origin) return;
+    void take_first_biases(RunsInLanes const& runs, RevoluteFrame<Real>& body) const {
+        if (!bodies_.loads.revolute_rate.origin) return;
         alignas(64) double bias[K * lanes];
         store_vectors<Real>(bias, body.bias);
         for (int j = 0; j < lanes; ++j)
             if (group().is_first[runs.body[j]])
-                for (int n = 0; n < K; ++n) bias[n * lanes + j] = work_.loads.bias.origin[n * work_.loads.bias.pitch + runs.body[j]];
+                for (int n = 0; n < K; ++n)
+                    bias[n * lanes + j] =
+                        work_.loads.bias.origin[n * work_.loads.bias.pitch + runs.body[j]];
         load_vectors<Real>(bias, body.bias);
     }
-    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate, in the lanes where it is.
-    void end_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) const {
-        scatter(component<Real>(work_.out.hinge_acceleration, 1), runs.column, count, Vector<Real, 1>{{about_outboard_hinge(frame, a)}});
+    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate, in the lanes
+    /// where it is.
+    void end_at(RunsInLanes const& runs, RevoluteFrame<Real> const& frame,
+                BodyAcceleration<Real> const& a) const {
+        scatter(component<Real>(work_.out.revolute_acceleration, 1), runs.column, count,
+                Vector<Real, 1>{{about_outboard_revolute(frame, a)}});
         scatter_accelerations(runs.column, count - 1, a, [&](int j) {
             std::int64_t const next = runs.column[j] + count;
             return next >= group().size || group().is_last[next];
         });
     }
-    void begin_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
-        scatter_accelerations(runs.body, 0, a, [&](int j) { return group().is_first[runs.body[j]] != 0; });
-        Real const about = about_inboard_hinge(frame, a);
+    void begin_at(RunsInLanes const& runs, RevoluteFrame<Real> const& frame,
+                  BodyAcceleration<Real> const& a) {
+        scatter_accelerations(runs.body, 0, a,
+                              [&](int j) { return group().is_first[runs.body[j]] != 0; });
+        Real const about = about_inboard_revolute(frame, a);
         turn(runs, 0, about);
-        if (runs.late != 0) scatter(component<Real>(work_.out.hinge_acceleration, 0), runs.body, 0, Vector<Real, 1>{{about}});
+        if (runs.late != 0)
+            scatter(component<Real>(work_.out.revolute_acceleration, 0), runs.body, 0,
+                    Vector<Real, 1>{{about}});
     }
     /// Of bodies body[j] + i in the lanes that are wanted(j).
     template <class Wanted>
-    void scatter_accelerations(std::int64_t const* body, int i, BodyAcceleration<Real> const& a, Wanted const& wanted) const {
+    void scatter_accelerations(std::int64_t const* body, int i, BodyAcceleration<Real> const& a,
+                               Wanted const& wanted) const {
         bool stored = false;
         alignas(64) double numbers[6 * lanes];
         for (int j = 0; j < lanes; ++j) {
@@ -333,15 +388,19 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             if (!stored) store_vectors<Real>(numbers, a);
             stored = true;
             for (int n = 0; n < 3; ++n) {
-                work_.out.alpha.origin[n * work_.out.alpha.pitch + body[j] + i] = numbers[n * lanes + j];
-                work_.out.acceleration.origin[n * work_.out.acceleration.pitch + body[j] + i] = numbers[(3 + n) * lanes + j];
+                work_.out.alpha.origin[n * work_.out.alpha.pitch + body[j] + i] =
+                    numbers[n * lanes + j];
+                work_.out.acceleration.origin[n * work_.out.acceleration.pitch + body[j] + i] =
+                    numbers[(3 + n) * lanes + j];
             }
         }
     }
     /// The last that is known of body i of the runs.
-    void turn(RunsInLanes const& runs, int i, Real const& of_hinge) {
-        View<2> const& to = out_.hinge_acceleration;
-        if (to.origin) write(component<Real>(to, 0), Column<Real>{i % part_length}, Vector<Real, 1>{{of_hinge}});
+    void turn(RunsInLanes const& runs, int i, Real const& of_revolute) {
+        View<2> const& to = out_.revolute_acceleration;
+        if (to.origin)
+            write(component<Real>(to, 0), Column<Real>{i % part_length},
+                  Vector<Real, 1>{{of_revolute}});
         if (i % part_length == 0) empty(runs, i / part_length);
     }
 };

@@ -1,4 +1,5 @@
-// Runs side by side, whose bodies lie in a tile: what all kernels of an instruction set have in common.
+// Runs side by side, whose bodies lie in a tile: what all kernels of an instruction set have in
+// common.
 #pragma once
 
 #include <utility>
@@ -10,7 +11,8 @@
 
 namespace catena::dca {
 
-/// Bodies side by side as Evaluation takes them: their constants in the order of lanes, the rest in a tile.
+/// Bodies side by side as Evaluation takes them: their constants in the order of lanes, the rest in
+/// a tile.
 template <class Real, class Leaf>
 class BodiesInTile {
     static constexpr int K = Leaf::K;
@@ -28,37 +30,42 @@ class BodiesInTile {
             rotation = at_.rotation = tile.in(work.configuration.rotation);
             at_.r2 = tile.in(work.configuration.r2);
             if constexpr (Frames::in_joints) at_.axes2 = tile.in(work.configuration.axes2);
-            if constexpr (Frames::on_links) at_.direction = tile.in(work.configuration.direction, true);
+            if constexpr (Frames::on_links)
+                at_.direction = tile.in(work.configuration.direction, true);
             if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
-            loads_.hinges.given = work.loads.hinges.given;
-            loads_.gyroscopic = work.loads.gyroscopic || loads_.hinges.given;
-            loads_.hinge_rate = tile.in(work.loads.hinge_rate);
-            if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
-            if (!loads_.hinges.given) {
+            loads_.revolutes.given = work.loads.revolutes.given;
+            loads_.gyroscopic = work.loads.gyroscopic || loads_.revolutes.given;
+            loads_.revolute_rate = tile.in(work.loads.revolute_rate);
+            if (!loads_.revolute_rate.origin)
+                loads_.bias = tile.template in_directions<K>(work.loads.bias);
+            if (!loads_.revolutes.given) {
                 loads_.omega = tile.in(work.loads.omega);
                 loads_.torque = tile.in(work.loads.torque);
                 loads_.force = tile.in(work.loads.force);
                 return;
             }
             on_way_back = tile.count();
-            HingeLoads const& from = work.loads.hinges;
+            RevoluteLoads const& from = work.loads.revolutes;
             if (from.joint_torque.origin) {
                 ConstView<3> const& all = from.joint_torque;
-                hinge_torque = tile.in(ConstView<1>{all.origin + HingeLoads::about_hinge * all.pitch, all.pitch, 0});
+                revolute_torque = tile.in(ConstView<1>{
+                    all.origin + RevoluteLoads::about_revolute * all.pitch, all.pitch, 0});
             }
-            loads_.hinges.torque = tile.in(from.torque);
-            loads_.hinges.force = tile.in(from.force);
+            loads_.revolutes.torque = tile.in(from.torque);
+            loads_.revolutes.force = tile.in(from.force);
         }
     }
     ConstView<4> rotation{};
-    // Where hinges' loads are given.
-    ConstView<1> hinge_torque{};
+    // Where revolute joints' loads are given.
+    ConstView<1> revolute_torque{};
     int on_way_back = 0;  // numbers that accelerations need, of the tile's
 
     /// Those of a part.
     auto with(Constants<Real> constants) const {
         GroupView group = group_;
-        each_constant<Leaf>(group, [&constants]<int D>(ConstView<D>& view) { view = constants.template next<D>(); });
+        each_constant<Leaf>(group, [&constants]<int D>(ConstView<D>& view) {
+            view = constants.template next<D>();
+        });
         if constexpr (Leaf::beads) {
             return typename Leaf::Moving{group, nullptr, at_, loads_};
         } else {
@@ -76,9 +83,11 @@ class BodiesInTile {
 
 /// Of joints number[j] + further, those whose bit j of `bad` is set.
 template <class Real, class Leaf>
-void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, unsigned bad) {
+void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further,
+               unsigned bad) {
     for (int j = 0; bad != 0 && j < Real::lanes; ++j)
-        if ((bad >> j & 1U) != 0) sweeps.note({static_cast<unsigned long long>(number[j] + further)});
+        if ((bad >> j & 1U) != 0)
+            sweeps.note({static_cast<unsigned long long>(number[j] + further)});
 }
 
 /// Runs side by side, whose bodies are in a tile a part at a time, with what is done to them there.
@@ -93,10 +102,13 @@ class RunsInTile {
   protected:
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
 
-    explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
-        if (View<2> const& of_hinges = work.out.hinge_acceleration; of_hinges.origin) {
-            View<1> const first = tile_.out(component<Real>(of_hinges, 0));
-            out_.hinge_acceleration = {first.origin, first.pitch, first.size};  // the other component goes straight to its place
+    explicit RunsInTile(RunWork<Leaf> const& work)
+        : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
+        if (View<2> const& of_revolutes = work.out.revolute_acceleration; of_revolutes.origin) {
+            View<1> const first = tile_.out(component<Real>(of_revolutes, 0));
+            out_.revolute_acceleration = {
+                first.origin, first.pitch,
+                first.size};  // the other component goes straight to its place
         } else {
             out_.acceleration = tile_.out(work.out.acceleration);
             out_.alpha = tile_.out(work.out.alpha);
@@ -114,8 +126,10 @@ class RunsInTile {
             double const* const here = constants(runs, p);
             bodies_ = in_tile_.with({here});
             if constexpr (frame_constants<Leaf> > 0)
-                bodies_.loads.hinges.frame =
-                    Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>)*part_length * lanes}.template next<4>();
+                bodies_.loads.revolutes.frame =
+                    Constants<Real>{
+                        here + (constants_of<Leaf> - frame_constants<Leaf>)*part_length * lanes}
+                        .template next<4>();
         }
     }
     void empty(RunsInLanes const& runs, int p) {
@@ -124,18 +138,22 @@ class RunsInTile {
         else if (p == 0)
             tile_.empty(runs.body);
     }
-    /// With body i, in turn: the next item's bodies usually follow, or come before where the way is back.
+    /// With body i, in turn: the next item's bodies usually follow, or come before where the way is
+    /// back.
     [[gnu::always_inline]] void ask(RunsInLanes const& runs, int i, int way) const {
         if (!work_.asks_ahead) return;
-        // A whole run in the tile is read at once, at the next item's beginning: what is asked for last would come too late.
+        // A whole run in the tile is read at once, at the next item's beginning: what is asked for
+        // last would come too late.
         std::int64_t const ahead = (by_runs ? 2 : 1) * way * bodies_of_item;
         tile_.ask_to_read(runs.body, ahead, i, count(way));
         if (way < 0) tile_.ask_to_write(runs.body, ahead, i);
         if constexpr (constants_of<Leaf> > 0) {
-            // Two parts further. On the way back a run on hinges may need those of its ends alone.
+            // Two parts further. On the way back a run on revolute joints may need those of its
+            // ends alone.
             bool const of_ends = Leaf::by_inertia && way < 0 && !out_.by_all_bodies();
             if (of_ends && (i < part_length || i >= longest_run - part_length)) return;
-            constexpr int of_body = constants_of<Leaf> * lanes, two_parts = 2 * part_length * of_body;
+            constexpr int of_body = constants_of<Leaf> * lanes,
+                          two_parts = 2 * part_length * of_body;
             prefetch<Real>(constants(runs, 0) + i * of_body, way * two_parts, of_body);
         }
     }
@@ -146,10 +164,14 @@ class RunsInTile {
 
   private:
     double const* constants(RunsInLanes const& runs, int p) const {
-        return work_.constants + ((&runs - work_.runs) * parts_of_run + p) * (constants_of<Leaf> * part_length * lanes);
+        return work_.constants + ((&runs - work_.runs) * parts_of_run + p) *
+                                     (constants_of<Leaf> * part_length * lanes);
     }
     /// Of numbers that the tile reads.
-    int count(int way) const { return way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force ? in_tile_.on_way_back : tile_.count(); }
+    int count(int way) const {
+        return way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force ? in_tile_.on_way_back
+                                                                        : tile_.count();
+    }
     Tile<Real, by_runs ? longest_run : part_length> tile_;
     BodiesInTile<Real, Leaf> in_tile_;
 

@@ -5,9 +5,12 @@ namespace {
 
 bool is_regular(ChainGroup const& group, Run const& run, RunsTaken const& taken) {
     std::int64_t const last = run.body + run.count - 1;
-    if (run.count > longest_run || run.count < (taken.of_parts ? part_length : longest_run) || group.has_jointed_tip(last)) return false;
+    if (run.count > longest_run || run.count < (taken.of_parts ? part_length : longest_run) ||
+        group.has_jointed_tip(last))
+        return false;
     auto const at = [](std::int64_t k) { return static_cast<std::size_t>(k); };
-    if (taken.read_neighbours && (group.is_first[at(run.body)] || group.is_last[at(last)])) return false;
+    if (taken.read_neighbours && (group.is_first[at(run.body)] || group.is_last[at(last)]))
+        return false;
     for (std::int64_t k = run.body + 1; k <= last; ++k)
         if (group.restricted_of_joint[at(k)] != group.directions) return false;
     return true;
@@ -26,7 +29,10 @@ struct RunsOfGroup {
     /// One or two take less time one after the other than a vector with most of its lanes idle.
     bool enough() const { return whole + shorter >= few; }
     /// And so do shorter ones, unless there are lanes for them beside whole runs.
-    bool shorter_ones_pay() const { return shorter >= few || (whole % most_lanes > 0 && whole % most_lanes + shorter <= most_lanes); }
+    bool shorter_ones_pay() const {
+        return shorter >= few ||
+               (whole % most_lanes > 0 && whole % most_lanes + shorter <= most_lanes);
+    }
 
   private:
     static constexpr std::int64_t few = 3;
@@ -38,7 +44,8 @@ constexpr std::size_t few_merges = 3;
 }  // namespace
 
 bool asks_ahead(ChainGroup const& group) {
-    // Measured with a cache of 32 MiB: 16,384 bodies take a tenth less without, 32,768 half as much again.
+    // Measured with a cache of 32 MiB: 16,384 bodies take a tenth less without, 32,768 half as much
+    // again.
     constexpr std::int64_t of_body = 1200, of_bead = 300, kept = std::int64_t{24} << 20;
     return group.size * (group.beads ? of_bead : of_body) > kept;
 }
@@ -81,12 +88,16 @@ std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
         LevelDealtOut& dealt = all.emplace_back(LevelDealtOut{{}, {{}}});
         std::vector<Merge> alike;
         for (Merge const& m : level) {
-            bool const goes = rounds_as_vectors() && group.restricted_of_joint[static_cast<std::size_t>(m.joint)] == group.directions;
+            bool const goes =
+                rounds_as_vectors() &&
+                group.restricted_of_joint[static_cast<std::size_t>(m.joint)] == group.directions;
             (goes ? alike : dealt.others.front()).push_back(m);
         }
         std::size_t const left_over = alike.size() % static_cast<std::size_t>(lanes);
         if (left_over < few_merges) {
-            dealt.others.front().insert(dealt.others.front().end(), alike.end() - static_cast<std::ptrdiff_t>(left_over), alike.end());
+            dealt.others.front().insert(dealt.others.front().end(),
+                                        alike.end() - static_cast<std::ptrdiff_t>(left_over),
+                                        alike.end());
             alike.resize(alike.size() - left_over);
         }
         for (std::size_t i = 0; i < alike.size(); ++i) {
@@ -95,7 +106,8 @@ std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
             MergesInLanes& item = dealt.items.back();
             Merge const& m = alike[i];
             for (std::size_t same = lane; same < static_cast<std::size_t>(lanes); ++same) {
-                item.inboard[same] = m.inboard, item.outboard[same] = m.outboard, item.slot[same] = m.slot;
+                item.inboard[same] = m.inboard, item.outboard[same] = m.outboard,
+                item.slot[same] = m.slot;
                 item.first[same] = m.first, item.joint[same] = m.joint, item.next[same] = m.next;
             }
         }

@@ -1,4 +1,5 @@
-// A group's runs and merges that go side by side: which ones, in what order, and the kernels of an instruction set for them.
+// A group's runs and merges that go side by side: which ones, in what order, and the kernels of an
+// instruction set for them.
 #pragma once
 
 #include <algorithm>
@@ -21,11 +22,13 @@ bool asks_ahead(ChainGroup const&);
 
 /// Which runs may go side by side.
 struct RunsTaken {
-    bool of_parts;         // those too that are shorter than runs are, but not shorter than a part, where that pays
+    bool of_parts;  // those too that are shorter than runs are, but not shorter than a part, where
+                    // that pays
     bool read_neighbours;  // their bodies do: only those that lie within their chain
 };
-/// A run goes side by side with others if it is as long as RunsTaken says, all its own joints carry what handles do and its last body is no
-/// jointed tip; and if the group has three runs on all ranks: so this is a property of the scene, not of who holds the run.
+/// A run goes side by side with others if it is as long as RunsTaken says, all its own joints carry
+/// what handles do and its last body is no jointed tip; and if the group has three runs on all
+/// ranks: so this is a property of the scene, not of who holds the run.
 RunsDealtOut deal_out_runs(ChainGroup const&, int lanes, RunsTaken const&);
 
 template <class Leaf>
@@ -37,14 +40,18 @@ RunKernels<Leaf> kernels_of(SimdLevel level) {
 class AlignedNumbers {
   public:
     AlignedNumbers() = default;
-    explicit AlignedNumbers(std::int64_t count) : storage_(static_cast<std::size_t>(count) + most_lanes) {}
+    explicit AlignedNumbers(std::int64_t count)
+        : storage_(static_cast<std::size_t>(count) + most_lanes) {}
     double* data() { return storage_.data() + unaligned(); }
     double const* data() const { return storage_.data() + unaligned(); }
-    std::int64_t bytes() const { return static_cast<std::int64_t>(storage_.size() * sizeof(double)); }
+    std::int64_t bytes() const {
+        return static_cast<std::int64_t>(storage_.size() * sizeof(double));
+    }
 
   private:
     std::size_t unaligned() const {
-        std::size_t const at = reinterpret_cast<std::uintptr_t>(storage_.data()) / sizeof(double) % most_lanes;
+        std::size_t const at =
+            reinterpret_cast<std::uintptr_t>(storage_.data()) / sizeof(double) % most_lanes;
         return (most_lanes - at) % most_lanes;
     }
     LongArray<double> storage_;
@@ -55,7 +62,8 @@ constexpr bool may_keep_all(std::int64_t numbers) { return numbers <= 1 << 17; }
 
 /// As RunWork has it, of every body's `numbers` by body(k, place).
 template <class Body>
-AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lanes, int numbers, Body const& body) {
+AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lanes, int numbers,
+                                  Body const& body) {
     AlignedNumbers all(std::ssize(items) * longest_run * numbers * lanes);
     std::vector<double> of_one(static_cast<std::size_t>(numbers));
     double* part = all.data();
@@ -63,14 +71,17 @@ AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lan
         for (int p = 0; p < parts_of_run; ++p, part += part_length * numbers * lanes)
             for (int i = 0; i < part_length; ++i)
                 for (int lane = 0; lane < lanes; ++lane) {
-                    body(std::max(item.body[lane], item.column[lane] + p * part_length + i), of_one.data());
-                    for (int n = 0; n < numbers; ++n) part[(n * part_length + i) * lanes + lane] = of_one[static_cast<std::size_t>(n)];
+                    body(std::max(item.body[lane], item.column[lane] + p * part_length + i),
+                         of_one.data());
+                    for (int n = 0; n < numbers; ++n)
+                        part[(n * part_length + i) * lanes + lane] =
+                            of_one[static_cast<std::size_t>(n)];
                 }
     return all;
 }
 
-/// Merges of one level at joints that carry what handles do, side by side, in the lanes that are left over the last one again; and the
-/// others, as a list of one level.
+/// Merges of one level at joints that carry what handles do, side by side, in the lanes that are
+/// left over the last one again; and the others, as a list of one level.
 struct LevelDealtOut {
     std::vector<MergesInLanes> items;
     std::vector<std::vector<Merge>> others;
@@ -88,26 +99,32 @@ class SideBySide {
         kernels_ = kernels_of<Leaf>(level);
         asks_ahead_ = asks_ahead(group);
         runs_ = deal_out_runs(group, lanes_, {Leaf::by_inertia, Leaf::reads_neighbours});
-        keeps_all_ = !Leaf::beads && !Leaf::by_inertia && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
+        keeps_all_ = !Leaf::beads && !Leaf::by_inertia &&
+                     may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
         nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run_of<Leaf>(keeps_all_));
-        constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&](std::int64_t k, double* place) {
-            each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
-                auto const numbers = field.load(k);
-                place = std::copy_n(numbers.data, D, place);
+        constants_ = constants_in_lanes(
+            runs_.items, lanes_, constants_of<Leaf>, [&](std::int64_t k, double* place) {
+                each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
+                    auto const numbers = field.load(k);
+                    place = std::copy_n(numbers.data, D, place);
+                });
+                if constexpr (frame_constants<Leaf> > 0)
+                    std::copy_n(group.joint_rotation[k].data, frame_constants<Leaf>, place);
             });
-            if constexpr (frame_constants<Leaf> > 0) std::copy_n(group.joint_rotation[k].data, frame_constants<Leaf>, place);
-        });
         if (items() == 0) return;
         levels_ = deal_out_levels(group, lanes_);
-        for (LevelDealtOut const& l : levels_) merge_nodes_.emplace_back(std::ssize(l.items) * node_numbers<Leaf::K> * lanes_);
+        for (LevelDealtOut const& l : levels_)
+            merge_nodes_.emplace_back(std::ssize(l.items) * node_numbers<Leaf::K> * lanes_);
     }
     std::int64_t items() const { return std::ssize(runs_.items); }
     std::vector<Run> const& other_runs() const { return runs_.others; }
     std::vector<LevelDealtOut> const& levels() const { return levels_; }
     std::int64_t bytes() const {
-        std::int64_t all = nodes_.bytes() + constants_.bytes() + items() * static_cast<std::int64_t>(sizeof(RunsInLanes));
+        std::int64_t all = nodes_.bytes() + constants_.bytes() +
+                           items() * static_cast<std::int64_t>(sizeof(RunsInLanes));
         for (std::size_t l = 0; l < levels_.size(); ++l)
-            all += merge_nodes_[l].bytes() + std::ssize(levels_[l].items) * static_cast<std::int64_t>(sizeof(MergesInLanes));
+            all += merge_nodes_[l].bytes() +
+                   std::ssize(levels_[l].items) * static_cast<std::int64_t>(sizeof(MergesInLanes));
         return all;
     }
 
@@ -118,11 +135,15 @@ class SideBySide {
         work.nodes = nodes_.data();
         work.keeps_all = keeps_all_;
         work.asks_ahead = asks_ahead_;
-        space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) { kernels_.climb(work, begin, end); });
+        space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) {
+            kernels_.climb(work, begin, end);
+        });
     }
     template <class Space>
     void descend(Space const& space, RunWork<Leaf> const& work) {
-        space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) { kernels_.descend(work, begin, end); });
+        space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) {
+            kernels_.descend(work, begin, end);
+        });
     }
     template <class Space>
     void climb_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l) {
@@ -135,9 +156,12 @@ class SideBySide {
 
   private:
     template <class Space, class Kernel>
-    void over_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l, Kernel const& kernel) {
-        MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data(), asks_ahead_};
-        space.over_ranges(std::ssize(levels_[l].items), 2, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
+    void over_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l,
+                    Kernel const& kernel) {
+        MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data(),
+                                   asks_ahead_};
+        space.over_ranges(std::ssize(levels_[l].items), 2,
+                          [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
     }
     RunKernels<Leaf> kernels_{};
     int lanes_ = 1;

@@ -1,5 +1,6 @@
-// What bodies of a few runs read and write, turned so that those of several runs lie side by side: a part, or the whole, of as many runs
-// as a vector has lanes. Views of a tile are read at a Column: a place that stands for one body of every run.
+// What bodies of a few runs read and write, turned so that those of several runs lie side by side:
+// a part, or the whole, of as many runs as a vector has lanes. Views of a tile are read at a
+// Column: a place that stands for one body of every run.
 #pragma once
 
 #include "dca/lane_access.hpp"
@@ -57,7 +58,7 @@ template <int K, class Real>
 CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& c, Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, c, value);
 }
-/// A run's first body may: HingedRunsSideBySide.
+/// A run's first body may: RevoluteRunsSideBySide.
 template <class Real>
 CATENA_HD bool begins_chain(GroupView const&, Column<Real> const&) {
     return false;

@@ -3,9 +3,12 @@
 
 namespace catena::dca {
 
-std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
+std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const& group,
+                                                     Executor const& executor,
+                                                     Communicator const& communicator) {
     return with_articulated_leaf(group, [&](auto leaf) -> std::unique_ptr<ChainSolver> {
-        return std::make_unique<TreeSolver<typename decltype(leaf)::type, HostSpace>>(group, HostSpace(executor), communicator);
+        return std::make_unique<TreeSolver<typename decltype(leaf)::type, HostSpace>>(
+            group, HostSpace(executor), communicator);
     });
 }
 

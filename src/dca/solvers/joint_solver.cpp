@@ -3,22 +3,29 @@
 namespace catena {
 namespace dca {
 
-std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Executor const&, Communicator const&);
-std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor const&, Communicator const&);
-std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor const&, Communicator const&);
+std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Executor const&,
+                                              Communicator const&);
+std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor const&,
+                                                  Communicator const&);
+std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor const&,
+                                                     Communicator const&);
 
 namespace {
 
 template <int K, bool sliding = false>
-std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
-    return std::make_unique<TreeSolver<BodyLeaf<K, MeetingFrames<K, sliding>>, HostSpace>>(group, HostSpace(executor), communicator);
+std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor const& executor,
+                                               Communicator const& communicator) {
+    return std::make_unique<TreeSolver<BodyLeaf<K, JointFrameHandles<K, sliding>>, HostSpace>>(
+        group, HostSpace(executor), communicator);
 }
 
 }  // namespace
 }  // namespace dca
 
-std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
-    if (group.handles == Handles::articulated) return dca::make_articulated_solver(group, executor, communicator);
+std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
+                                              Communicator const& communicator) {
+    if (group.handles == Handles::articulated)
+        return dca::make_articulated_solver(group, executor, communicator);
     if (group.beads) return dca::make_bead_solver(group, executor, communicator);
     if (group.axes == Axes::world) return dca::make_absolute_solver(group, executor, communicator);
     if (group.directions == 2) return dca::make_joint_solver<2>(group, executor, communicator);

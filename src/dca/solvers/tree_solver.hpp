@@ -1,4 +1,5 @@
-// The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in segment.hpp, leaf.hpp, articulated.hpp.
+// The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in
+// segment.hpp, leaf.hpp, articulated.hpp.
 #pragma once
 
 #include <optional>
@@ -9,9 +10,9 @@
 #include "dca/fused_sweep.hpp"
 #include "dca/host_space.hpp"
 #include "dca/inverse_sweep.hpp"
+#include "dca/simd/side_by_side.hpp"
 #include "dca/team_tree.hpp"
 #include "tree/frontier_exchange.hpp"
-#include "dca/simd/side_by_side.hpp"
 
 namespace catena::dca {
 
@@ -25,7 +26,8 @@ class TreeSolver final : public ChainSolver {
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
     static constexpr bool takes_runs_whole = requires { requires Leaf::by_inertia; };
-    static constexpr bool has_lanes = goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
+    static constexpr bool has_lanes =
+        goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
 
   public:
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
@@ -34,24 +36,30 @@ class TreeSolver final : public ChainSolver {
           space_(space),
           communicator_(communicator),
           model_(group),
-          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
-          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
+          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots,
+                group.restricted_of_joint, Sweeps::in_stage),
+          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots,
+               group.restricted_of_joint, Sweeps::in_stage),
           matrices_(schedule_.slots),
           biases_(schedule_.slots),
           joints_(schedule_.joints),
           offsets_(schedule_.joints),
           forces_(schedule_.joints),
-          shown_matrices_(schedule_, RecordNumbers<typename Sweeps::Matrices>::width, space, communicator),
-          shown_biases_(schedule_, RecordNumbers<typename Sweeps::Biases>::width, space, communicator),
+          shown_matrices_(schedule_, RecordNumbers<typename Sweeps::Matrices>::width, space,
+                          communicator),
+          shown_biases_(schedule_, RecordNumbers<typename Sweeps::Biases>::width, space,
+                        communicator),
           lost_(1),
           sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
                   joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
         space_.put(lost_.data(), none_lost);
         if constexpr (takes_runs_whole)
             if (at_once())
-                whole_runs_.emplace(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint,
+                whole_runs_.emplace(schedule_.runs, schedule_.levels, schedule_.roots,
+                                    schedule_.slots, group.restricted_of_joint,
                                     Sweeps::in_stage_of_whole_runs);
-        if (at_once()) shown_both_.emplace(schedule_, NumbersOfSegments::width, space, communicator);
+        if (at_once())
+            shown_both_.emplace(schedule_, NumbersOfSegments::width, space, communicator);
         if constexpr (has_lanes) {
             aside_.emplace(group, model_.view(), space.simd());
             if (aside_->items() > 0)
@@ -82,24 +90,32 @@ class TreeSolver final : public ChainSolver {
         ++report_.bias_sweeps;
     }
 
-    void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
+    void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads,
+                            AccelerationsView const& out) override {
         if constexpr (Leaf::projected)
             if (at_once()) return evaluate(configuration, loads, out);
         ChainSolver::assemble_and_solve(configuration, loads, out);
     }
     /// The chapter's tree of pairs stays plain, and so do full handles.
-    bool at_once() const override { return Leaf::projected && group_.partition.trees.front().run_length > 1; }
-    bool goes_by_hinges() const override { return takes_runs_whole && at_once() && group_.hinged; }
+    bool at_once() const override {
+        return Leaf::projected && group_.partition.trees.front().run_length > 1;
+    }
+    bool goes_by_revolutes() const override {
+        return takes_runs_whole && at_once() && group_.revolute;
+    }
     bool has_runs_side_by_side() const override { return aside_.has_value(); }
-    std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
+    std::vector<double> time_evaluations(ConfigurationView const& configuration,
+                                         LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
-        return space_.time_chained(chained, repeat, shown_matrices_.asks_host(), [&] { assemble_and_solve(configuration, loads, out); });
+        return space_.time_chained(chained, repeat, shown_matrices_.asks_host(),
+                                   [&] { assemble_and_solve(configuration, loads, out); });
     }
 
     void invert(InverseView const& out) override {
         if constexpr (Space::answers_at_once && std::is_same_v<Sweeps, TreeSweeps<Leaf>>) {
             if (!inverse_) inverse_.emplace(schedule_);
-            InverseSweep<Leaf> const sweep{sweeps_, inverse_->own.view(), inverse_->across.view(), out.beside};
+            InverseSweep<Leaf> const sweep{sweeps_, inverse_->own.view(), inverse_->across.view(),
+                                           out.beside};
             auto const each = [&](auto const& items) { space_.over(std::span(items), sweep); };
             auto const each_level = [&](auto const& levels) {
                 for (std::size_t l = levels.size(); l-- > 0;) each(levels[l]);
@@ -110,22 +126,27 @@ class TreeSolver final : public ChainSolver {
             each_level(schedule_.levels);
             each(schedule_.runs);
             auto const pivot = [this](std::int64_t joint) {
-                double const inverse = sweeps_.joints.load(joint).factor(0, 0);  // 0 where nothing is restricted
+                double const inverse =
+                    sweeps_.joints.load(joint).factor(0, 0);  // 0 where nothing is restricted
                 return inverse != 0 ? 1 / inverse : 1.0;
             };
             space_.for_each(group_.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
             for (std::size_t i = 0; i < group_.tips.size(); ++i)
-                out.tip_pivot.at(group_.tips[i].body, 0) = pivot(schedule_.first_tip() + static_cast<std::int64_t>(i));
+                out.tip_pivot.at(group_.tips[i].body, 0) =
+                    pivot(schedule_.first_tip() + static_cast<std::int64_t>(i));
         } else {
             ChainSolver::invert(out);
         }
     }
 
-    /// Whether chains can be carried through several sweeps block by block, without a word from other ranks, and it pays.
+    /// Whether chains can be carried through several sweeps block by block, without a word from
+    /// other ranks, and it pays.
     bool carries() const { return schedule_.shared.empty() && space_.pays_by_blocks(group_); }
-    /// action(sweeps)(block) for every block of whole chains, which does so many sweeps of each kind. Precondition: carries().
+    /// action(sweeps)(block) for every block of whole chains, which does so many sweeps of each
+    /// kind. Precondition: carries().
     template <class Action>
-    void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps, Action const& action) {
+    void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps,
+               Action const& action) {
         sweeps_.leaf.set(configuration);
         space_.each_block(blocks(), action(sweeps_));
         report_.matrix_sweeps += matrix_sweeps;
@@ -162,7 +183,8 @@ class TreeSolver final : public ChainSolver {
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
-            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint, Sweeps::in_stage);
+            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint,
+                               Sweeps::in_stage);
         };
         add(aside_->other_runs(), no_levels_, no_roots_);
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
@@ -182,23 +204,29 @@ class TreeSolver final : public ChainSolver {
         return false;
     }
 
-    void evaluate(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+    void evaluate(ConfigurationView const& configuration, LoadsView const& loads,
+                  AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
         if constexpr (Leaf::beads)
             sweep_at_once(
-                Evaluation<Leaf, typename Leaf::Moving>{{sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
+                FusedSweep<Leaf, typename Leaf::Moving>{
+                    {sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
                 configuration, loads, out);
         else
-            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{{sweeps_}, {sweeps_.leaf, model_.restricted(), loads}, out}, configuration, loads,
-                          out);
+            sweep_at_once(
+                FusedSweep<Leaf, Resting<Leaf>>{
+                    {sweeps_}, {sweeps_.leaf, model_.restricted(), loads}, out},
+                configuration, loads, out);
         ++report_.evaluations;
         if (Space::answers_at_once) check();
     }
 
-    /// With runs and merges that go side by side where there are any, and the others of each level after them.
+    /// With runs and merges that go side by side where there are any, and the others of each level
+    /// after them.
     template <class Sweep>
-    void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+    void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration,
+                       LoadsView const& loads, AccelerationsView const& out) {
         if constexpr (has_lanes)
             if (aside_) {
                 RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
@@ -222,7 +250,8 @@ class TreeSolver final : public ChainSolver {
     /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
     class Stopwatch {
       public:
-        Stopwatch(TreeSolver& solver, double& seconds) : solver_(solver), seconds_(seconds), start_(seconds_now()) {}
+        Stopwatch(TreeSolver& solver, double& seconds)
+            : solver_(solver), seconds_(seconds), start_(seconds_now()) {}
         ~Stopwatch() {
             if (solver_.measured_) solver_.space_.wait();
             if (solver_.measured_ || Space::answers_at_once) seconds_ += seconds_now() - start_;
@@ -236,25 +265,29 @@ class TreeSolver final : public ChainSolver {
         double start_;
     };
 
-    /// `shown`: of the sweep's records. A solver that is measured says how long ranks exchange them.
+    /// `shown`: of the sweep's records. A solver that is measured says how long ranks exchange
+    /// them.
     template <class Sweep, class Shown>
-    void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Shown const& shown, AccelerationsView const& out) {
+    void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Shown const& shown,
+                     AccelerationsView const& out) {
         if (schedule_.shared.empty()) {
             space_.climb_and_descend(tree, sweep);
-        } else if (measured_ || !shown.units.turn(space_, communicator_, shown.numbers, tree, top_, sweep)) {
+        } else if (measured_ ||
+                   !shown.units.turn(space_, communicator_, shown.numbers, tree, top_, sweep)) {
             space_.climb(tree, sweep);
             gather(shown);
             space_.climb_and_descend(top_, sweep);
             space_.descend(tree, sweep);
         }
         if (out.joint_force && group_.neighbour_outboard >= 0)
-            space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
+            space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo,
+                                                       schedule_.bodies});
     }
 
     using NumbersOfSegments = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
     template <class Numbers>
     struct Shown {
-        SharedUnits<Space>& units;
+        FrontierExchange<Space>& units;
         Numbers numbers;
     };
     /// The shared units' records, to all ranks.
@@ -267,14 +300,16 @@ class TreeSolver final : public ChainSolver {
         report_.exchange_seconds += seconds_now() - start;
     }
     Shown<RecordNumbers<typename Sweeps::Matrices>> of_matrices() {
-        return {shown_matrices_, {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
+        return {shown_matrices_,
+                {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
     }
     Shown<RecordNumbers<typename Sweeps::Biases>> of_biases() {
         return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
     }
     /// Precondition: at_once().
     Shown<NumbersOfSegments> of_both() {
-        return {*shown_both_, {matrices_.view(), biases_.view(), shown_both_->own_units(), shown_both_->units()}};
+        return {*shown_both_,
+                {matrices_.view(), biases_.view(), shown_both_->own_units(), shown_both_->units()}};
     }
 
     ChainGroup const& group_;
@@ -286,14 +321,15 @@ class TreeSolver final : public ChainSolver {
     std::vector<std::vector<Merge>> no_levels_;
     std::vector<Root> no_roots_;
     typename Space::Tree tree_, top_;
-    std::optional<typename Space::Tree> whole_runs_;  // that evaluations go by whose runs are taken whole
+    std::optional<typename Space::Tree>
+        whole_runs_;  // that evaluations go by whose runs are taken whole
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
-    SharedUnits<Space> shown_matrices_, shown_biases_;
-    std::optional<SharedUnits<Space>> shown_both_;  // where evaluations are at once
+    FrontierExchange<Space> shown_matrices_, shown_biases_;
+    std::optional<FrontierExchange<Space>> shown_both_;  // where evaluations are at once
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;

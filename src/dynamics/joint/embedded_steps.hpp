@@ -1,5 +1,5 @@
-// A step of the Dormand-Prince pair for the coordinates of one body of chains in joint coordinates, and how far its two orders are apart,
-// for every Space.
+// A step of the Dormand-Prince pair for the coordinates of one body of chains in joint coordinates,
+// and how far its two orders are apart, for every Space.
 #pragma once
 
 #include "dynamics/joint/joint_dynamics.hpp"
@@ -7,20 +7,22 @@
 
 namespace catena {
 
-/// Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980, RK5(4)7M: six stages make a step of fifth order; the rates after it, which are the
-/// next step's first, tell how far that of fourth order would be.
+/// Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980, RK5(4)7M: six stages make a step of fifth
+/// order; the rates after it, which are the next step's first, tell how far that of fourth order
+/// would be.
 struct DormandPrince {
     static constexpr int stages = 6;
-    static constexpr double weight[stages][stages] = {{1.0 / 5, 0, 0, 0, 0, 0},
-                                                      {3.0 / 40, 9.0 / 40, 0, 0, 0, 0},
-                                                      {44.0 / 45, -56.0 / 15, 32.0 / 9, 0, 0, 0},
-                                                      {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0, 0},
-                                                      {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0},
-                                                      {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+    static constexpr double weight[stages][stages] = {
+        {1.0 / 5, 0, 0, 0, 0, 0},
+        {3.0 / 40, 9.0 / 40, 0, 0, 0, 0},
+        {44.0 / 45, -56.0 / 15, 32.0 / 9, 0, 0, 0},
+        {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0, 0},
+        {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0},
+        {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
     static constexpr double time[stages] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
     /// Of the difference, the rates after the step last.
-    static constexpr double difference[stages + 1] = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
-                                                      -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+    static constexpr double difference[stages + 1] = {
+        71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 };
 
 /// Times the step's length. Device code does not reach DormandPrince itself.
@@ -41,7 +43,8 @@ struct EmbeddedSteps {
     View<DormandPrince::stages * rates> kept;  // stage after stage
     View<DormandPrince::stages * base_rates> kept_base;
 
-    /// Keeps the rates of now and takes the state to the next stage, after the last one to the end of the step.
+    /// Keeps the rates of now and takes the state to the next stage, after the last one to the end
+    /// of the step.
     template <bool positions, class Place>
     CATENA_HD void advance(Place k, EmbeddedStage const& s) const {
         using Real = RealAt<Place>;
@@ -52,7 +55,9 @@ struct EmbeddedSteps {
             write(start.q, k, read(state.q, k));
             write(start.qd, k, read(state.qd, k));
         }
-        if (!s.again) write(of_stage(s.number), k, rates_of(k, first ? read(steps.carried.qdd, k) : chains.rate(k)));
+        if (!s.again)
+            write(of_stage(s.number), k,
+                  rates_of(k, first ? read(steps.carried.qdd, k) : chains.rate(k)));
         Vector<Real, 4> q = read(start.q, k);
         Vec3At<Place> qd = read(start.qd, k);
         for (int i = 0; i <= s.number; ++i) {
@@ -79,8 +84,10 @@ struct EmbeddedSteps {
         }
         if (!s.again) {
             Vec3 const v = state.base_velocity.load(piece);
-            Vec3 const a = first ? steps.carried.base_acceleration.load(piece) : steps.chains.base_rate(k);
-            base_of_stage(s.number).store(piece, Vector<double, base_rates>{{v[0], v[1], v[2], a[0], a[1], a[2]}});
+            Vec3 const a =
+                first ? steps.carried.base_acceleration.load(piece) : steps.chains.base_rate(k);
+            base_of_stage(s.number).store(
+                piece, Vector<double, base_rates>{{v[0], v[1], v[2], a[0], a[1], a[2]}});
         }
         Vec3 x = start.base_position.load(piece), v = start.base_velocity.load(piece);
         for (int i = 0; i <= s.number; ++i) {
@@ -94,13 +101,15 @@ struct EmbeddedSteps {
         state.base_velocity.store(piece, v);
     }
 
-    /// 1 or more where a stage is so far from where a step of any use leads that its equations may have no solution; NaN where it is not
-    /// finite. Orientations count by how far they are from unit length, speeds by a thousand radians in the step.
+    /// 1 or more where a stage is so far from where a step of any use leads that its equations may
+    /// have no solution; NaN where it is not finite. Orientations count by how far they are from
+    /// unit length, speeds by a thousand radians in the step.
     CATENA_HD double wildness(std::int64_t k, double length) const {
         StateView const& state = steps.chains.scan.state;
         Vector<double, 4> const q = state.q.load(k);
         double const size = dot(q, q), fast = 1e-3 * length * norm(state.qd.load(k));
-        if (!steps.chains.joints().has_quaternion(k)) return worse(is_angular(k) ? fast : 0.0, 0.0 * size + 0.0 * fast);
+        if (!steps.chains.joints().has_quaternion(k))
+            return worse(is_angular(k) ? fast : 0.0, 0.0 * size + 0.0 * fast);
         return worse(fast, worse(0.25 * size, 0.25 / size));
     }
     /// The faster of the step's ends.
@@ -108,33 +117,41 @@ struct EmbeddedSteps {
         JointChains const& chains = steps.chains;
         StateView const &state = chains.scan.state, &start = steps.start;
         double fastest = 0;
-        if (is_angular(k) == angular) fastest = worse(norm(start.qd.load(k)), norm(state.qd.load(k)));
+        if (is_angular(k) == angular)
+            fastest = worse(norm(start.qd.load(k)), norm(state.qd.load(k)));
         if (angular || !chains.on_free_base(k)) return fastest;
         std::int64_t const p = chains.joints().piece_of(k);
         return worse(norm(start.base_velocity.load(p)), norm(state.base_velocity.load(p)));
     }
-    /// The largest difference of the two orders over what is allowed, after the rates at the step's end were solved for. Orientations
-    /// differ by a rotation vector. What is prescribed has no error.
-    CATENA_HD double error(std::int64_t k, EmbeddedDifference const& d, AllowedErrors const& allowed) const {
+    /// The largest difference of the two orders over what is allowed, after the rates at the step's
+    /// end were solved for. Orientations differ by a rotation vector. What is prescribed has no
+    /// error.
+    CATENA_HD double error(std::int64_t k, EmbeddedDifference const& d,
+                           AllowedErrors const& allowed) const {
         JointChains const& chains = steps.chains;
         if (chains.drive_of(k)) return 0;
         Vector<double, rates> e = d.weight[DormandPrince::stages] * rates_of(k, chains.rate(k));
-        for (int i = 0; i < DormandPrince::stages; ++i) e = plus_scaled(e, d.weight[i], of_stage(i).load(k));
+        for (int i = 0; i < DormandPrince::stages; ++i)
+            e = plus_scaled(e, d.weight[i], of_stage(i).load(k));
         Vec3 const of_speed{{e[4], e[5], e[6]}};
         Vec3 of_place{{e[0], e[1], 0}};
         if (chains.joints().has_quaternion(k)) {
-            Quat const off = conjugate(as_quaternion(chains.scan.state.q.load(k))) * Quat{e[0], e[1], e[2], e[3]};
+            Quat const off = conjugate(as_quaternion(chains.scan.state.q.load(k))) *
+                             Quat{e[0], e[1], e[2], e[3]};
             of_place = {{2 * off.x, 2 * off.y, 2 * off.z}};
         }
         bool const angular = is_angular(k);
-        double const worst = worse(norm(of_place) / (angular ? allowed.angle : allowed.length),
-                                   norm(of_speed) / (angular ? allowed.speed.angular : allowed.speed.linear));
+        double const worst =
+            worse(norm(of_place) / (angular ? allowed.angle : allowed.length),
+                  norm(of_speed) / (angular ? allowed.speed.angular : allowed.speed.linear));
         return chains.on_free_base(k) ? worse(worst, base_error(k, d, allowed)) : worst;
     }
-    CATENA_HD double base_error(std::int64_t k, EmbeddedDifference const& d, AllowedErrors const& allowed) const {
+    CATENA_HD double base_error(std::int64_t k, EmbeddedDifference const& d,
+                                AllowedErrors const& allowed) const {
         std::int64_t const p = steps.chains.joints().piece_of(k);
         double const after = d.weight[DormandPrince::stages];
-        Vec3 x = after * steps.chains.scan.state.base_velocity.load(p), v = after * steps.chains.base_rate(k);
+        Vec3 x = after * steps.chains.scan.state.base_velocity.load(p),
+             v = after * steps.chains.base_rate(k);
         for (int i = 0; i < DormandPrince::stages; ++i) {
             Vector<double, base_rates> const rate = base_of_stage(i).load(p);
             x = plus_scaled(x, d.weight[i], Vec3{{rate[0], rate[1], rate[2]}});
@@ -144,19 +161,26 @@ struct EmbeddedSteps {
     }
 
   private:
-    CATENA_HD bool is_angular(std::int64_t k) const { return steps.chains.joints().joint[k] != JointType::prismatic; }
+    CATENA_HD bool is_angular(std::int64_t k) const {
+        return steps.chains.joints().joint[k] != JointType::prismatic;
+    }
     /// NaN stays.
     CATENA_HD static double worse(double a, double b) { return b > a || b != b ? b : a; }
-    CATENA_HD View<rates> of_stage(int i) const { return kept.template components<rates>(i * rates); }
-    CATENA_HD View<base_rates> base_of_stage(int i) const { return kept_base.template components<base_rates>(i * base_rates); }
+    CATENA_HD View<rates> of_stage(int i) const {
+        return kept.template components<rates>(i * rates);
+    }
+    CATENA_HD View<base_rates> base_of_stage(int i) const {
+        return kept_base.template components<base_rates>(i * base_rates);
+    }
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, rates> rates_of(Place k, Vec3At<Place> const& qdd) const {
         using Real = RealAt<Place>;
         StateView const& state = steps.chains.scan.state;
         Vec3At<Place> const qd = read(state.qd, k);
-        Vector<Real, 4> const q = steps.chains.joints().has_quaternion(k)
-                                      ? JointSteps::rate_of_quaternion(as_quaternion(read(state.q, k)), qd)
-                                      : Vector<Real, 4>{{qd[0], qd[1], Real(0), Real(0)}};
+        Vector<Real, 4> const q =
+            steps.chains.joints().has_quaternion(k)
+                ? JointSteps::rate_of_quaternion(as_quaternion(read(state.q, k)), qd)
+                : Vector<Real, 4>{{qd[0], qd[1], Real(0), Real(0)}};
         return {{q[0], q[1], q[2], q[3], qdd[0], qdd[1], qdd[2]}};
     }
 };
@@ -167,7 +191,8 @@ struct EmbeddedRates {
     typename Space::template FieldOf<DormandPrince::stages * EmbeddedSteps::rates> kept;
     typename Space::template FieldOf<DormandPrince::stages * EmbeddedSteps::base_rates> kept_base;
 
-    explicit EmbeddedRates(ChainGroup const& group) : kept(group.size), kept_base(std::ssize(group.pieces)) {}
+    explicit EmbeddedRates(ChainGroup const& group)
+        : kept(group.size), kept_base(std::ssize(group.pieces)) {}
 };
 
 }  // namespace catena

@@ -9,7 +9,8 @@ namespace {
 
 double largest_norm(ConstView<3> const& vectors, std::int64_t count) {
     double worst = 0;
-    for (std::int64_t k = 0; vectors.origin && k < count; ++k) worst = larger(worst, norm(vectors.load(k)));
+    for (std::int64_t k = 0; vectors.origin && k < count; ++k)
+        worst = larger(worst, norm(vectors.load(k)));
     return worst;
 }
 
@@ -23,7 +24,9 @@ double ratio(double change, double size) { return change == 0 ? 0.0 : change / s
 }  // namespace
 
 double RefinedSolution::relative_change(Communicator const& communicator) const {
-    auto const largest = [&](ConstView<3> const& vectors) { return communicator.max(largest_norm(vectors, group.size)); };
+    auto const largest = [&](ConstView<3> const& vectors) {
+        return communicator.max(largest_norm(vectors, group.size));
+    };
     double mass = 0, inertia = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
         mass = std::max(mass, group.mass.view().at(k, 0));
@@ -33,7 +36,8 @@ double RefinedSolution::relative_change(Communicator const& communicator) const 
     double const by_force = std::max(norm(gravity), ratio(largest(force), mass));
     double const by_torque = std::max(ratio(by_force, reach), ratio(largest(torque), inertia));
     double const turning = ratio(largest(change_of_alpha), std::max(largest(alpha), by_torque));
-    double const linear = ratio(largest(change_of_acceleration), std::max(largest(acceleration), by_force));
+    double const linear =
+        ratio(largest(change_of_acceleration), std::max(largest(acceleration), by_force));
     return larger(turning, linear);
 }
 

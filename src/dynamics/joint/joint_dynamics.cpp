@@ -2,7 +2,8 @@
 
 namespace catena {
 
-std::vector<JointedTip> tips_at_start(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
+std::vector<JointedTip> tips_at_start(ChainGroup const& group, Scene const& scene,
+                                      Communicator const& communicator) {
     if (!group.has_tips()) return {};
     auto const executor = serial_executor();
     HostSpace const host(*executor);
@@ -12,10 +13,13 @@ std::vector<JointedTip> tips_at_start(ChainGroup const& group, Scene const& scen
     return jointed_tips(group, scene, motion);
 }
 
-std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
-                                                   Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const& group, Scene const& scene,
+                                                   Executor const& executor,
+                                                   Communicator const& communicator,
+                                                   std::unique_ptr<ChainSolver> solver,
                                                    double implicit_step) {
-    return std::make_unique<JointDynamicsIn<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
+    return std::make_unique<JointDynamicsIn<HostSpace>>(
+        group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
 }
 
 }  // namespace catena

@@ -1,13 +1,13 @@
-// Forward dynamics of body chains in joint coordinates: state -> accelerations, by one matrix and one bias sweep. The state is within,
-// wherever that is.
+// Forward dynamics of body chains in joint coordinates: state -> accelerations, by one matrix and
+// one bias sweep. The state is within, wherever that is.
 #pragma once
 
 #include <memory>
 
-#include "kinematics/joint_kinematics.hpp"
 #include "dca/solver.hpp"
 #include "dynamics/absolute_dynamics.hpp"
 #include "dynamics/constrained_step.hpp"
+#include "kinematics/joint_kinematics.hpp"
 
 namespace catena {
 
@@ -45,44 +45,52 @@ class JointDynamics : public BeadHost {
     virtual void update_to_solve_once() = 0;
     /// At the configuration updated last. Needs no forces. Collective.
     virtual void assemble_matrices() = 0;
-    /// Accelerations of bodies with the forces of now, at the configuration updated last. Collective.
+    /// Accelerations of bodies with the forces of now, at the configuration updated last.
+    /// Collective.
     virtual void solve() = 0;
-    /// assemble_matrices() and solve() together, where nothing is to be hidden between them: the matrices are not kept, and the last bits
-    /// may be others. Collective.
+    /// assemble_matrices() and solve() together, where nothing is to be hidden between them: the
+    /// matrices are not kept, and the last bits may be others. Collective.
     virtual void solve_once() = 0;
-    /// solve() at the same coordinates with the velocities of now; matrices and forces on carried beads are those of before. Collective.
+    /// solve() at the same coordinates with the velocities of now; matrices and forces on carried
+    /// beads are those of before. Collective.
     virtual void solve_again() = 0;
     /// Those of coordinates, after solve(); and as they were set last, on the host.
     virtual void set_rates() = 0;
-    /// Seconds of update_to_solve_once(), solve_once() and set_rates() together, `repeat` times the mean of `chained` of them one after the
-    /// other. Precondition: they were called before. Collective.
-    virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
-    /// One step of iterative refinement of what solve() found last: what the equations of bodies and joints lack is solved for with the
-    /// same matrices and added. Digits come back that were lost where a body's forces are far larger than what they leave of them:
-    /// accelerations are carried apart from the forces they came from. `executor`: of the host, which looks for what is lacking.
+    /// Seconds of update_to_solve_once(), solve_once() and set_rates() together, `repeat` times the
+    /// mean of `chained` of them one after the other. Precondition: they were called before.
     /// Collective.
+    virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
+    /// One step of iterative refinement of what solve() found last: what the equations of bodies
+    /// and joints lack is solved for with the same matrices and added. Digits come back that were
+    /// lost where a body's forces are far larger than what they leave of them: accelerations are
+    /// carried apart from the forces they came from. `executor`: of the host, which looks for what
+    /// is lacking. Collective.
     virtual void refine(Executor const& executor) = 0;
-    /// How much the last refine() changed bodies' accelerations, over their size: an estimate of the relative error of what it was given.
-    /// Turning and linear accelerations apart, the larger of both. Where accelerations all but vanish, they count as what gravity and the
-    /// loads would give the chains as a whole. NaN where something is not finite. Precondition: refine() was called. Collective.
+    /// How much the last refine() changed bodies' accelerations, over their size: an estimate of
+    /// the relative error of what it was given. Turning and linear accelerations apart, the larger
+    /// of both. Where accelerations all but vanish, they count as what gravity and the loads would
+    /// give the chains as a whole. NaN where something is not finite. Precondition: refine() was
+    /// called. Collective.
     virtual double correction() = 0;
     virtual JointRates rates() const = 0;
 
     // Steps, stage by stage: each but the first half of Verlet's follows a solve().
     /// Stage 0, 1, 2 or 3 of a Runge-Kutta step of length h.
     virtual void runge_kutta(int stage, double h) = 0;
-    /// Stage 0 to 5 of a step of the Dormand-Prince pair (embedded_steps.hpp), from the carried accelerations on; what the stages began
-    /// with is kept until the next step that is not taken `again`.
+    /// Stage 0 to 5 of a step of the Dormand-Prince pair (embedded_steps.hpp), from the carried
+    /// accelerations on; what the stages began with is kept until the next step that is not taken
+    /// `again`.
     virtual void embedded_stage(int stage, InnerStep const&) = 0;
     /// Of the stage that comes next: below 1 where it is worth a solution. On this rank.
     virtual double wildness(double length) = 0;
-    /// At the ends of that step, and after another solve() its largest error over what is allowed; NaN where something is not finite. On
-    /// this rank.
+    /// At the ends of that step, and after another solve() its largest error over what is allowed;
+    /// NaN where something is not finite. On this rank.
     virtual Speeds fastest() = 0;
     virtual double embedded_error(double length, AllowedErrors const&) = 0;
     /// A length that lengths are measured by, the same on every rank: of the longest chain.
     virtual double reach() const = 0;
-    /// The accelerations that velocity Verlet and the Dormand-Prince pair carry from step to step: those solved for last; others.
+    /// The accelerations that velocity Verlet and the Dormand-Prince pair carry from step to step:
+    /// those solved for last; others.
     virtual void carry_rates() = 0;
     virtual void carry_rates(JointRates const&) = 0;
     virtual JointRates carried_rates() const = 0;
@@ -92,26 +100,32 @@ class JointDynamics : public BeadHost {
 
     /// Coordinates after h of the velocities, which are kept as the start of kicks.
     virtual void drift(double h) = 0;
-    /// Velocities after h of the accelerations solved for last, from those at the start; and from those of now, of the carried ones.
+    /// Velocities after h of the accelerations solved for last, from those at the start; and from
+    /// those of now, of the carried ones.
     virtual void kick(double h) = 0;
     virtual void kick_by_carried(double h) = 0;
-    /// Velocities keep u + spread xi: xi normal, its covariance the inverse of the matrix at the coordinates of now, springs' and dampers'
-    /// part included. `step` numbers the noise. Collective.
+    /// Velocities keep u + spread xi: xi normal, its covariance the inverse of the matrix at the
+    /// coordinates of now, springs' and dampers' part included. `step` numbers the noise.
+    /// Collective.
     virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
 
     /// Motion at the present state, positions included, on the host. Collective.
     virtual BodyMotion motion() = 0;
-    /// Of the solution evaluated last; nothing may have changed since, here and in residual() and refine(). Collective.
+    /// Of the solution evaluated last; nothing may have changed since, here and in residual() and
+    /// refine(). Collective.
     virtual BodyResults results() = 0;
-    /// Largest local backward residual of the solution evaluated last (JointSolution). Over all ranks; collective.
+    /// Largest local backward residual of the solution evaluated last (JointSolution). Over all
+    /// ranks; collective.
     virtual double residual(Executor const&) = 0;
     /// At the present state. Collective.
     virtual PotentialEnergy potential() = 0;
-    /// Corrects positions by so many Newton steps and velocities by one, each by the least in the metric of the masses, so that jointed
-    /// tips close again; nothing happens where there are none. Collective.
+    /// Corrects positions by so many Newton steps and velocities by one, each by the least in the
+    /// metric of the masses, so that jointed tips close again; nothing happens where there are
+    /// none. Collective.
     static constexpr int usual_corrections = 2;
     virtual void close_tips(int corrections = usual_corrections) = 0;
-    /// Largest opening of a jointed tip over the chains' reach, over all ranks; NaN where the state is not finite. Collective.
+    /// Largest opening of a jointed tip over the chains' reach, over all ranks; NaN where the state
+    /// is not finite. Collective.
     virtual double closure_error() = 0;
     virtual ChainSolver& solver() const = 0;
 
@@ -119,7 +133,9 @@ class JointDynamics : public BeadHost {
     double time_ = 0;
 };
 
-std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                                                   std::unique_ptr<ChainSolver>, double implicit_step = 0);
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&,
+                                                   Communicator const&,
+                                                   std::unique_ptr<ChainSolver>,
+                                                   double implicit_step = 0);
 
 }  // namespace catena

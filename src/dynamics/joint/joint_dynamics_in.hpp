@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "dca/host_space.hpp"
-#include "error.hpp"
 #include "dynamics/joint/embedded_steps.hpp"
-#include "dynamics/joint/revolute_scan.hpp"
 #include "dynamics/joint/joint_dynamics.hpp"
 #include "dynamics/joint/joint_lanes.hpp"
 #include "dynamics/joint/joint_solution.hpp"
 #include "dynamics/joint/joint_steps.hpp"
+#include "dynamics/joint/revolute_scan.hpp"
+#include "error.hpp"
 
 namespace catena {
 
@@ -34,8 +34,9 @@ class JointDynamicsIn final : public JointDynamics {
 
   public:
     /// `solver` takes views of the same space.
-    JointDynamicsIn(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
-                    std::unique_ptr<ChainSolver> solver, double implicit_step = 0)
+    JointDynamicsIn(ChainGroup const& group, Scene const& scene, Space const& space,
+                    Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+                    double implicit_step = 0)
         : group_(group),
           space_(space),
           communicator_(communicator),
@@ -52,8 +53,8 @@ class JointDynamicsIn final : public JointDynamics {
           has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
           needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
           needs_orientations_(given_.wrenches || needs_positions_),
-          goes_by_hinges_(solver_->goes_by_hinges()),
-          in_run_(goes_by_hinges_ ? hinges_in_runs(group) : std::vector<std::uint8_t>{}),
+          goes_by_revolutes_(solver_->goes_by_revolutes()),
+          in_run_(goes_by_revolutes_ ? revolutes_in_runs(group) : std::vector<std::uint8_t>{}),
           in_run_list_(in_run_),
           kinematics_(group, space, communicator),
           loads_(given_),
@@ -70,7 +71,7 @@ class JointDynamicsIn final : public JointDynamics {
           joint_load_(given_.joint_loads ? group.size : 0),
           compliance_(group.implicit_joint.empty() ? 0 : group.size),
           yielding_(group.implicit_joint.empty() ? 0 : group.size),
-          hinge_acceleration_(goes_by_hinges_ ? group.size + 1 : 0),
+          revolute_acceleration_(goes_by_revolutes_ ? group.size + 1 : 0),
           torque_(group.size),
           force_(has_forces_ ? group.size : 0),
           alpha_(group.size),
@@ -88,14 +89,19 @@ class JointDynamicsIn final : public JointDynamics {
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         if constexpr (has_lanes)
-            if (JointLanes lanes(group, given_.springs, goes_by_hinges_ && solver_->has_runs_side_by_side(), space.simd()); lanes.any())
+            if (JointLanes lanes(group, given_.springs,
+                                 goes_by_revolutes_ && solver_->has_runs_side_by_side(),
+                                 space.simd());
+                lanes.any())
                 lanes_ = std::move(lanes);
-        if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince) pair_.emplace(group);
+        if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince)
+            pair_.emplace(group);
         if (scene.solver.refine > 0) refinement_.emplace(group);
         set_state(make_joint_state(group, scene));
         if (tips() > 0)
             space_.edit(other_end_, [&](View<13> view) {
-                for (std::int64_t i = 0; i < tips(); ++i) view.store(i, as_numbers(tip_[static_cast<std::size_t>(i)].ground));
+                for (std::int64_t i = 0; i < tips(); ++i)
+                    view.store(i, as_numbers(tip_[static_cast<std::size_t>(i)].ground));
             });
     }
 
@@ -117,13 +123,13 @@ class JointDynamicsIn final : public JointDynamics {
     }
 
     void update_configuration() override { go_to_configuration(false); }
-    void update_to_solve_once() override { go_to_configuration(goes_by_hinges_); }
+    void update_to_solve_once() override { go_to_configuration(goes_by_revolutes_); }
     void assemble_matrices() override {
         solver_->assemble_matrices(configuration());
         has_matrices_ = true;
     }
     void solve() override {
-        bool const finds_motions = may_follow_hinges();
+        bool const finds_motions = may_follow_revolutes();
         if (std::exchange(leaves_loads_, false)) finds_motions ? update(false) : set_loads();
         set_carried_loads();
         solver_->solve(loads(), found(false));
@@ -153,12 +159,15 @@ class JointDynamicsIn final : public JointDynamics {
     void refine(Executor const& executor) override;
     double correction() override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
-    JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
+    JointRates rates() const override {
+        return {space_.read(qdd_), space_.read(base_acceleration_)};
+    }
 
     void runge_kutta(int stage, double h) override {
         double const weight[4] = {h / 6, h / 3, h / 3, h / 6}, next[4] = {h / 2, h / 2, h, h};
         if (stage == 0) start_time_ = time_;
-        RungeKuttaStage const s{stage == 0, stage == 3, weight[stage], next[stage], start_time_ + next[stage]};
+        RungeKuttaStage const s{stage == 0, stage == 3, weight[stage], next[stage],
+                                start_time_ + next[stage]};
         needs_positions_ ? runge_kutta<true>(s) : runge_kutta<false>(s);
         time_ = s.time;
     }
@@ -172,13 +181,16 @@ class JointDynamicsIn final : public JointDynamics {
         fill(space_, carried_qdd_, rates.qdd);
         fill(space_, carried_base_acceleration_, rates.base_acceleration);
     }
-    JointRates carried_rates() const override { return {space_.read(carried_qdd_), space_.read(carried_base_acceleration_)}; }
+    JointRates carried_rates() const override {
+        return {space_.read(carried_qdd_), space_.read(carried_base_acceleration_)};
+    }
     void verlet_move(double h) override {
         needs_positions_ ? verlet_move<true>(h) : verlet_move<false>(h);
         time_ += h;
     }
     void verlet_finish(double h) override {
-        space_.for_each(group_.size, [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.verlet_finish(k, h); });
+        space_.for_each(group_.size,
+                        [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.verlet_finish(k, h); });
         relative_ = false;
     }
 
@@ -197,9 +209,12 @@ class JointDynamicsIn final : public JointDynamics {
     }
     double residual(Executor const& executor) override {
         solver_->check();
-        return with_solution([&](JointSolution const& s) { return s.residual(communicator_, executor); });
+        return with_solution(
+            [&](JointSolution const& s) { return s.residual(communicator_, executor); });
     }
-    PotentialEnergy potential() override { return potential_of(group_, given_, space_.read(state_.q), motion()); }
+    PotentialEnergy potential() override {
+        return potential_of(group_, given_, space_.read(state_.q), motion());
+    }
 
     void close_tips(int corrections) override {
         if (!group_.has_tips()) return;
@@ -208,11 +223,15 @@ class JointDynamicsIn final : public JointDynamics {
     }
     double closure_error() override {
         solver_->check();
-        double worst = space_.largest(group_.size, [s = steps()] CATENA_LAMBDA(std::int64_t k) -> double { return s.trouble(k); });
+        double worst = space_.largest(
+            group_.size,
+            [s = steps()] CATENA_LAMBDA(std::int64_t k) -> double { return s.trouble(k); });
         if (group_.has_tips()) {
             move();
             worst =
-                larger(worst, space_.largest(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) -> double { return t.error(i); }));
+                larger(worst, space_.largest(tips(),
+                                             [t = jointed_tips()] CATENA_LAMBDA(
+                                                 std::int64_t i) -> double { return t.error(i); }));
         }
         return communicator_.max(worst);
     }
@@ -223,7 +242,8 @@ class JointDynamicsIn final : public JointDynamics {
     ChainSolver& solver() const override { return *solver_; }
     ChainGroup const& group() const override { return group_; }
 
-    /// one(k) for every body; where several go side by side, some(loops, their first bodies and which of these) for them.
+    /// one(k) for every body; where several go side by side, some(loops, their first bodies and
+    /// which of these) for them.
     template <bool positions, class Some, class One>
     void each_body(Some const& some, One const& one) const {
         if constexpr (has_lanes)
@@ -236,7 +256,8 @@ class JointDynamicsIn final : public JointDynamics {
         if (group_.carried_in_scene) set_loads();
     }
     void set_loads() {
-        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
+        space_.for_each(group_.size,
+                        [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
     }
     /// Loads that were the solver's to find. Precondition: motions are known.
     void leave_nothing() {
@@ -246,9 +267,9 @@ class JointDynamicsIn final : public JointDynamics {
     void go_to_configuration(bool leaves_loads) {
         leaves_loads_ = leaves_loads;
         has_matrices_ = false;
-        if (!may_follow_hinges()) return update(false);
-        if (follows_hinges())
-            follow_hinges();
+        if (!may_follow_revolutes()) return update(false);
+        if (follows_revolutes())
+            follow_revolutes();
         else
             update(false);
         has_orientations_ = false;  // as on ranks that follow: to find them is collective
@@ -264,10 +285,13 @@ class JointDynamicsIn final : public JointDynamics {
         c.scan.motion.orients_first_alone = !needs_orientations_;
         has_orientations_ = needs_orientations_;
         if (!std::exchange(relative_, false))
-            each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
-                                 [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
+            each_body<positions>(
+                [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
+                [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
         BodyExchange<4> const loads = shown_joint_loads();
-        auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); };
+        auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) {
+            c.template set_motion<positions>(k, again);
+        };
         if constexpr (has_lanes) {
             if (lanes_) {
                 lanes_->follow(space_, positions, c.scan);
@@ -275,18 +299,21 @@ class JointDynamicsIn final : public JointDynamics {
             } else {
                 kinematics_.template sweep<positions>(c.scan, loads);
             }
-            each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); }, set_motion);
+            each_body<positions>(
+                [&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
+                set_motion);
         } else {
             kinematics_.template sweep<positions>(c.scan, loads, set_motion);
         }
         if (!group_.has_tips()) return;
         set_ends();
-        space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
+        space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity,
+                                 out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
             t.set_acceleration_bias(i, gravity, out);
         });
     }
     /// update() where motions within runs are the solver's to find.
-    void follow_hinges() {
+    void follow_revolutes() {
         leaves_motions_ = has_rotations_ = true;
         JointChains c = chains();
         c.scan.motion.orients_first_alone = !needs_orientations_;
@@ -296,35 +323,47 @@ class JointDynamicsIn final : public JointDynamics {
         follow_by_runs(c, relative);
     }
     void set_relative() {
-        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<false>(k); });
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) {
+            c.template set_relative<false>(k);
+        });
     }
-    /// Of hinges, where the solver asks for them and another scan has been there.
+    /// Of revolute joints, where the solver asks for them and another scan has been there.
     void find_rotations() {
         if (leaves_motions_ && !has_rotations_) set_relative();
         has_rotations_ = leaves_motions_;
     }
     void follow_by_runs(JointChains const& c, bool relative) {
-        HingeScan const scan{c, joint_by_joint(), refinement_.has_value()};
+        RevoluteScan const scan{c, joint_by_joint(), refinement_.has_value()};
         if (scan.joint_by_joint && !relative) set_relative();
-        kinematics_.sweep_runs(scan, shown_joint_loads(), [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
+        kinematics_.sweep_runs(scan, shown_joint_loads(),
+                               [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
     }
     void follow_by_lanes(JointChains const& c) {
-        HingeScan const scan{c, false, refinement_.has_value()};
-        // Of bodies that begin a chain, on whatever joint; where others meet is as fixed as it was at first.
-        space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_relative<false>(k); });
-        lanes_->follow_hinges(space_, c);
+        RevoluteScan const scan{c, false, refinement_.has_value()};
+        // Of bodies that begin a chain, on whatever joint; where others meet is as fixed as it was
+        // at first.
+        space_.over(lanes_->chains_begin(),
+                    [c](std::int64_t k) { c.template set_relative<false>(k); });
+        lanes_->follow_revolutes(space_, c);
         kinematics_.sweep_with(scan, lanes_->tree(), shown_joint_loads());
         lanes_->begin_runs(space_, c.scan);
-        space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_motion<false>(k, false); });
+        space_.over(lanes_->chains_begin(),
+                    [c](std::int64_t k) { c.template set_motion<false>(k, false); });
         space_.over(lanes_->other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
     }
     /// Of first bodies, to the rank before.
-    BodyExchange<4> shown_joint_loads() { return given_.joint_loads ? from_outboard(group_, joint_load_.view()) : BodyExchange<4>::none(); }
+    BodyExchange<4> shown_joint_loads() {
+        return given_.joint_loads ? from_outboard(group_, joint_load_.view())
+                                  : BodyExchange<4>::none();
+    }
     template <bool positions>
     void runge_kutta(RungeKuttaStage const& stage) {
         JointSteps const s = steps();
-        each_body<positions>([&](JointLoops const& loops, auto... bodies) { loops.runge_kutta(s, stage, bodies...); },
-                             [s, stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
+        each_body<positions>([&](JointLoops const& loops,
+                                 auto... bodies) { loops.runge_kutta(s, stage, bodies...); },
+                             [s, stage] CATENA_LAMBDA(std::int64_t k) {
+                                 s.template runge_kutta<positions>(k, stage);
+                             });
         relative_ = !s.chains.left.motions;
     }
     template <bool positions>
@@ -332,24 +371,30 @@ class JointDynamicsIn final : public JointDynamics {
     template <bool positions>
     void verlet_move(double h) {
         JointSteps const s = steps();
-        space_.for_each(group_.size,
-                        [s, h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template verlet_move<positions>(k, h, time); });
+        space_.for_each(group_.size, [s, h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
+            s.template verlet_move<positions>(k, h, time);
+        });
         relative_ = !s.chains.left.motions;
     }
     template <bool positions>
     void drift(double h) {
         space_.for_each(group_.size,
-                        [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template drift<positions>(k, h, time); });
+                        [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
+                            s.template drift<positions>(k, h, time);
+                        });
         relative_ = true;
     }
     void kick(double h, bool by_carried) {
-        space_.for_each(group_.size, [s = steps(), h, by_carried] CATENA_LAMBDA(std::int64_t k) { s.kick(k, h, by_carried); });
+        space_.for_each(group_.size, [s = steps(), h, by_carried] CATENA_LAMBDA(std::int64_t k) {
+            s.kick(k, h, by_carried);
+        });
         relative_ = false;
     }
     void set_rates(RatesView const& out) {
         JointChains const c = chains();
-        each_body<false>([&](JointLoops const& loops, auto... bodies) { loops.set_rates(c, out, bodies...); },
-                         [c, out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
+        each_body<false>(
+            [&](JointLoops const& loops, auto... bodies) { loops.set_rates(c, out, bodies...); },
+            [c, out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
     }
     /// The kinematics alone, positions included.
     void move() {
@@ -358,7 +403,8 @@ class JointDynamicsIn final : public JointDynamics {
         kinematics_.evaluate(state_.view(), true, motion_.view());
         if (group_.has_tips()) set_ends();
     }
-    /// What jointed tips join, and where they meet: after the motion. Rings on two ranks show each other their ends.
+    /// What jointed tips join, and where they meet: after the motion. Rings on two ranks show each
+    /// other their ends.
     void set_ends();
     /// One Newton step: the solver with openings in the place of accelerations.
     void correct(bool velocities);
@@ -369,7 +415,8 @@ class JointDynamicsIn final : public JointDynamics {
   private:
     ConfigurationView configuration() {
         MotionView const m = motion_.view();
-        return {{}, m.joint_turn, {}, m.r2, m.axes2, has_implicit() ? compliance_.view() : View<6>{}};
+        return {{},   m.joint_turn, {},
+                m.r2, m.axes2,      has_implicit() ? compliance_.view() : View<6>{}};
     }
     bool has_implicit() const { return !group_.implicit_joint.empty(); }
     /// What only thermostats need.
@@ -380,18 +427,18 @@ class JointDynamicsIn final : public JointDynamics {
         if (!group_.has_tips()) zero_ = FieldOf<3>(group_.size);
     }
     LoadsView loads() {
-        LoadsView all{torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(),
-                      of_tips(group_, tip_bias_)};
+        LoadsView all{torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(),
+                      bias_.view(), of_tips(group_, tip_bias_)};
         if (!leaves_loads_) return all;
         if (leaves_torques()) all.torque = {};
         all.gyroscopic = leaves_torques();
         View<3> const qd = state_.qd.view();
-        all.hinge_rate = {qd.origin, qd.pitch, qd.size};
-        if (leaves_motions_) all.hinges = loads_of_hinges();
+        all.revolute_rate = {qd.origin, qd.pitch, qd.size};
+        if (leaves_motions_) all.revolutes = loads_of_revolutes();
         return all;
     }
-    HingeLoads loads_of_hinges() {
-        HingeLoads all{true, kinematics_.rotations(), {}, {}, {}, {}, {}};
+    RevoluteLoads loads_of_revolutes() {
+        RevoluteLoads all{true, kinematics_.rotations(), {}, {}, {}, {}, {}};
         View<4> const joint = joint_load_.view();
         if (given_.joint_loads) all.joint_torque = {joint.origin, joint.pitch, joint.size};
         if (given_.wrenches) {
@@ -404,47 +451,62 @@ class JointDynamicsIn final : public JointDynamics {
     }
     /// Nothing but gyration turns bodies, on whatever rank.
     bool leaves_torques() const {
-        return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged && !group_.carried_in_scene;
+        return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged &&
+               !group_.carried_in_scene;
     }
-    /// Whether a rank may follow_hinges(): where nothing acts by bodies' positions. The same on all ranks, not all of which do; lanes are
-    /// those of the solver's.
-    bool may_follow_hinges() const { return leaves_loads_ && !needs_positions_; }
-    bool follows_hinges() const {
+    /// Whether a rank may follow_revolutes(): where nothing acts by bodies' positions. The same on
+    /// all ranks, not all of which do; lanes are those of the solver's.
+    bool may_follow_revolutes() const { return leaves_loads_ && !needs_positions_; }
+    bool follows_revolutes() const {
         if constexpr (has_lanes)
             if (space_.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
-        return goes_by_hinges_ && group_.drives.empty() && !has_implicit() && (lanes_ || !solver_->has_runs_side_by_side());
+        return goes_by_revolutes_ && group_.drives.empty() && !has_implicit() &&
+               (lanes_ || !solver_->has_runs_side_by_side());
     }
     /// Whether motions joint by joint, which steps may leave, are found before those of runs.
     bool joint_by_joint() const {
-        return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)) && !kinematics_.has_threads_for_bodies();
+        return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)) &&
+               !kinematics_.has_threads_for_bodies();
     }
-    AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
-    /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
-    /// accelerations instead, where that is enough.
-    AccelerationsView found(bool hinges) {
+    AccelerationsView all() {
+        return {alpha_.view(), acceleration_.view(), joint_force_.view(),
+                of_tips(group_, tip_force_)};
+    }
+    /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to
+    /// be refined. `revolute joints`: their accelerations instead, where that is enough.
+    AccelerationsView found(bool revolutes) {
         has_all_ = refinement_.has_value();
-        has_hinges_ = hinges && !has_all_;
+        has_revolutes_ = revolutes && !has_all_;
         if (has_all_) return all();
-        return {alpha_.view(), acceleration_.view(), {}, {}, has_hinges_ ? hinge_acceleration_.view() : View<2>{}};
+        return {alpha_.view(),
+                acceleration_.view(),
+                {},
+                {},
+                has_revolutes_ ? revolute_acceleration_.view() : View<2>{}};
     }
     void find_all();
-    static std::vector<std::uint8_t> hinges_in_runs(ChainGroup const& group) {
+    static std::vector<std::uint8_t> revolutes_in_runs(ChainGroup const& group) {
         std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
         for (dca::Run const& run : group.schedule.runs)
             for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
                 if (group.is_first[static_cast<std::size_t>(k)] == 0)
-                    in_run[static_cast<std::size_t>(k)] = k == run.body ? HingesInRuns::first : HingesInRuns::within;
+                    in_run[static_cast<std::size_t>(k)] =
+                        k == run.body ? RevolutesInRuns::first : RevolutesInRuns::within;
         return in_run;
     }
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
-    JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }
+    JointedTips jointed_tips() {
+        return {tips_.data(),   reach_,           group_.directions,
+                motion_.view(), last_end_.view(), other_end_.view()};
+    }
     RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
     JointChains chains() {
         JointChains c;
         c.scan = kinematics_.scan(state_.view(), motion_.view());
         if (has_implicit())
-            c.implicit = {of_stiffness_, of_damping_, implicit_list_.data(), compliance_.view(), yielding_.view(), start_.view().qd};
+            c.implicit = {of_stiffness_,      of_damping_,      implicit_list_.data(),
+                          compliance_.view(), yielding_.view(), start_.view().qd};
         c.given = loads_.view();
         c.time = time_;
         c.directions = group_.directions;
@@ -464,7 +526,7 @@ class JointDynamicsIn final : public JointDynamics {
         c.outboard_end = outboard_end_.view();
         c.in_run = {in_run_list_.data()};
         c.left = {leaves_torques(), leaves_loads_, leaves_motions_ && !joint_by_joint()};
-        if (has_hinges_) c.hinge_acceleration = hinge_acceleration_.view();
+        if (has_revolutes_) c.revolute_acceleration = revolute_acceleration_.view();
         return c;
     }
     /// With nothing but what was solved for last.
@@ -491,16 +553,17 @@ class JointDynamicsIn final : public JointDynamics {
     List<LocalPiece> pieces_in_scene_;
     std::vector<JointedTip> tip_;
     double reach_;
-    bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_hinges_;
-    std::vector<std::uint8_t> in_run_;  // as HingesInRuns
+    bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_revolutes_;
+    std::vector<std::uint8_t> in_run_;  // as RevolutesInRuns
     List<std::uint8_t> in_run_list_;
     bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
-    bool has_rotations_ = false;    // of hinges, joint by joint (HingeLoads)
-    bool leaves_loads_ = false;     // some of those of the configuration updated last are the solver's to find
-    bool leaves_motions_ = false;   // and angular velocities within runs
-    bool has_matrices_ = false;     // of the configuration updated last
-    bool has_all_ = true;           // bodies' accelerations and joints' forces of the solution found last
-    bool has_hinges_ = false;       // hinge_acceleration_ of that
+    bool has_rotations_ = false;    // of revolute joints, joint by joint (RevoluteLoads)
+    bool leaves_loads_ =
+        false;  // some of those of the configuration updated last are the solver's to find
+    bool leaves_motions_ = false;  // and angular velocities within runs
+    bool has_matrices_ = false;    // of the configuration updated last
+    bool has_all_ = true;  // bodies' accelerations and joints' forces of the solution found last
+    bool has_revolutes_ = false;  // revolute_acceleration_ of that
     bool has_noise_ = false;
     bool relative_ = false;  // the state's motions joint by joint are known
     double start_time_ = 0;
@@ -517,8 +580,9 @@ class JointDynamicsIn final : public JointDynamics {
     FieldOf<4> joint_load_;
     FieldOf<6> compliance_;
     FieldOf<3> yielding_, noise_force_;
-    FieldOf<2> hinge_acceleration_;
-    FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
+    FieldOf<2> revolute_acceleration_;
+    FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_,
+        carried_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;
     FieldOf<13> last_end_, other_end_;  // by tip

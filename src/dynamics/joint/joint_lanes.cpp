@@ -3,9 +3,9 @@
 namespace catena {
 namespace {
 
-/// Whether bodies k to k + lanes - 1 go side by side: what they are asked for is the same of each, and found without a decision that
-/// depends on numbers. Their neighbours are of the same chain on this rank: none is the chain's first or last body, so none makes a run
-/// by itself.
+/// Whether bodies k to k + lanes - 1 go side by side: what they are asked for is the same of each,
+/// and found without a decision that depends on numbers. Their neighbours are of the same chain on
+/// this rank: none is the chain's first or last body, so none makes a run by itself.
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
     if (k == 0 || k + lanes >= group.size) return false;
     JointType const type = group.joint[static_cast<std::size_t>(k)];
@@ -21,7 +21,8 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
         default:
             return false;
     }
-    for (std::int64_t i = k; i <= k + lanes; ++i) {  // the joint after them too, which moves where they meet it
+    for (std::int64_t i = k; i <= k + lanes;
+         ++i) {  // the joint after them too, which moves where they meet it
         auto const at = static_cast<std::size_t>(i);
         if (group.joint[at] != type || group.is_first[at]) return false;
     }
@@ -30,7 +31,8 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
 
 /// Of bodies [begin, end).
 template <class Bodies>
-void deal_out(ChainGroup const& group, bool springs, std::int64_t begin, std::int64_t end, int lanes, Bodies& bodies) {
+void deal_out(ChainGroup const& group, bool springs, std::int64_t begin, std::int64_t end,
+              int lanes, Bodies& bodies) {
     for (std::int64_t k = begin; k < end;) {
         if (k + lanes <= end && go_side_by_side(group, springs, k, lanes)) {
             bodies.first.push_back(k);
@@ -44,11 +46,13 @@ void deal_out(ChainGroup const& group, bool springs, std::int64_t begin, std::in
 
 }  // namespace
 
-JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdLevel level) {
-    if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty())
+JointLanes::JointLanes(ChainGroup const& group, bool springs, bool revolutes, SimdLevel level) {
+    if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() ||
+        group.carried_in_scene || !group.implicit_joint.empty())
         return;
     for (bool const positions : {false, true})
-        loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
+        loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions)
+                                                               : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);
     asks_ahead_ = dca::asks_ahead(group);
     deal_out(group, springs, 0, group.size, lanes, bodies_);
@@ -58,17 +62,19 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdL
         return;
     }
     tree_.emplace(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots);
-    if (!hinges) return;
+    if (!revolutes) return;
     for (dca::RunsInLanes const& item : runs_.items)
         for (int lane = 0; lane < lanes; ++lane)
-            if (group.is_first[static_cast<std::size_t>(item.body[lane])] && (lane == 0 || item.body[lane] != item.body[0]))
+            if (group.is_first[static_cast<std::size_t>(item.body[lane])] &&
+                (lane == 0 || item.body[lane] != item.body[0]))
                 chains_begin_.push_back(item.body[lane]);
-    constants_ = dca::constants_in_lanes(runs_.items, lanes, hinge_constants, [&group](std::int64_t k, double* place) {
-        auto const axes = group.axes1[k];
-        auto const rotation = group.joint_rotation[k];
-        for (int i = 0; i < 3; ++i) *place++ = axes[3 + i];
-        for (int i = 0; i < 4; ++i) *place++ = rotation[i];
-    });
+    constants_ = dca::constants_in_lanes(runs_.items, lanes, revolute_constants,
+                                         [&group](std::int64_t k, double* place) {
+                                             auto const axes = group.axes1[k];
+                                             auto const rotation = group.joint_rotation[k];
+                                             for (int i = 0; i < 3; ++i) *place++ = axes[3 + i];
+                                             for (int i = 0; i < 4; ++i) *place++ = rotation[i];
+                                         });
 }
 
 }  // namespace catena

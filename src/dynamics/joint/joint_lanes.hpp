@@ -1,5 +1,6 @@
-// Loops over the bodies of chains in joint coordinates, and over their runs, as many at a time as a vector has lanes: which ones, and the
-// loops of an instruction set. What these do is in joint_chains.hpp, joint_steps.hpp and embedded_steps.hpp.
+// Loops over the bodies of chains in joint coordinates, and over their runs, as many at a time as a
+// vector has lanes: which ones, and the loops of an instruction set. What these do is in
+// joint_chains.hpp, joint_steps.hpp and embedded_steps.hpp.
 #pragma once
 
 #include <cstdint>
@@ -23,30 +24,38 @@ struct RunsAbreast {
 };
 /// For i in [begin, end) of these. With or without positions, as JointChains says.
 struct JointLoops {
-    void (*set_relative)(JointChains const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
+    void (*set_relative)(JointChains const&, BodiesAbreast const&, std::int64_t begin,
+                         std::int64_t end);
     /// JointScan::follow of the runs of items [begin, end), whose wholes it shows.
     void (*follow)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
-    /// The same of runs on hinges from their coordinates: turns and torques of their joints, wholes, and motions against the bodies inboard
-    /// of them of first bodies alone. Of chains' first bodies all but the wholes is known. `constants`: hinge_constants of every body, as
-    /// RunWork::constants.
-    void (*follow_hinges)(JointLoads const&, RunsAbreast const&, double const* constants, std::int64_t begin, std::int64_t end);
+    /// The same of runs on revolute joints from their coordinates: turns and torques of their
+    /// joints, wholes, and motions against the bodies inboard of them of first bodies alone. Of
+    /// chains' first bodies all but the wholes is known. `constants`: revolute_constants of every
+    /// body, as RunWork::constants.
+    void (*follow_revolutes)(JointLoads const&, RunsAbreast const&, double const* constants,
+                             std::int64_t begin, std::int64_t end);
     /// After the scan, angular velocities of these runs' first bodies.
     void (*begin_runs)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
-    void (*set_motion)(JointChains const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
-    void (*set_rates)(JointChains const&, RatesView const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
-    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
-    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
+    void (*set_motion)(JointChains const&, BodiesAbreast const&, std::int64_t begin,
+                       std::int64_t end);
+    void (*set_rates)(JointChains const&, RatesView const&, BodiesAbreast const&,
+                      std::int64_t begin, std::int64_t end);
+    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodiesAbreast const&,
+                        std::int64_t begin, std::int64_t end);
+    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodiesAbreast const&,
+                           std::int64_t begin, std::int64_t end);
 };
-/// The hinge's axis, and the rotation of its meeting frame.
-inline constexpr int hinge_constants = 7;
+/// The revolute joint's axis, and the rotation of its meeting frame.
+inline constexpr int revolute_constants = 7;
 /// Precondition: simd_levels() has them.
 JointLoops avx2_joint_loops(bool positions);
 JointLoops avx512_joint_loops(bool positions);
 
 class JointLanes {
   public:
-    /// `springs`: whether joints have any. `hinges`: whether the solver goes_by_hinges(), side by side. The group must outlive it.
-    JointLanes(ChainGroup const&, bool springs, bool hinges, SimdLevel);
+    /// `springs`: whether joints have any. `revolute joints`: whether the solver
+    /// goes_by_revolutes(), side by side. The group must outlive it.
+    JointLanes(ChainGroup const&, bool springs, bool revolutes, SimdLevel);
     // A copy's tree would be of the original's runs.
     JointLanes(JointLanes&&) = default;
     JointLanes& operator=(JointLanes&&) = default;
@@ -63,30 +72,35 @@ class JointLanes {
         space.over(std::span(bodies_.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
 
-    /// JointScan::follow of the runs that go side by side; tree() has the others, and what is above all of them.
+    /// JointScan::follow of the runs that go side by side; tree() has the others, and what is above
+    /// all of them.
     template <class Space>
     void follow(Space const& space, bool positions, JointScan const& scan) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
-        over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) { loops.follow(scan, runs, begin, end); });
+        over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+            loops.follow(scan, runs, begin, end);
+        });
     }
     HostSpace::ScanTree const& tree() const { return *tree_; }
 
-    // Chains whose solver goes_by_hinges(), none of whose positions is asked for. Precondition: `hinges`.
+    // Chains whose solver goes_by_revolutes(), none of whose positions is asked for. Precondition:
+    // `revolute joints`.
 
     /// Runs that do not go side by side; bodies of the others that begin a chain.
     std::span<dca::Run const> other_runs() const { return runs_.others; }
     std::span<std::int64_t const> chains_begin() const { return chains_begin_; }
     /// After set_relative() of those.
     template <class Space>
-    void follow_hinges(Space const& space, JointLoads const& loads) const {
+    void follow_revolutes(Space const& space, JointLoads const& loads) const {
         over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
-            loops_[0].follow_hinges(loads, runs, constants_.data(), begin, end);
+            loops_[0].follow_revolutes(loads, runs, constants_.data(), begin, end);
         });
     }
     template <class Space>
     void begin_runs(Space const& space, JointScan const& scan) const {
-        over_runs(space,
-                  [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) { loops_[0].begin_runs(scan, runs, begin, end); });
+        over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+            loops_[0].begin_runs(scan, runs, begin, end);
+        });
     }
 
   private:
@@ -96,7 +110,9 @@ class JointLanes {
     template <class Space, class Action>
     void over_runs(Space const& space, Action const& action) const {
         space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),
-                          [&](std::int64_t begin, std::int64_t end) { action({runs_.items.data(), asks_ahead_}, begin, end); });
+                          [&](std::int64_t begin, std::int64_t end) {
+                              action({runs_.items.data(), asks_ahead_}, begin, end);
+                          });
     }
     JointLoops loops_[2]{};
     bool asks_ahead_ = false;

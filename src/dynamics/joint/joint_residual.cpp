@@ -1,26 +1,30 @@
-// The local backward residual of forward dynamics in joint coordinates (src/dca/README.md, "Residuals").
+// The local backward residual of forward dynamics in joint coordinates (src/dca/README.md,
+// "Residuals").
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <mutex>
 #include <span>
 
-#include "math/executor.hpp"
 #include "dynamics/joint/joint_solution.hpp"
 #include "kinematics/ring_ends.hpp"
+#include "math/executor.hpp"
 
 namespace catena {
 
-/// Forces on a body, and moments about its centre: applied, of the inboard joint, of the outboard joint; B.
+/// Forces on a body, and moments about its centre: applied, of the inboard joint, of the outboard
+/// joint; B.
 struct JointSolution::Terms {
     std::array<Vec3, 3> forces;
     std::array<Vec3, 5> moments;
-    double moment_sizes = 0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
+    double moment_sizes =
+        0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
 };
 
 namespace {
 
-/// |inertial - sum of terms| over the sum of their sizes and `more`, what cancelled within them or was taken out of them.
+/// |inertial - sum of terms| over the sum of their sizes and `more`, what cancelled within them or
+/// was taken out of them.
 double balance(Vec3 const& inertial, std::span<Vec3 const> terms, double more) {
     Vec3 difference = inertial;
     double size = norm(inertial) + more;
@@ -54,12 +58,14 @@ JointSolution::Terms JointSolution::terms(std::int64_t k) const {
     Pair const inboard = along_axes(joint_force, k, screw(k)), outboard = outboard_pair(k);
     Vec3 const force1 = e1 * inboard.force, force2 = -(e2 * outboard.force);
     return {{{force.origin ? force.load(k) : Vec3::zero(), force1, force2}},
-            {{torque.load(k), cross(group.r1[k], force1), e1 * inboard.torque, cross(r2(k), force2), -(e2 * outboard.torque)}},
+            {{torque.load(k), cross(group.r1[k], force1), e1 * inboard.torque, cross(r2(k), force2),
+              -(e2 * outboard.torque)}},
             norm(group.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
 }
 
-/// Acceleration of a handle along its joint's axes (linear, angular), and the sizes of its terms (the same): what each force and moment
-/// on the body, and its turning, adds to it (chapter, eqs 2.1-2.2).
+/// Acceleration of a handle along its joint's axes (linear, angular), and the sizes of its terms
+/// (the same): what each force and moment on the body, and its turning, adds to it (chapter,
+/// eqs 2.1-2.2).
 Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const {
     Terms const t = terms(k);
     Vec3 const w = omega.load(k), centripetal = cross(w, cross(w, r));
@@ -70,7 +76,8 @@ Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 cons
         angular += norm(part);
         linear += norm(cross(part, r));
     }
-    Vec3 const a = transposed_times(axes, acceleration.load(k) + cross(alpha.load(k), r) + centripetal);
+    Vec3 const a =
+        transposed_times(axes, acceleration.load(k) + cross(alpha.load(k), r) + centripetal);
     Vec3 const turning = transposed_times(axes, alpha.load(k));
     return {{a[0], a[1], a[2], turning[0], turning[1], turning[2], linear, angular}};
 }
@@ -93,19 +100,24 @@ Vector<double, 8> JointSolution::handle_before_first(Communicator const& communi
     Vector<double, 8> before = Vector<double, 8>::zero();
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return before;
     Vector<double, 8> const last =
-        group.neighbour_outboard >= 0 ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1)) : before;
-    communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(before.data)),
-                          group.neighbour_inboard);
+        group.neighbour_outboard >= 0
+            ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1))
+            : before;
+    communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard,
+                          std::as_writable_bytes(std::span(before.data)), group.neighbour_inboard);
     return before;
 }
 
-std::vector<Vector<double, 8>> JointSolution::handles_at_tips(Communicator const& communicator) const {
-    return beyond_tips_of<8>(group, communicator, [&](std::int64_t k) { return handle(k, group.r1[k], axes1(k)); });
+std::vector<Vector<double, 8>> JointSolution::handles_at_tips(
+    Communicator const& communicator) const {
+    return beyond_tips_of<8>(group, communicator,
+                             [&](std::int64_t k) { return handle(k, group.r1[k], axes1(k)); });
 }
 
 /// D^T (outboard - inboard) + bias; 0 along what is not restricted.
-Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<double, 8> const& in, Vector<double, 6> const& bias,
-                                         Screw<double> const& s, int restricted) {
+Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<double, 8> const& in,
+                                         Vector<double, 6> const& bias, Screw<double> const& s,
+                                         int restricted) {
     Vector<double, 8> const d = out - in;
     Vector<double, 6> e{{d[0], d[1], s.c * d[2] - s.s * d[5], d[3], d[4], s.s * d[2] + s.c * d[5]}};
     for (int i = 0; i < 6; ++i) e[i] = i < restricted ? e[i] + bias[i] : 0.0;
@@ -118,22 +130,25 @@ Vec3 JointSolution::yielded(std::int64_t k) const {
     return as_symmetric(compliance.load(k)) * Vec3{{f[3], f[4], f[5]}};
 }
 
-/// |opening| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
-/// does not depend on the unit of length.
-double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView biases, std::int64_t at,
-                              Screw<double> const& s, int restricted, double size, Vec3 const& yielded_by_it) const {
+/// |opening| over its terms. One spatial equation: angles count by the body's `size`, so that the
+/// measure does not depend on the unit of length.
+double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in,
+                              ConstDirectionsView biases, std::int64_t at, Screw<double> const& s,
+                              int restricted, double size, Vec3 const& yielded_by_it) const {
     Vector<double, 6> b = load_first(biases, at, group.directions);
     auto yields = Vector<double, 6>::zero();
     for (int i = 0; i < 3; ++i) yields[3 + i] = yielded_by_it[i];
     for (int i = restricted; i < 6; ++i) b[i] = 0.0;
     Vector<double, 6> const e = opening(out, in, b + yields, s, restricted);
     auto const sizes = [&](Vector<double, 6> const& v) {
-        return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) + size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
+        return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) +
+               size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
     };
     return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b) + sizes(yields));
 }
 
-Vector<double, 8> JointSolution::handle_before(std::int64_t k, Vector<double, 8> const& before_first) const {
+Vector<double, 8> JointSolution::handle_before(std::int64_t k,
+                                               Vector<double, 8> const& before_first) const {
     if (group.is_first[k]) return Vector<double, 8>::zero();
     return k == 0 ? before_first : handle(k - 1, r2(k - 1), axes2(k - 1));
 }
@@ -144,16 +159,20 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
     auto const of_body = [&](std::int64_t k) {
         double worst = 0;
         Terms const t = terms_solved_for(k);
-        // The accelerated ground has taken the weight out of the forces: where bodies fall freely, only its rounding is left.
+        // The accelerated ground has taken the weight out of the forces: where bodies fall freely,
+        // only its rounding is left.
         double const mass = group.mass.view().at(k, 0), weight = mass * norm(given.gravity);
         worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
-        worst = larger(worst, balance(inertial_moment(k), t.moments, t.moment_sizes + weight * norm(group.r1[k])));
+        worst = larger(worst, balance(inertial_moment(k), t.moments,
+                                      t.moment_sizes + weight * norm(group.r1[k])));
         double const size = norm(group.r1[k]) + radius_of(group, k);
         Vector<double, 8> const before = handle_before(k, before_first);
-        worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size, yielded(k)));
+        worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k),
+                                      group.restricted(k), size, yielded(k)));
         if (!group.has_jointed_tip(k)) return worst;
-        return larger(worst, closing(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)), tip_bias, k, outboard_screw(k),
-                                     group.tip_of(k).restricted, norm(r2(k)) + radius_of(group, k), Vec3::zero()));
+        return larger(worst, closing(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)),
+                                     tip_bias, k, outboard_screw(k), group.tip_of(k).restricted,
+                                     norm(r2(k)) + radius_of(group, k), Vec3::zero()));
     };
     double worst = 0;
     std::mutex one_at_a_time;
@@ -166,9 +185,11 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
     return communicator.max(worst);
 }
 
-JointSolution::Defect JointSolution::defect(Communicator const& communicator, Executor const& executor) const {
+JointSolution::Defect JointSolution::defect(Communicator const& communicator,
+                                            Executor const& executor) const {
     std::int64_t const tips = group.has_tips() ? group.size : 0;
-    Defect d{Field<3>(group.size), Field<3>(group.size), DirectionsField(group.size + 1, group.directions),
+    Defect d{Field<3>(group.size), Field<3>(group.size),
+             DirectionsField(group.size + 1, group.directions),
              DirectionsField(tips, group.directions)};
     Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);
@@ -177,12 +198,13 @@ JointSolution::Defect JointSolution::defect(Communicator const& communicator, Ex
         d.torque.set(k, sum_of(t.moments) - inertial_moment(k));
         d.force.set(k, sum_of(t.forces) - group.mass.view().at(k, 0) * acceleration.load(k));
         store_first(d.bias.view(), k, group.directions,
-                    opening(handle(k, group.r1[k], axes1(k)), handle_before(k, before_first), load_first(bias, k, group.directions),
-                            screw(k), group.restricted(k)));
+                    opening(handle(k, group.r1[k], axes1(k)), handle_before(k, before_first),
+                            load_first(bias, k, group.directions), screw(k), group.restricted(k)));
         if (group.has_jointed_tip(k))
             store_first(d.tip_bias.view(), k, group.directions,
-                        opening(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)), load_first(tip_bias, k, group.directions),
-                                outboard_screw(k), group.tip_of(k).restricted));
+                        opening(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)),
+                                load_first(tip_bias, k, group.directions), outboard_screw(k),
+                                group.tip_of(k).restricted));
     });
     return d;
 }

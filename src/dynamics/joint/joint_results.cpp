@@ -1,6 +1,6 @@
 // What a solution in joint coordinates says of bodies and joints, ground axes.
-#include "dynamics/joint/out_of_plane.hpp"
 #include "dynamics/joint/joint_solution.hpp"
+#include "dynamics/joint/out_of_plane.hpp"
 
 namespace catena {
 
@@ -11,12 +11,15 @@ Screw<double> JointSolution::screw(std::int64_t k) const {
 }
 
 Screw<double> JointSolution::outboard_screw(std::int64_t k) const {
-    if (!group.has_jointed_tip(k)) return k + 1 < group.size || group.neighbour_outboard >= 0 ? screw(k + 1) : Screw<double>{1, 0};
+    if (!group.has_jointed_tip(k))
+        return k + 1 < group.size || group.neighbour_outboard >= 0 ? screw(k + 1)
+                                                                   : Screw<double>{1, 0};
     Vec3 const tip = group.tip_of(k).screw;
     return {tip[0], tip[1]};
 }
 
-JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::int64_t at, Screw<double> const& s) const {
+JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::int64_t at,
+                                              Screw<double> const& s) const {
     Vector<double, 6> const f = load_first(forces, at, group.directions);
     return {{{f[0], f[1], s.c * f[2] + s.s * f[5]}}, {{f[3], f[4], s.c * f[5] - s.s * f[2]}}};
 }
@@ -25,7 +28,8 @@ JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::i
 Vec3 JointSolution::outside_force(std::int64_t k) const {
     Vec3 f = Vec3::zero();
     if (bead_force.origin)
-        for (std::int64_t i = group.bead_offset[k]; i < group.bead_offset[k + 1]; ++i) f = f + bead_force.load(i);
+        for (std::int64_t i = group.bead_offset[k]; i < group.bead_offset[k + 1]; ++i)
+            f = f + bead_force.load(i);
     return given.wrenches ? f + given.wrench_force[k] : f;
 }
 
@@ -34,7 +38,8 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
     for (std::int64_t k = 0; k < group.size; ++k) {
         Mat3 const to_ground = orientation(k) * axes1(k);
         Vec3 gravity = given.gravity;
-        if (group.planar) gravity = plus_scaled(gravity, -dot(to_ground.column(2), gravity), to_ground.column(2));
+        if (group.planar)
+            gravity = plus_scaled(gravity, -dot(to_ground.column(2), gravity), to_ground.column(2));
         r.alpha.push_back(orientation(k) * alpha.load(k));
         r.acceleration.push_back(orientation(k) * acceleration.load(k) + gravity);
         Pair const inboard = along_axes(joint_force, k, screw(k));
@@ -47,26 +52,34 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
         Mat3 const to_ground = orientation(tip.body) * axes2(tip.body);
         Vec3 const push = -(to_ground * found.force);
         // Handles meet on G's origin, which slides.
-        Vec3 const arm = orientation(tip.body) * (r2(tip.body) - group.r1[tip.body] - tip.joint.translation);
+        Vec3 const arm =
+            orientation(tip.body) * (r2(tip.body) - group.r1[tip.body] - tip.joint.translation);
         Vec3 const moment = cross(arm, push) - to_ground * found.torque;
-        r.tip_force.push_back({group.scene_chain(tip.body), {{moment[0], moment[1], moment[2], push[0], push[1], push[2]}}});
+        r.tip_force.push_back({group.scene_chain(tip.body),
+                               {{moment[0], moment[1], moment[2], push[0], push[1], push[2]}}});
     }
     return r;
 }
 
-/// Force along the axis and torque across it, of planar chains. Where a tip is jointed the ground holds the chain across its plane
-/// twice: they stay 0.
+/// Force along the axis and torque across it, of planar chains. Where a tip is jointed the ground
+/// holds the chain across its plane twice: they stay 0.
 void JointSolution::add_across_plane(Communicator const& communicator, BodyResults& r) const {
     std::vector<NeededWrench> needed;
     for (std::int64_t k = 0; k < group.size; ++k) {
         Mat3 const to_ground = orientation(k);
         Vec3 drag = Vec3::zero();
-        if (given.dragged) drag = (-given.drag[k][0]) * (velocity.load(k) - cross(omega.load(k), group.r1[k]));
-        Vec3 const needed_force = group.mass.view().at(k, 0) * (r.acceleration[static_cast<std::size_t>(k)] - given.gravity) -
-                                  outside_force(k) - to_ground * drag;
-        Vec3 const moment = to_ground * (as_symmetric(group.inertia[k]) * alpha.load(k) + gyroscopic_torque(k) - torque.load(k));
-        Vec3 const to_next = group.is_last[k] ? Vec3::zero() : to_ground * (group.r2[k] - group.r1[k]);
-        needed.push_back({needed_force, moment + cross(to_ground * -group.r1[k], needed_force), to_next});
+        if (given.dragged)
+            drag = (-given.drag[k][0]) * (velocity.load(k) - cross(omega.load(k), group.r1[k]));
+        Vec3 const needed_force =
+            group.mass.view().at(k, 0) *
+                (r.acceleration[static_cast<std::size_t>(k)] - given.gravity) -
+            outside_force(k) - to_ground * drag;
+        Vec3 const moment = to_ground * (as_symmetric(group.inertia[k]) * alpha.load(k) +
+                                         gyroscopic_torque(k) - torque.load(k));
+        Vec3 const to_next =
+            group.is_last[k] ? Vec3::zero() : to_ground * (group.r2[k] - group.r1[k]);
+        needed.push_back(
+            {needed_force, moment + cross(to_ground * -group.r1[k], needed_force), to_next});
     }
     auto const sums = sums_from_tip(group, communicator, needed);
     for (dca::Piece const& piece : group.pieces) {
@@ -74,7 +87,8 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
         for (std::int64_t k = piece.local; k < piece.local + piece.count; ++k) {
             Vec3 const axis = orientation(k) * axes_of(group.axes1[k]).column(2);
             auto const& [needed_force, needed_torque] = sums[k];
-            Vec3 const along = dot(axis, needed_force) * axis, across = plus_scaled(needed_torque, -dot(axis, needed_torque), axis);
+            Vec3 const along = dot(axis, needed_force) * axis,
+                       across = plus_scaled(needed_torque, -dot(axis, needed_torque), axis);
             for (int i = 0; i < 3; ++i) {
                 r.joint_force[k][i] += across[i];
                 r.joint_force[k][3 + i] += along[i];
@@ -83,19 +97,23 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
     }
 }
 
-PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Field<4> const& q, BodyMotion const& motion) {
+PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Field<4> const& q,
+                             BodyMotion const& motion) {
     PotentialEnergy e;
     for (std::int64_t k = 0; k < group.size; ++k) {
-        Vec3 const com = motion.origin[k] - to_matrix(as_quaternion(motion.orientation[k])) * group.r1[k];
+        Vec3 const com =
+            motion.origin[k] - to_matrix(as_quaternion(motion.orientation[k])) * group.r1[k];
         e.gravity.push_back(-group.mass.view().at(k, 0) * dot(given.gravity, com));
         e.springs.push_back(0.0);
         if (!given.springs) continue;
         Vec3 const stiffness = given.stiffness[k];
         Vector<double, 4> const rest = given.rest[k], at = q[k];
         if (group.joint[k] == JointType::spherical)
-            e.springs.back() = spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(at));
+            e.springs.back() =
+                spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(at));
         else if (group.joint[k] != JointType::free)
-            for (int i = 0; i < 2; ++i) e.springs.back() += 0.5 * stiffness[i] * (at[i] - rest[i]) * (at[i] - rest[i]);
+            for (int i = 0; i < 2; ++i)
+                e.springs.back() += 0.5 * stiffness[i] * (at[i] - rest[i]) * (at[i] - rest[i]);
     }
     return e;
 }

@@ -1,12 +1,13 @@
-// What steps and corrections do to the coordinates of one body, for every Space. A body on a free base takes the base along.
+// What steps and corrections do to the coordinates of one body, for every Space. A body on a free
+// base takes the base along.
 #pragma once
 
 #include "dynamics/joint/joint_chains.hpp"
 
 namespace catena {
 
-/// One of the four: the sum grows by `weight` times the rates, the state goes to the start plus `next` times the rates, or at the end to
-/// the sum.
+/// One of the four: the sum grows by `weight` times the rates, the state goes to the start plus
+/// `next` times the rates, or at the end to the sum.
 struct RungeKuttaStage {
     bool first = false, last = false;
     double weight = 0, next = 0, time = 0;  // time: of the state that comes out
@@ -18,7 +19,8 @@ struct JointSteps {
     RatesView carried;  // accelerations that an integrator carries from step to step
 
     template <class Real>
-    CATENA_HD static Vector<Real, 4> rate_of_quaternion(Quaternion<Real> const& q, Vector<Real, 3> const& omega) {
+    CATENA_HD static Vector<Real, 4> rate_of_quaternion(Quaternion<Real> const& q,
+                                                        Vector<Real, 3> const& omega) {
         Quaternion<Real> const r = q * Quaternion<Real>{Real(0), omega[0], omega[1], omega[2]};
         Real const half(0.5);
         return {{half * r.w, half * r.x, half * r.y, half * r.z}};
@@ -33,8 +35,9 @@ struct JointSteps {
         Real const weight(s.weight), next(s.next);
         Vec3At<Place> const qdd = chains.rate(k), qd = read(state.qd, k);
         Coordinates const q = read(state.q, k);
-        Coordinates const rate =
-            joints.has_quaternion(k) ? rate_of_quaternion(as_quaternion(q), qd) : Coordinates{{qd[0], qd[1], Real(0), Real(0)}};
+        Coordinates const rate = joints.has_quaternion(k)
+                                     ? rate_of_quaternion(as_quaternion(q), qd)
+                                     : Coordinates{{qd[0], qd[1], Real(0), Real(0)}};
         Coordinates total = plus_scaled(s.first ? q : read(sum.q, k), weight, rate);
         Vec3At<Place> const total_rate = plus_scaled(s.first ? qd : read(sum.qd, k), weight, qdd);
         if (s.last) {
@@ -52,16 +55,19 @@ struct JointSteps {
             }
         }
         if constexpr (is_one_body<Place>) {
-            if (chains.on_free_base(k)) runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
+            if (chains.on_free_base(k))
+                runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
             joints.follow_course(state, k, s.time);
         }
         if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
-    CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration, RungeKuttaStage const& s) const {
+    CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration,
+                                    RungeKuttaStage const& s) const {
         StateView const& state = chains.scan.state;
         Vec3 const x = state.base_position.load(piece), v = state.base_velocity.load(piece);
         Vec3 const total = plus_scaled(s.first ? x : sum.base_position.load(piece), s.weight, v);
-        Vec3 const total_rate = plus_scaled(s.first ? v : sum.base_velocity.load(piece), s.weight, acceleration);
+        Vec3 const total_rate =
+            plus_scaled(s.first ? v : sum.base_velocity.load(piece), s.weight, acceleration);
         if (s.last) {
             state.base_position.store(piece, total);
             state.base_velocity.store(piece, total_rate);
@@ -69,8 +75,10 @@ struct JointSteps {
         }
         sum.base_position.store(piece, total);
         sum.base_velocity.store(piece, total_rate);
-        state.base_position.store(piece, plus_scaled(s.first ? x : start.base_position.load(piece), s.next, v));
-        state.base_velocity.store(piece, plus_scaled(s.first ? v : start.base_velocity.load(piece), s.next, acceleration));
+        state.base_position.store(
+            piece, plus_scaled(s.first ? x : start.base_position.load(piece), s.next, v));
+        state.base_velocity.store(piece, plus_scaled(s.first ? v : start.base_velocity.load(piece),
+                                                     s.next, acceleration));
         if (s.first) {
             start.base_position.store(piece, x);
             start.base_velocity.store(piece, v);
@@ -88,7 +96,8 @@ struct JointSteps {
         if (chains.on_free_base(k)) {
             std::int64_t const p = chains.joints().piece_of(k);
             Vec3 const v = state.base_velocity.load(p), a = carried.base_acceleration.load(p);
-            state.base_position.store(p, state.base_position.load(p) + plus_scaled(h * v, 0.5 * h * h, a));
+            state.base_position.store(
+                p, state.base_position.load(p) + plus_scaled(h * v, 0.5 * h * h, a));
             start.base_velocity.store(p, v);
             state.base_velocity.store(p, plus_scaled(v, h, a));
         }
@@ -99,12 +108,15 @@ struct JointSteps {
     CATENA_HD void verlet_finish(std::int64_t k, double h) const {
         StateView const& state = chains.scan.state;
         Vec3 const qdd = chains.rate(k);  // with the guess of qd
-        state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, carried.qdd.load(k)), 0.5 * h, qdd));
+        state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, carried.qdd.load(k)),
+                                      0.5 * h, qdd));
         carried.qdd.store(k, qdd);
         if (chains.on_free_base(k)) {
             std::int64_t const p = chains.joints().piece_of(k);
             Vec3 const a = chains.base_rate(k), before = carried.base_acceleration.load(p);
-            state.base_velocity.store(p, plus_scaled(plus_scaled(start.base_velocity.load(p), 0.5 * h, before), 0.5 * h, a));
+            state.base_velocity.store(
+                p,
+                plus_scaled(plus_scaled(start.base_velocity.load(p), 0.5 * h, before), 0.5 * h, a));
             carried.base_acceleration.store(p, a);
         }
         chains.joints().follow_course(state, k, chains.time);
@@ -126,11 +138,13 @@ struct JointSteps {
         chains.joints().follow_course(state, k, time);
         chains.set_relative<positions>(k);
     }
-    /// Velocities from those kept by h of the rates found last, or from those of now by h of the carried ones.
+    /// Velocities from those kept by h of the rates found last, or from those of now by h of the
+    /// carried ones.
     CATENA_HD void kick(std::int64_t k, double h, bool by_carried) const {
         StateView const& state = chains.scan.state;
         StateView const& from = by_carried ? state : start;
-        state.qd.store(k, plus_scaled(from.qd.load(k), h, by_carried ? carried.qdd.load(k) : chains.rate(k)));
+        state.qd.store(
+            k, plus_scaled(from.qd.load(k), h, by_carried ? carried.qdd.load(k) : chains.rate(k)));
         if (chains.on_free_base(k)) {
             std::int64_t const p = chains.joints().piece_of(k);
             Vec3 const a = by_carried ? carried.base_acceleration.load(p) : chains.base_rate(k);
@@ -138,17 +152,20 @@ struct JointSteps {
         }
         chains.joints().follow_course(state, k, chains.time);
     }
-    /// Velocities between those of before and the answer to noise, which `chains` must have without velocities and gravity.
+    /// Velocities between those of before and the answer to noise, which `chains` must have without
+    /// velocities and gravity.
     CATENA_HD void mix(std::int64_t k, StateView const& state, double keep, double spread) const {
         JointsView const& joints = chains.joints();
-        if (!(joints.drives > 0 && joints.drive_of(k))) state.qd.store(k, plus_scaled(keep * state.qd.load(k), spread, chains.rate(k)));
+        if (!(joints.drives > 0 && joints.drive_of(k)))
+            state.qd.store(k, plus_scaled(keep * state.qd.load(k), spread, chains.rate(k)));
         if (!chains.on_free_base(k)) return;
         std::int64_t const p = joints.piece_of(k);
-        state.base_velocity.store(p, plus_scaled(keep * state.base_velocity.load(p), spread, chains.base_rate(k)));
+        state.base_velocity.store(
+            p, plus_scaled(keep * state.base_velocity.load(p), spread, chains.base_rate(k)));
     }
 
-    /// Coordinates of a correction that closes tips; those of accelerations without velocities and gravity, which `chains` must not
-    /// have.
+    /// Coordinates of a correction that closes tips; those of accelerations without velocities and
+    /// gravity, which `chains` must not have.
     CATENA_HD void correct(std::int64_t k, StateView const& state, bool velocities) const {
         JointsView const& joints = chains.joints();
         Vec3 const by = joints.drives > 0 && joints.drive_of(k) ? Vec3::zero() : chains.rate(k);
@@ -168,12 +185,14 @@ struct JointSteps {
         if (chains.joints().has_quaternion(k))
             to.store(k, as_vector(normalized(as_quaternion(q) * from_rotation_vector(by))));
         else
-            to.store(k, Vector<double, 4>{{q[0] + by[0], q[1] + by[1], alone ? 0.0 : q[2], alone ? 0.0 : q[3]}});
+            to.store(k, Vector<double, 4>{
+                            {q[0] + by[0], q[1] + by[1], alone ? 0.0 : q[2], alone ? 0.0 : q[3]}});
     }
     /// 0, or NaN where the state of body k is not finite.
     CATENA_HD double trouble(std::int64_t k) const {
         StateView const& state = chains.scan.state;
-        return 0.0 * (dot(state.q.load(k), state.q.load(k)) + dot(state.qd.load(k), state.qd.load(k)));
+        return 0.0 *
+               (dot(state.q.load(k), state.q.load(k)) + dot(state.qd.load(k), state.qd.load(k)));
     }
 };
 

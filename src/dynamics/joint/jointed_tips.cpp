@@ -26,21 +26,27 @@ JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vec3 const& screw, in
 
 /// Where the start puts G in the ground.
 Motion ground_of(TipJoint const& joint, Quat const& orientation, Vec3 const& origin) {
-    scene::Pose const motion = scene::joint_motion(joint.type, joint.axis, joint.first_axis, joint.pitch, joint.q);  // of G in J
-    return {orientation * to_quaternion(joint.rotation) * normalized(motion.orientation), Vec3::zero(),
-            origin + to_matrix(orientation) * (joint.translation + joint.rotation * motion.origin), Vec3::zero()};
+    scene::Pose const motion = scene::joint_motion(joint.type, joint.axis, joint.first_axis,
+                                                   joint.pitch, joint.q);  // of G in J
+    return {orientation * to_quaternion(joint.rotation) * normalized(motion.orientation),
+            Vec3::zero(),
+            origin + to_matrix(orientation) * (joint.translation + joint.rotation * motion.origin),
+            Vec3::zero()};
 }
 
 }  // namespace
 
-std::vector<JointedTip> jointed_tips(ChainGroup const& group, Scene const& scene, BodyMotion& start) {
+std::vector<JointedTip> jointed_tips(ChainGroup const& group, Scene const& scene,
+                                     BodyMotion& start) {
     std::vector<JointedTip> tips;
     for (LocalTip const& local : group.tips) {
         tips.push_back(tip_of(local.joint, local.axes, local.screw, local.restricted));
         tips.back().body = local.body;
         tips.back().com = -group.r1[local.body];
         if (!local.joint.ring)
-            tips.back().ground = ground_of(local.joint, as_quaternion(start.orientation[local.body]), start.origin[local.body]);
+            tips.back().ground =
+                ground_of(local.joint, as_quaternion(start.orientation[local.body]),
+                          start.origin[local.body]);
     }
     for (LocalRing const& ring : group.rings) {
         if (ring.last >= 0) {

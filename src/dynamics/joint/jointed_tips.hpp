@@ -1,12 +1,13 @@
-// The joints between last bodies and the ground, or in rings the first bodies, for chains in joint coordinates: where they are, what their
-// velocities add, and how far they have come open. Host and device.
+// The joints between last bodies and the ground, or in rings the first bodies, for chains in joint
+// coordinates: where they are, what their velocities add, and how far they have come open. Host and
+// device.
 #pragma once
 
 #include <cmath>
 #include <vector>
 
-#include "kinematics/joint_kinematics.hpp"
 #include "dca/solver.hpp"
+#include "kinematics/joint_kinematics.hpp"
 
 namespace catena {
 
@@ -27,15 +28,18 @@ struct JointedTip {
     Vec3 com;                        // of the last body from its origin, B
     double cosine = 0;               // universal: of the angle between its axes
 };
-/// Those that join a body of this rank: behind the last bodies' own (ChainGroup::tips) those of rings that only begin here. `start`: motion
-/// at the scene's start, positions included, which decides where the ground's frames are.
+/// Those that join a body of this rank: behind the last bodies' own (ChainGroup::tips) those of
+/// rings that only begin here. `start`: motion at the scene's start, positions included, which
+/// decides where the ground's frames are.
 std::vector<JointedTip> jointed_tips(ChainGroup const&, Scene const&, BodyMotion& start);
-/// A length that openings are measured by: the longest chain's from joint to joint and a body's size. The same on every rank.
+/// A length that openings are measured by: the longest chain's from joint to joint and a body's
+/// size. The same on every rank.
 double reach_of(ChainGroup const&, Scene const&);
 
 /// Stores the first `directions` numbers of body k.
 template <class Place>
-CATENA_HD void store_first(DirectionsView view, Place k, int directions, Vector<RealAt<Place>, 6> const& v) {
+CATENA_HD void store_first(DirectionsView view, Place k, int directions,
+                           Vector<RealAt<Place>, 6> const& v) {
     using Real = RealAt<Place>;
     switch (directions) {
         case 2:
@@ -97,16 +101,23 @@ struct JointedTips {
         if (t.first >= 0) other.store(i, as_numbers(motion_of(t.first)));
     }
     CATENA_HD Motion motion_of(std::int64_t k) const {
-        return {as_quaternion(motion.orientation.load(k)), motion.omega.load(k), motion.origin.load(k), motion.velocity.load(k)};
+        return {as_quaternion(motion.orientation.load(k)), motion.omega.load(k),
+                motion.origin.load(k), motion.velocity.load(k)};
     }
     struct Ends {
         Motion last, other;
         /// Components in the last body's axes of a vector in the other's.
-        CATENA_HD Vec3 to_last(Vec3 const& v) const { return to_matrix(conjugate(last.rotation) * other.rotation) * v; }
+        CATENA_HD Vec3 to_last(Vec3 const& v) const {
+            return to_matrix(conjugate(last.rotation) * other.rotation) * v;
+        }
         /// Of G's origin from the last body's.
-        CATENA_HD Vec3 apart() const { return transposed_times(to_matrix(last.rotation), other.translation - last.translation); }
+        CATENA_HD Vec3 apart() const {
+            return transposed_times(to_matrix(last.rotation), other.translation - last.translation);
+        }
     };
-    CATENA_HD Ends ends(std::int64_t i) const { return {as_motion(last.load(i)), as_motion(other.load(i))}; }
+    CATENA_HD Ends ends(std::int64_t i) const {
+        return {as_motion(last.load(i)), as_motion(other.load(i))};
+    }
 
     CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
         Place m{t.translation - t.com, t.rotation * t.axes};
@@ -120,29 +131,37 @@ struct JointedTips {
         }
         return m;
     }
-    /// Handle 2 of the last body, where meetings move (MotionView::r2, axes2), and how a ring's first body stands in the meeting frame,
-    /// which are the joint's axes.
+    /// Handle 2 of the last body, where meetings move (MotionView::r2, axes2), and how a ring's
+    /// first body stands in the meeting frame, which are the joint's axes.
     CATENA_HD void set_meeting(std::int64_t i) const {
         JointedTip const& t = tip[i];
         Ends const e = ends(i);
         Place const m = place(t, e);
         if (t.first >= 0)
-            motion.joint_turn.store(t.first, as_vector(conjugate(e.last.rotation * to_quaternion(m.axes)) * e.other.rotation));
+            motion.joint_turn.store(
+                t.first,
+                as_vector(conjugate(e.last.rotation * to_quaternion(m.axes)) * e.other.rotation));
         if (t.body < 0 || !motion.axes2.origin) return;
         motion.r2.store(t.body, m.point);
         motion.axes2.store(t.body, kept_axes(m.axes));
     }
 
-    /// Of G against the last body's point that it meets, on their way apart, along the place's axes.
+    /// Of G against the last body's point that it meets, on their way apart, along the place's
+    /// axes.
     CATENA_HD Pair opening_rate(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = e.last.omega, v = e.last.velocity + cross(w, t.com + m.point);
-        return {transposed_times(m.axes, e.to_last(e.other.omega) - w), transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
+        return {transposed_times(m.axes, e.to_last(e.other.omega) - w),
+                transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
-    CATENA_HD static bool turns_about_axis(JointType type) { return type == JointType::revolute || slides(type); }
-    /// c of the joint (src/dca/README.md, "Joint bias") with the rates that the bodies' motion gives it.
+    CATENA_HD static bool turns_about_axis(JointType type) {
+        return type == JointType::revolute || slides(type);
+    }
+    /// c of the joint (src/dca/README.md, "Joint bias") with the rates that the bodies' motion
+    /// gives it.
     CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
-        if (t.type != JointType::universal && !turns_about_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
+        if (t.type != JointType::universal && !turns_about_axis(t.type))
+            return {Vec3::zero(), Vec3::zero()};
         Pair const rate = opening_rate(t, e, m);
         if (t.type == JointType::universal) {
             Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);  // (0, y, z)
@@ -158,11 +177,13 @@ struct JointedTips {
     CATENA_HD Pair opening(JointedTip const& t, Ends const& e, Place const& m) const {
         double constexpr turn = 6.283185307179586476925;
         Pair open{Vec3::zero(), transposed_times(m.axes, e.apart() - t.translation)};
-        Quat const relative = conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;  // G in J
+        Quat const relative =
+            conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;  // G in J
         if (t.type == JointType::weld) open.angular = rotation_vector(relative);
         if (t.type == JointType::universal) {
             Vec3 const second = to_matrix(relative) * t.axis;
-            open.angular[0] = -(dot(t.first_axis, second) - t.cosine) / norm(cross(t.first_axis, second));
+            open.angular[0] =
+                -(dot(t.first_axis, second) - t.cosine) / norm(cross(t.first_axis, second));
         }
         if (turns_about_axis(t.type)) {
             open.angular = transposed_times(t.axes, cross(t.axis, to_matrix(relative) * t.axis));
@@ -178,26 +199,33 @@ struct JointedTips {
     /// Along the directions of the joint's handles, in their order.
     CATENA_HD static Vector<double, 6> along_directions(JointedTip const& t, Pair const& pair) {
         double const c = t.screw.c, s = t.screw.s;
-        return {{pair.linear[0], pair.linear[1], c * pair.linear[2] - s * pair.angular[2], pair.angular[0], pair.angular[1],
-                 s * pair.linear[2] + c * pair.angular[2]}};
+        return {{pair.linear[0], pair.linear[1], c * pair.linear[2] - s * pair.angular[2],
+                 pair.angular[0], pair.angular[1], s * pair.linear[2] + c * pair.angular[2]}};
     }
-    /// LoadsView::tip_bias for the accelerations: velocity terms, and gravity as the ground's acceleration.
-    CATENA_HD void set_acceleration_bias(std::int64_t i, Vec3 const& gravity, DirectionsView out) const {
+    /// LoadsView::tip_bias for the accelerations: velocity terms, and gravity as the ground's
+    /// acceleration.
+    CATENA_HD void set_acceleration_bias(std::int64_t i, Vec3 const& gravity,
+                                         DirectionsView out) const {
         JointedTip const& t = tip[i];
         if (t.body < 0) return;
         Ends const e = ends(i);
         Place const m = place(t, e);
         Pair terms = velocity_terms(t, e, m);
-        if (!t.ring) terms.linear = terms.linear + transposed_times(m.axes, transposed_times(to_matrix(e.last.rotation), gravity));
+        if (!t.ring)
+            terms.linear =
+                terms.linear +
+                transposed_times(m.axes, transposed_times(to_matrix(e.last.rotation), gravity));
         store_first(out, t.body, directions, along_directions(t, {-terms.angular, -terms.linear}));
     }
-    /// The same for corrections: how far the joint is open, or how fast it comes open, along its directions.
+    /// The same for corrections: how far the joint is open, or how fast it comes open, along its
+    /// directions.
     CATENA_HD void set_opening(std::int64_t i, bool velocities, DirectionsView out) const {
         JointedTip const& t = tip[i];
         if (t.body < 0) return;
         Ends const e = ends(i);
         Place const m = place(t, e);
-        store_first(out, t.body, directions, along_directions(t, velocities ? opening_rate(t, e, m) : opening(t, e, m)));
+        store_first(out, t.body, directions,
+                    along_directions(t, velocities ? opening_rate(t, e, m) : opening(t, e, m)));
     }
     CATENA_HD void set_no_bias(std::int64_t i, DirectionsView out) const {
         if (tip[i].body >= 0) store_first(out, tip[i].body, directions, Vector<double, 6>::zero());

@@ -5,14 +5,16 @@ namespace {
 
 /// Of a stretch of bodies: `inboard` then `outboard`.
 NeededWrench join(NeededWrench const& inboard, NeededWrench const& outboard) {
-    return {inboard.force + outboard.force, inboard.torque + outboard.torque + cross(inboard.to_next, outboard.force),
+    return {inboard.force + outboard.force,
+            inboard.torque + outboard.torque + cross(inboard.to_next, outboard.force),
             inboard.to_next + outboard.to_next};
 }
 
 NeededWrench const nothing{Vec3::zero(), Vec3::zero(), Vec3::zero()};
 
 /// What lies beyond each local unit, up to the tip.
-std::vector<NeededWrench> beyond(ChainGroup const& group, Communicator const& communicator, std::vector<LocalUnit> const& units,
+std::vector<NeededWrench> beyond(ChainGroup const& group, Communicator const& communicator,
+                                 std::vector<LocalUnit> const& units,
                                  std::vector<NeededWrench> const& own) {
     std::vector<NeededWrench> after(units.size(), nothing);
     for (std::size_t i = units.size(); i-- > 1;)
@@ -25,7 +27,9 @@ std::vector<NeededWrench> beyond(ChainGroup const& group, Communicator const& co
         NeededWrench sum = nothing;
         for (std::size_t unit = count; unit-- > 0;) {
             for (std::size_t i = 0; i < units.size(); ++i)
-                if (group.pieces[units[i].piece].chain == chain && units[i].index == static_cast<std::int64_t>(unit)) after[i] = sum;
+                if (group.pieces[units[i].piece].chain == chain &&
+                    units[i].index == static_cast<std::int64_t>(unit))
+                    after[i] = sum;
             sum = join(shared[first_of_chain + unit], sum);
         }
         first_of_chain += count;
@@ -35,13 +39,15 @@ std::vector<NeededWrench> beyond(ChainGroup const& group, Communicator const& co
 
 }  // namespace
 
-std::vector<std::pair<Vec3, Vec3>> sums_from_tip(ChainGroup const& group, Communicator const& communicator,
+std::vector<std::pair<Vec3, Vec3>> sums_from_tip(ChainGroup const& group,
+                                                 Communicator const& communicator,
                                                  std::vector<NeededWrench> const& needed) {
     std::vector<LocalUnit> const units = local_units(group);
     std::vector<NeededWrench> own;
     for (LocalUnit const& unit : units) {
         NeededWrench sum = nothing;
-        for (std::int64_t k = unit.begin + unit.count; k-- > unit.begin;) sum = join(needed[k], sum);
+        for (std::int64_t k = unit.begin + unit.count; k-- > unit.begin;)
+            sum = join(needed[k], sum);
         own.push_back(sum);
     }
     std::vector<NeededWrench> const after = beyond(group, communicator, units, own);

@@ -1,5 +1,6 @@
-// What the joints of a planar chain carry across its plane: its two-direction handles leave that out, and nothing in the motion
-// depends on it. On request it follows from the accelerations, body after body from the tip.
+// What the joints of a planar chain carry across its plane: its two-direction handles leave that
+// out, and nothing in the motion depends on it. On request it follows from the accelerations, body
+// after body from the tip.
 #pragma once
 
 #include <vector>
@@ -15,8 +16,9 @@ struct NeededWrench {
     Vec3 to_next;        // from its inboard to its outboard joint
 };
 
-/// The wrench of every joint on its outboard body, about the joint, ground axes: sums of `needed` from the tip on, unit by unit of the
-/// canonical tree, as if every tip were free. Collective.
-std::vector<std::pair<Vec3, Vec3>> sums_from_tip(ChainGroup const&, Communicator const&, std::vector<NeededWrench> const& needed);
+/// The wrench of every joint on its outboard body, about the joint, ground axes: sums of `needed`
+/// from the tip on, unit by unit of the canonical tree, as if every tip were free. Collective.
+std::vector<std::pair<Vec3, Vec3>> sums_from_tip(ChainGroup const&, Communicator const&,
+                                                 std::vector<NeededWrench> const& needed);
 
 }  // namespace catena

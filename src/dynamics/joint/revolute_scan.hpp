@@ -1,13 +1,15 @@
-// The scan over runs on hinges whose solver goes_by_hinges(): of motions within runs nothing is kept, and runs' first bodies come to move
-// when what lies before them is known. In any Space; of runs side by side: JointLanes.
+// The scan over runs on revolute joints whose solver goes_by_revolutes(): of motions within runs
+// nothing is kept, and runs' first bodies come to move when what lies before them is known. In any
+// Space; of runs side by side: JointLanes.
 #pragma once
 
 #include "dynamics/joint/joint_loads.hpp"
 
 namespace catena {
 
-/// As a space's scans want it (HostSpace::ScanTree). Precondition: joints but those of chains' first bodies are hinges, none is driven.
-struct HingeScan {
+/// As a space's scans want it (HostSpace::ScanTree). Precondition: joints but those of chains'
+/// first bodies are revolute joints, none is driven.
+struct RevoluteScan {
     using Value = MotionNumbers<false>;
     /// Of a body against the one before it, with what going on by it takes.
     struct Step {
@@ -17,9 +19,9 @@ struct HingeScan {
     };
     JointLoads loads;
     bool joint_by_joint = false;  // set_relative() of every body came before
-    bool all_turns = false;       // are asked for, not those of runs' first bodies and last two alone
+    bool all_turns = false;  // are asked for, not those of runs' first bodies and last two alone
 
-    /// With the turns and torques of its hinges, where these are not known.
+    /// With the turns and torques of its revolute joints, where these are not known.
     CATENA_HD Value of_run(dca::Run const& run) const {
         constexpr int few = 4;  // bodies at a time, so that their loads are under way together
         int const count = static_cast<int>(run.count);
@@ -73,13 +75,13 @@ struct HingeScan {
         std::int64_t const k = run.body + i;
         if (joint_by_joint) return s.load<false>(k);
         // All reads come first: a GPU waits for them together.
-        bool const is_hinge = !may_begin || i > 0 || s.joints.joint[k] == JointType::revolute;
+        bool const is_revolute = !may_begin || i > 0 || s.joints.joint[k] == JointType::revolute;
         Vec3 const axis = s.joints.axis(k);
         double const angle = s.state.q.at(k, 0), rate = s.state.qd.at(k, 0);
         Quat const frame = as_quaternion(read(s.joints.joint_rotation, k));
-        double const torque = loads.given.joint_loads ? loads.torque_about_hinge(k) : 0.0;
+        double const torque = loads.given.joint_loads ? loads.torque_about_revolute(k) : 0.0;
         if constexpr (may_begin)
-            if (!is_hinge) {  // but whatever begins a chain
+            if (!is_revolute) {  // but whatever begins a chain
                 loads.set_relative<false>(k);
                 return s.load<false>(k);
             }
@@ -93,7 +95,7 @@ struct HingeScan {
         if (begins)
             loads.set_joint_load(k);
         else
-            loads.joint_load.at(k, HingeLoads::about_hinge) = torque;
+            loads.joint_load.at(k, RevoluteLoads::about_revolute) = torque;
         return m;
     }
 };

@@ -14,14 +14,14 @@ def quaternion(rotation):
 
 
 def add_joints(to, body):
-    hinge, slide = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
+    turn, slide = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
     if body.kind == REVOLUTE:
-        to.add_joint(type=hinge, axis=body.axis)
+        to.add_joint(type=turn, axis=body.axis)
     elif body.kind == BALL:
         to.add_joint(type=mujoco.mjtJoint.mjJNT_BALL)
     else:
         for axis in AXES[:body.dof]:
-            to.add_joint(type=slide if body.kind == SLIDE else hinge, axis=axis)
+            to.add_joint(type=slide if body.kind == SLIDE else turn, axis=axis)
 
 
 def build(chain):

@@ -4,6 +4,8 @@
 
 namespace catena::precision {
 
-KernelTable avx2_kernels() { return kernel_table<dca::avx2::Real, dca::avx2::Single, Twice<dca::avx2::Real>>(); }
+KernelTable avx2_kernels() {
+    return kernel_table<dca::avx2::Real, dca::avx2::Single, Twice<dca::avx2::Real>>();
+}
 
 }  // namespace catena::precision

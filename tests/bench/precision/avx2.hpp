@@ -16,7 +16,8 @@ class Single {
     void store_anywhere(float* place) const { _mm256_storeu_ps(place, v_); }
     unsigned not_positive() const {
         __m256 const zero = _mm256_setzero_ps();
-        __m256 const good = _mm256_and_ps(_mm256_cmp_ps(v_, zero, _CMP_GT_OQ), _mm256_cmp_ps(v_ - v_, zero, _CMP_EQ_OQ));
+        __m256 const good = _mm256_and_ps(_mm256_cmp_ps(v_, zero, _CMP_GT_OQ),
+                                          _mm256_cmp_ps(v_ - v_, zero, _CMP_EQ_OQ));
         return 0xffU & ~static_cast<unsigned>(_mm256_movemask_ps(good));
     }
     friend Single operator+(Single a, Single b) { return Single(a.v_ + b.v_); }
@@ -24,8 +25,12 @@ class Single {
     friend Single operator*(Single a, Single b) { return Single(a.v_ * b.v_); }
     friend Single operator/(Single a, Single b) { return Single(a.v_ / b.v_); }
     friend Single operator-(Single a) { return Single(-a.v_); }
-    friend Single fused(Single a, Single b, Single c) { return Single(_mm256_fmadd_ps(a.v_, b.v_, c.v_)); }
-    friend Single less_product(Single a, Single b, Single c) { return Single(_mm256_fnmadd_ps(a.v_, b.v_, c.v_)); }
+    friend Single fused(Single a, Single b, Single c) {
+        return Single(_mm256_fmadd_ps(a.v_, b.v_, c.v_));
+    }
+    friend Single less_product(Single a, Single b, Single c) {
+        return Single(_mm256_fnmadd_ps(a.v_, b.v_, c.v_));
+    }
     friend precision::Twice<Real> convert(Single a, precision::Twice<Real> const*) {
         alignas(32) double numbers[lanes];
         _mm256_store_pd(numbers, _mm256_cvtps_pd(_mm256_castps256_ps128(a.v_)));

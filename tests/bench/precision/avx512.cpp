@@ -4,6 +4,8 @@
 
 namespace catena::precision {
 
-KernelTable avx512_kernels() { return kernel_table<dca::avx512::Real, dca::avx512::Single, Twice<dca::avx512::Real>>(); }
+KernelTable avx512_kernels() {
+    return kernel_table<dca::avx512::Real, dca::avx512::Single, Twice<dca::avx512::Real>>();
+}
 
 }  // namespace catena::precision

@@ -16,15 +16,20 @@ class Single {
     void store_anywhere(float* place) const { _mm512_storeu_ps(place, v_); }
     unsigned not_positive() const {
         __m512 const zero = _mm512_setzero_ps();
-        return 0xffffU & ~static_cast<unsigned>(_mm512_cmp_ps_mask(v_, zero, _CMP_GT_OQ) & _mm512_cmp_ps_mask(v_ - v_, zero, _CMP_EQ_OQ));
+        return 0xffffU & ~static_cast<unsigned>(_mm512_cmp_ps_mask(v_, zero, _CMP_GT_OQ) &
+                                                _mm512_cmp_ps_mask(v_ - v_, zero, _CMP_EQ_OQ));
     }
     friend Single operator+(Single a, Single b) { return Single(a.v_ + b.v_); }
     friend Single operator-(Single a, Single b) { return Single(a.v_ - b.v_); }
     friend Single operator*(Single a, Single b) { return Single(a.v_ * b.v_); }
     friend Single operator/(Single a, Single b) { return Single(a.v_ / b.v_); }
     friend Single operator-(Single a) { return Single(-a.v_); }
-    friend Single fused(Single a, Single b, Single c) { return Single(_mm512_fmadd_ps(a.v_, b.v_, c.v_)); }
-    friend Single less_product(Single a, Single b, Single c) { return Single(_mm512_fnmadd_ps(a.v_, b.v_, c.v_)); }
+    friend Single fused(Single a, Single b, Single c) {
+        return Single(_mm512_fmadd_ps(a.v_, b.v_, c.v_));
+    }
+    friend Single less_product(Single a, Single b, Single c) {
+        return Single(_mm512_fnmadd_ps(a.v_, b.v_, c.v_));
+    }
     friend precision::Twice<Real> convert(Single a, precision::Twice<Real> const*) {
         alignas(64) double numbers[lanes];
         _mm512_store_pd(numbers, _mm512_cvtps_pd(_mm512_castps512_ps256(a.v_)));

@@ -1,5 +1,5 @@
-// A chain of a scene in the arrays of kernels.hpp, and the sweeps over it in the place of the library's solver: loads, kinematics,
-// residuals and rates are the library's.
+// A chain of a scene in the arrays of kernels.hpp, and the sweeps over it in the place of the
+// library's solver: loads, kinematics, residuals and rates are the library's.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,8 @@
 
 namespace catena::precision {
 
-/// Of a group that is one whole chain with a free tip, all its joints of one kind; none: nullopt, or of another length than `lanes` share.
+/// Of a group that is one whole chain with a free tip, all its joints of one kind; none: nullopt,
+/// or of another length than `lanes` share.
 std::optional<Joint> joint_of(ChainGroup const&);
 bool fits(ChainGroup const&, int lanes);
 
@@ -50,7 +51,8 @@ class ChainInArrays {
 /// Until begin() the library's own solver, then a ChainInArrays.
 class StudiedSolver final : public ChainSolver {
   public:
-    StudiedSolver(std::unique_ptr<ChainSolver> usual, ChainInArrays& chain) : usual_(std::move(usual)), chain_(chain) {}
+    StudiedSolver(std::unique_ptr<ChainSolver> usual, ChainInArrays& chain)
+        : usual_(std::move(usual)), chain_(chain) {}
     void begin() { begun_ = true; }
     void refine(int steps) { steps_ = steps; }
     /// ComputationError where a matrix is not positive definite.

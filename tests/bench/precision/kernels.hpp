@@ -1,7 +1,9 @@
-// Sweeps over one chain with single- or double-precision numbers, for one instruction set: what its source offers.
+// Sweeps over one chain with single- or double-precision numbers, for one instruction set: what its
+// source offers.
 //
-// A chain is cut into as many stretches as a vector has lanes, one a lane: row i of an array holds body i of every stretch, number after
-// number. Within a stretch runs of 16 bodies join, then pairs of runs, pairs of these, ...; at last the stretches do, lane by lane.
+// A chain is cut into as many stretches as a vector has lanes, one a lane: row i of an array holds
+// body i of every stretch, number after number. Within a stretch runs of 16 bodies join, then pairs
+// of runs, pairs of these, ...; at last the stretches do, lane by lane.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +12,18 @@ namespace catena::precision {
 
 inline constexpr std::int64_t bodies_of_run = 16;
 
-/// What a chain keeps. Sweeps are in Real, which is single or double; `body`, `given`, `solution` are always in double.
+/// What a chain keeps. Sweeps are in Real, which is single or double; `body`, `given`, `solution`
+/// are always in double.
 enum Array {
-    state,       // what sweeps read of a body; one row more (the direction of the link behind the last body)
-    loads,       // forces, torques, rates and joints' biases
-    joint,       // eliminated joints
-    offset,      // their biases
-    force,       // at the ends of runs
-    matrix,      // segments of runs and of nodes above them
-    bias,        // theirs
-    top,         // joints between stretches, and that to the ground
+    state,   // what sweeps read of a body; one row more (the direction of the link behind the last
+             // body)
+    loads,   // forces, torques, rates and joints' biases
+    joint,   // eliminated joints
+    offset,  // their biases
+    force,   // at the ends of runs
+    matrix,  // segments of runs and of nodes above them
+    bias,    // theirs
+    top,     // joints between stretches, and that to the ground
     top_offset,  // biases of these
     body,        // as `state`, with the mass and inertia that equations of motion have; double
     given,       // as `loads`; double

@@ -16,15 +16,25 @@ struct Twice {
     Twice() = default;
     Twice(double x) : low(x), high(x) {}
     Twice(Half low_in, Half high_in) : low(low_in), high(high_in) {}
-    static Twice load_anywhere(double const* place) { return {Half::load_anywhere(place), Half::load_anywhere(place + Half::lanes)}; }
+    static Twice load_anywhere(double const* place) {
+        return {Half::load_anywhere(place), Half::load_anywhere(place + Half::lanes)};
+    }
     void store_anywhere(double* place) const {
         low.store_anywhere(place);
         high.store_anywhere(place + Half::lanes);
     }
-    friend Twice operator+(Twice const& a, Twice const& b) { return {a.low + b.low, a.high + b.high}; }
-    friend Twice operator-(Twice const& a, Twice const& b) { return {a.low - b.low, a.high - b.high}; }
-    friend Twice operator*(Twice const& a, Twice const& b) { return {a.low * b.low, a.high * b.high}; }
-    friend Twice operator/(Twice const& a, Twice const& b) { return {a.low / b.low, a.high / b.high}; }
+    friend Twice operator+(Twice const& a, Twice const& b) {
+        return {a.low + b.low, a.high + b.high};
+    }
+    friend Twice operator-(Twice const& a, Twice const& b) {
+        return {a.low - b.low, a.high - b.high};
+    }
+    friend Twice operator*(Twice const& a, Twice const& b) {
+        return {a.low * b.low, a.high * b.high};
+    }
+    friend Twice operator/(Twice const& a, Twice const& b) {
+        return {a.low / b.low, a.high / b.high};
+    }
     friend Twice operator-(Twice const& a) { return {-a.low, -a.high}; }
     friend Twice fused(Twice const& a, Twice const& b, Twice const& c) {
         return {fused(a.low, b.low, c.low), fused(a.high, b.high, c.high)};

@@ -5,10 +5,10 @@
 #include <ctime>
 
 #include "chain/chain_group.hpp"
-#include "error.hpp"
 #include "dynamics/joint/joint_dynamics.hpp"
-#include "mpi/communicator.hpp"
+#include "error.hpp"
 #include "measure/solver_errors.hpp"
+#include "mpi/communicator.hpp"
 
 namespace catena::precision {
 namespace {
@@ -17,7 +17,8 @@ namespace {
 double seconds_of(std::function<void()> const& action, int times) {
     std::clock_t const start = std::clock();
     for (int i = 0; i < times; ++i) action();
-    return static_cast<double>(std::clock() - start) / (CLOCKS_PER_SEC * static_cast<double>(times));
+    return static_cast<double>(std::clock() - start) /
+           (CLOCKS_PER_SEC * static_cast<double>(times));
 }
 
 }  // namespace
@@ -33,7 +34,9 @@ Problem::Problem(Scene scene, int nudges)
     if (joint_) exact_ = exact_solution(scene_, layout_, largest_quad, nudges);
 }
 
-double Problem::residual_bound() const { return 32 * static_cast<double>(group_->partition.trees.front().depth()) * 0x1p-53; }
+double Problem::residual_bound() const {
+    return 32 * static_cast<double>(group_->partition.trees.front().depth()) * 0x1p-53;
+}
 
 /// `accelerations`: of beads, else second derivatives of coordinates.
 double Problem::error_of(std::vector<Vec3> const& accelerations, Vec3 const& base) const {
@@ -41,19 +44,23 @@ double Problem::error_of(std::vector<Vec3> const& accelerations, Vec3 const& bas
     ChainSpec const& chain = scene_.chains.front();
     for (std::size_t k = 0; k < chain.size(); ++k) {
         int const count = accelerations_of(chain, k);
-        for (int i = 0; i < std::min(3, count); ++i) found.acceleration.push_back(accelerations[k][i]);
-        if (count == 6) found.acceleration.insert(found.acceleration.end(), base.data, base.data + 3);
+        for (int i = 0; i < std::min(3, count); ++i)
+            found.acceleration.push_back(accelerations[k][i]);
+        if (count == 6)
+            found.acceleration.insert(found.acceleration.end(), base.data, base.data + 3);
     }
     return largest_difference(scene_, found, exact_.acceleration);
 }
 
 Errors Problem::errors(ChainInArrays& chain) const {
-    auto owned = std::make_unique<StudiedSolver>(make_tree_solver(*group_, *executor_, *communicator_), chain);
+    auto owned = std::make_unique<StudiedSolver>(
+        make_tree_solver(*group_, *executor_, *communicator_), chain);
     StudiedSolver& solver = *owned;
     Errors e;
     try {
         if (group_->beads) return errors_of_beads(solver, std::move(owned));
-        auto const dynamics = make_joint_dynamics(*group_, scene_, *executor_, *communicator_, std::move(owned));
+        auto const dynamics =
+            make_joint_dynamics(*group_, scene_, *executor_, *communicator_, std::move(owned));
         solver.begin();
         dynamics->update_configuration();
         dynamics->assemble_matrices();
@@ -75,7 +82,8 @@ Errors Problem::errors(ChainInArrays& chain) const {
 
 /// Velocities are made to fit the links by the library's own solver.
 Errors Problem::errors_of_beads(StudiedSolver& solver, std::unique_ptr<ChainSolver> owned) const {
-    auto const dynamics = make_bead_dynamics(*group_, scene_, *executor_, *communicator_, std::move(owned));
+    auto const dynamics =
+        make_bead_dynamics(*group_, scene_, *executor_, *communicator_, std::move(owned));
     dynamics->update_configuration();
     dynamics->assemble_matrices();
     dynamics->set_simple_forces();
@@ -86,7 +94,8 @@ Errors Problem::errors_of_beads(StudiedSolver& solver, std::unique_ptr<ChainSolv
     for (int steps = 0; steps <= most_steps; ++steps) {
         solver.refine(steps);
         dynamics->evaluate();
-        e.error[static_cast<std::size_t>(steps)] = error_of(dynamics->results().acceleration, Vec3::zero());
+        e.error[static_cast<std::size_t>(steps)] =
+            error_of(dynamics->results().acceleration, Vec3::zero());
         e.residual[static_cast<std::size_t>(steps)] = dynamics->residual();
     }
     return e;
@@ -104,12 +113,14 @@ std::function<void()> Problem::library_evaluation(SimdLevel level) const {
         dynamics->observe(0);
         return [executor, dynamics] { dynamics->evaluate_at_once(); };
     }
-    std::shared_ptr<JointDynamics> const dynamics = make_joint_dynamics(*group_, scene_, *executor, *communicator_, std::move(solver));
+    std::shared_ptr<JointDynamics> const dynamics =
+        make_joint_dynamics(*group_, scene_, *executor, *communicator_, std::move(solver));
     dynamics->update_configuration();
     return [executor, dynamics] { dynamics->solve_once(); };
 }
 
-AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single, std::function<void()> library, int repeat) {
+AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single,
+                  std::function<void()> library, int repeat) {
     constexpr double shortest_sample = 2e-3;
     struct Measured {
         std::function<void()> action;
@@ -119,21 +130,25 @@ AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single
     };
     AllTimes all_times;
     std::vector<Measured> all;
-    for (auto const& [chain, times] : {std::pair{&in_double, &all_times.in_double}, {&in_single, &all_times.in_single}}) {
+    for (auto const& [chain, times] :
+         {std::pair{&in_double, &all_times.in_double}, {&in_single, &all_times.in_single}}) {
         all.push_back({[c = chain] { c->assemble(); }, &times->matrix});
         all.push_back({[c = chain] { c->solve(); }, &times->bias});
         all.push_back({[c = chain] { c->find_defect(); }, &times->defect});
         for (int steps = 0; steps <= most_steps; ++steps)
-            all.push_back({[c = chain, steps] { c->evaluate(steps); }, &times->evaluation[static_cast<std::size_t>(steps)]});
+            all.push_back({[c = chain, steps] { c->evaluate(steps); },
+                           &times->evaluation[static_cast<std::size_t>(steps)]});
     }
     all.push_back({std::move(library), &all_times.library});
     for (Measured& m : all)
         while (m.times * seconds_of(m.action, m.times) < shortest_sample) m.times *= 2;
     for (std::size_t i = 0, of_precision = all.size() / 2; i < of_precision; ++i)
-        all[i].times = all[of_precision + i].times = std::max(all[i].times, all[of_precision + i].times);
+        all[i].times = all[of_precision + i].times =
+            std::max(all[i].times, all[of_precision + i].times);
     for (int round = 0; round < repeat; ++round)
         for (Measured& m : all) {
-            m.action();  // in the caches is then what it left there itself, not what the one before did
+            m.action();  // in the caches is then what it left there itself, not what the one before
+                         // did
             m.samples.push_back(seconds_of(m.action, m.times));
         }
     for (Measured& m : all) *m.to = spread_of(m.samples).median;
@@ -151,7 +166,8 @@ std::optional<int> steps_needed(Errors const& in_double, Errors const& in_single
 std::string outcome(Errors const& in_double, Errors const& in_single) {
     if (!in_double.definite) return "indefinite in double too";
     if (!in_single.definite) return "indefinite";
-    if (auto const steps = steps_needed(in_double, in_single)) return std::to_string(*steps) + (*steps == 1 ? " step" : " steps");
+    if (auto const steps = steps_needed(in_double, in_single))
+        return std::to_string(*steps) + (*steps == 1 ? " step" : " steps");
     double const first = in_single.error.front(), last = in_single.error.back();
     if (!std::isfinite(first) || !std::isfinite(last)) return "not finite";
     return last < first ? "not within 3" : "diverges";

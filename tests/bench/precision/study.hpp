@@ -1,4 +1,5 @@
-// How near to the exact answer a chain comes, in either precision and after steps of refinement, and how long that takes.
+// How near to the exact answer a chain comes, in either precision and after steps of refinement,
+// and how long that takes.
 #pragma once
 
 #include <array>
@@ -59,13 +60,14 @@ struct AllTimes {
     Times in_double, in_single;
     double library = 0;
 };
-AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single, std::function<void()> library, int repeat);
+AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single,
+                  std::function<void()> library, int repeat);
 
-/// Steps after which single precision's error is at most twice that of double precision without refinement (but for one rounding): their
-/// roundings differ.
+/// Steps after which single precision's error is at most twice that of double precision without
+/// refinement (but for one rounding): their roundings differ.
 std::optional<int> steps_needed(Errors const& in_double, Errors const& in_single);
-/// What becomes of single precision's matrices: "1 step", "2 steps", "not within 3", "diverges", "not finite" (its error is
-/// infinite or not a number), "indefinite".
+/// What becomes of single precision's matrices: "1 step", "2 steps", "not within 3", "diverges",
+/// "not finite" (its error is infinite or not a number), "indefinite".
 std::string outcome(Errors const& in_double, Errors const& in_single);
 
 }  // namespace catena::precision

@@ -1,4 +1,5 @@
-// The sweeps themselves: operators of dca/segment.hpp on bodies of bodies.hpp, in any precision and number of lanes.
+// The sweeps themselves: operators of dca/segment.hpp on bodies of bodies.hpp, in any precision and
+// number of lanes.
 #pragma once
 
 #include "tests/bench/precision/bodies.hpp"
@@ -88,15 +89,18 @@ class Sweeps {
     void find_defect() {
         WideDirections before = WideDirections::zero();
         for (std::int64_t k = 0; k < rows_; ++k) {
-            WideDirections const outboard = k + 1 < rows_ ? solution_[k + 1].force : beyond(solution_[0].force);
-            defects_[k] = WideKind::defect(bodies_ + k, given_[k], solution_[k], outboard, before).template in<Real>();
+            WideDirections const outboard =
+                k + 1 < rows_ ? solution_[k + 1].force : beyond(solution_[0].force);
+            defects_[k] = WideKind::defect(bodies_ + k, given_[k], solution_[k], outboard, before)
+                              .template in<Real>();
         }
         if constexpr (lanes > 1) {
             // What row 0 lacks of the stretch before, at rest with the ground in lane 0.
             WideDirections const last = with_lane(turned<Wide>(before, lanes - 1), 0, 0.0);
             WideDirections none = last;
             defects_[0] =
-                WideKind::defect(bodies_, given_[0], solution_[0], rows_ > 1 ? solution_[1].force : beyond(solution_[0].force), none)
+                WideKind::defect(bodies_, given_[0], solution_[0],
+                                 rows_ > 1 ? solution_[1].force : beyond(solution_[0].force), none)
                     .template in<Real>();
         }
     }
@@ -122,7 +126,9 @@ class Sweeps {
     void each_level(Action const& action) const {
         for (std::int64_t span = 1; 2 * span <= runs_; span *= 2) action(runs_ / (2 * span), span);
     }
-    static Matrices assemble_pair(Matrices const* pair, Joint& eliminated) { return dca::assemble(pair[0], pair[1], K, eliminated); }
+    static Matrices assemble_pair(Matrices const* pair, Joint& eliminated) {
+        return dca::assemble(pair[0], pair[1], K, eliminated);
+    }
     /// At the stretches' outboard ends, from their inboard ends.
     static WideDirections beyond(WideDirections const& inboard) {
         return with_lane(turned<Wide>(inboard, lanes > 1 ? 1 : 0), lanes - 1, 0.0);
@@ -141,7 +147,8 @@ class Sweeps {
         each_level([&](std::int64_t nodes, std::int64_t span) {
             for (std::int64_t i = 0; i < nodes; ++i) {
                 std::int64_t const k = (2 * i + 1) * span * bodies_of_run;
-                below[2 * nodes + i] = dca::assemble(below[2 * i], below[2 * i + 1], joints_[k], offsets_[k]);
+                below[2 * nodes + i] =
+                    dca::assemble(below[2 * i], below[2 * i + 1], joints_[k], offsets_[k]);
             }
             below += 2 * nodes;
         });
@@ -149,14 +156,16 @@ class Sweeps {
         for (std::int64_t span = runs_ / 2; span > 0; span /= 2)
             for (std::int64_t i = 0; i < runs_; i += 2 * span) {
                 std::int64_t const k = (i + span) * bodies_of_run;
-                forces_[i + span] = disassemble(joints_[k], offsets_[k], forces_[i], forces_[i + 2 * span]);
+                forces_[i + span] =
+                    disassemble(joints_[k], offsets_[k], forces_[i], forces_[i + 2 * span]);
             }
         for (std::int64_t run = 0; run < runs_; ++run) {
             std::int64_t const begin = run * bodies_of_run;
             Directions const first = forces_[run];
             Directions next = forces_[run + 1];
             for (std::int64_t k = begin + bodies_of_run; k-- > begin;) {
-                Directions const at_k = k == begin ? first : disassemble(joints_[k], offsets_[k], first, next);
+                Directions const at_k =
+                    k == begin ? first : disassemble(joints_[k], offsets_[k], first, next);
                 take(solution_[k], Kind::solution(states_ + k, given[k], at_k, next));
                 next = at_k;
             }
@@ -170,7 +179,8 @@ class Sweeps {
             append(stretch, next, top_[level], top_offsets_[level]);
         }
         Symmetric<Real, K> const& ground = top_[level].factor;
-        Directions first = dca::solve_upper(ground, dca::solve_lower(ground, -stretch.b1)), next = Directions::zero();
+        Directions first = dca::solve_upper(ground, dca::solve_lower(ground, -stretch.b1)),
+                   next = Directions::zero();
         for (int by = lanes / 2; by > 0; by /= 2) {
             --level;
             spread(first, next, disassemble(top_[level], top_offsets_[level], first, next), by);
@@ -238,7 +248,8 @@ Kernels kernels() {
     k.record_bytes[state] = sizeof(typename Kind::State);
     k.record_bytes[loads] = sizeof(typename Kind::Loads);
     k.record_bytes[joint] = k.record_bytes[top] = sizeof(dca::JointMatrix<Real, K>);
-    k.record_bytes[offset] = k.record_bytes[force] = k.record_bytes[top_offset] = sizeof(Vector<Real, K>);
+    k.record_bytes[offset] = k.record_bytes[force] = k.record_bytes[top_offset] =
+        sizeof(Vector<Real, K>);
     k.record_bytes[matrix] = sizeof(dca::SegmentMatrix<Real, K>);
     k.record_bytes[bias] = sizeof(dca::SegmentBias<Real, K>);
     k.record_bytes[body] = sizeof(typename WideKind::Body);
@@ -256,7 +267,8 @@ template <class Double, class Single, class WideSingle>
 KernelTable kernel_table() {
     return {{kernels<Double, Double, Beads<Double>>(), kernels<Double, Double, Bodies<Double, 3>>(),
              kernels<Double, Double, Bodies<Double, 5>>()},
-            {kernels<Single, WideSingle, Beads<Single>>(), kernels<Single, WideSingle, Bodies<Single, 3>>(),
+            {kernels<Single, WideSingle, Beads<Single>>(),
+             kernels<Single, WideSingle, Bodies<Single, 3>>(),
              kernels<Single, WideSingle, Bodies<Single, 5>>()}};
 }
 

@@ -8,7 +8,8 @@
 
 namespace catena {
 
-/// JointScan::follow of runs side by side, one a lane: the same operations on each in the same order.
+/// JointScan::follow of runs side by side, one a lane: the same operations on each in the same
+/// order.
 template <class Real, bool positions>
 class FollowRuns {
     static constexpr int lanes = Real::lanes, part = dca::part_length;
@@ -30,7 +31,9 @@ class FollowRuns {
             to_translation_ = tile_.out(s.translation);
             to_velocity_ = tile_.out(s.velocity);
         }
-        if (joints_.planar) normal_ = tile_.in(ConstView<3>{s.joints.axes1.origin + 3 * s.joints.axes1.pitch, s.joints.axes1.pitch, 0});
+        if (joints_.planar)
+            normal_ = tile_.in(ConstView<3>{s.joints.axes1.origin + 3 * s.joints.axes1.pitch,
+                                            s.joints.axes1.pitch, 0});
     }
     FollowRuns(FollowRuns const&) = delete;  // its views are of its own tile
     FollowRuns& operator=(FollowRuns const&) = delete;
@@ -41,7 +44,9 @@ class FollowRuns {
             dca::PartInLanes<Real> const bodies(runs, p);
             tile_.fill(bodies);
             for (Column k{0}; k.at < part; ++k.at) {
-                if (asks_ahead_) tile_.ask_to_read(runs.body, lanes * dca::longest_run, p * part + k.at);  // and written again
+                if (asks_ahead_)
+                    tile_.ask_to_read(runs.body, lanes * dca::longest_run,
+                                      p * part + k.at);  // and written again
                 unsigned const begin = runs.begins[p * part + k.at];
                 Motions const own = load(k);
                 if (p == 0 && k.at == 0) {
@@ -62,7 +67,8 @@ class FollowRuns {
   private:
     Motions load(Column k) const {
         using Vector3 = Vector<Real, 3>;
-        Motions m{as_quaternion(read(rotation_, k)), read(omega_, k), Vector3::zero(), Vector3::zero()};
+        Motions m{as_quaternion(read(rotation_, k)), read(omega_, k), Vector3::zero(),
+                  Vector3::zero()};
         if constexpr (positions) {
             m.translation = read(translation_, k);
             m.velocity = read(velocity_, k);
@@ -87,16 +93,16 @@ class FollowRuns {
     View<3> to_omega_, to_translation_, to_velocity_;
 };
 
-/// Motions of as many runs on hinges, without positions, and what the hinges do.
+/// Motions of as many runs on revolute joints, without positions, and what the revolute joints do.
 template <class Real>
-class FollowHinges {
+class FollowRevolutes {
     static constexpr int lanes = Real::lanes, part = dca::part_length;
     using Motions = MotionOf<Real>;
     using Column = dca::Column<Real>;
     using Vector3 = Vector<Real, 3>;
 
   public:
-    FollowHinges(JointLoads const& loads, double const* constants, bool asks_ahead)
+    FollowRevolutes(JointLoads const& loads, double const* constants, bool asks_ahead)
         : scan_(loads.scan),
           constants_(constants),
           asks_ahead_(asks_ahead),
@@ -105,17 +111,18 @@ class FollowHinges {
           turn_(tile_.out(scan_.motion.joint_turn)) {
         BodyLoadsView const& given = loads.given;
         if (!given.joint_loads) return;
-        load_ = {loads.joint_load.origin + HingeLoads::about_hinge * loads.joint_load.pitch, loads.joint_load.pitch, 0};
+        load_ = {loads.joint_load.origin + RevoluteLoads::about_revolute * loads.joint_load.pitch,
+                 loads.joint_load.pitch, 0};
         torque_ = coordinate(given.torque);
         if (given.springs) stiffness_ = coordinate(given.stiffness), rest_ = coordinate(given.rest);
         if (given.dampers) damping_ = coordinate(given.damping);
         to_load_ = tile_.out(load_);
     }
-    FollowHinges(FollowHinges const&) = delete;
-    FollowHinges& operator=(FollowHinges const&) = delete;
+    FollowRevolutes(FollowRevolutes const&) = delete;
+    FollowRevolutes& operator=(FollowRevolutes const&) = delete;
 
     void follow(dca::RunsInLanes const* items, std::int64_t item) {
-        constexpr int of_body = hinge_constants * lanes, block = part * of_body;
+        constexpr int of_body = revolute_constants * lanes, block = part * of_body;
         dca::RunsInLanes const& runs = items[item];
         Motions m{};
         for (int p = 0; p < dca::parts_of_run; ++p) {
@@ -132,8 +139,11 @@ class FollowHinges {
                 }
                 Vector3 const along = read(axis, k);
                 Vector<Real, 1> const q = read(q_, k), qd = read(qd_, k);
-                Of of{from_axis_angle(along, q[0]), {}, to_load_.origin ? torque(k, q, qd) : Vector<Real, 1>{{Real(0)}}};
-                of.motion = {as_quaternion(read(frame, k)) * of.turn, qd[0] * along, Vector3::zero(), Vector3::zero()};
+                Of of{from_axis_angle(along, q[0]),
+                      {},
+                      to_load_.origin ? torque(k, q, qd) : Vector<Real, 1>{{Real(0)}}};
+                of.motion = {as_quaternion(read(frame, k)) * of.turn, qd[0] * along,
+                             Vector3::zero(), Vector3::zero()};
                 unsigned const begin = runs.begins[p * part + k.at];
                 if (begin != 0) take_known(runs, begin, of);
                 if (p == 0 && k.at == 0) {
@@ -181,7 +191,8 @@ class FollowHinges {
             if (!known) dca::store_vectors<Real>(all, of);
             known = true;
             auto const take = [&all, j, k](int at, auto const& view, int count) {
-                for (int i = 0; i < count; ++i) all[(at + i) * lanes + j] = view.origin[i * view.pitch + k];
+                for (int i = 0; i < count; ++i)
+                    all[(at + i) * lanes + j] = view.origin[i * view.pitch + k];
             };
             take(0, scan_.motion.joint_turn, of_turn);
             take(of_turn, scan_.rotation, first_of_omega);
@@ -206,49 +217,68 @@ void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
     MotionOf<Real> first{};
     first.rotation = as_quaternion(dca::pick<Real>(ConstView<4>(s.rotation), runs.body));
     first.omega = dca::pick<Real>(ConstView<3>(s.omega), runs.body);
-    auto const omega_before = dca::pick<Real>(ConstView<3>{s.before.origin + first_of_omega, 1, 0}, at);
+    auto const omega_before =
+        dca::pick<Real>(ConstView<3>{s.before.origin + first_of_omega, 1, 0}, at);
     dca::scatter(s.motion.omega, runs.body, 0, compose(omega_before, first));
     if (s.motion.orients_first_alone) return;  // chains' first ones
     auto const before = as_quaternion(dca::pick<Real>(ConstView<4>{s.before.origin, 1, 0}, at));
-    dca::scatter(s.motion.orientation, runs.body, 0, as_vector(normalized(before * first.rotation)));
+    dca::scatter(s.motion.orientation, runs.body, 0,
+                 as_vector(normalized(before * first.rotation)));
 }
 
 template <class Real, bool positions>
 struct LoopsOf {
     using Bodies = dca::Abreast<Real>;
-    [[gnu::flatten]] static void set_relative(JointChains const& chains, BodiesAbreast const& bodies, std::int64_t begin,
+    [[gnu::flatten]] static void set_relative(JointChains const& chains,
+                                              BodiesAbreast const& bodies, std::int64_t begin,
                                               std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.template set_relative<positions>(Bodies{bodies.first[i], bodies.asks_ahead});
+        for (std::int64_t i = begin; i < end; ++i)
+            chains.template set_relative<positions>(Bodies{bodies.first[i], bodies.asks_ahead});
     }
-    [[gnu::flatten]] static void follow(JointScan const& scan, RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+    [[gnu::flatten]] static void follow(JointScan const& scan, RunsAbreast const& runs,
+                                        std::int64_t begin, std::int64_t end) {
         FollowRuns<Real, positions> lanes(scan, runs.asks_ahead);
         for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items[i]);
     }
-    [[gnu::flatten]] static void follow_hinges(JointLoads const& loads, RunsAbreast const& runs, double const* constants,
-                                               std::int64_t begin, std::int64_t end) {
-        FollowHinges<Real> lanes(loads, constants, runs.asks_ahead);
+    [[gnu::flatten]] static void follow_revolutes(JointLoads const& loads, RunsAbreast const& runs,
+                                                  double const* constants, std::int64_t begin,
+                                                  std::int64_t end) {
+        FollowRevolutes<Real> lanes(loads, constants, runs.asks_ahead);
         for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items, i);
     }
-    [[gnu::flatten]] static void begin_runs(JointScan const& scan, RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+    [[gnu::flatten]] static void begin_runs(JointScan const& scan, RunsAbreast const& runs,
+                                            std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) catena::begin_runs<Real>(scan, runs.items[i]);
     }
-    [[gnu::flatten]] static void set_motion(JointChains const& chains, BodiesAbreast const& bodies, std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.template set_motion<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, false);
+    [[gnu::flatten]] static void set_motion(JointChains const& chains, BodiesAbreast const& bodies,
+                                            std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i)
+            chains.template set_motion<positions>(Bodies{bodies.first[i], bodies.asks_ahead},
+                                                  false);
     }
-    [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out, BodiesAbreast const& bodies, std::int64_t begin,
+    [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out,
+                                           BodiesAbreast const& bodies, std::int64_t begin,
                                            std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.set_rates(Bodies{bodies.first[i], bodies.asks_ahead}, out);
+        for (std::int64_t i = begin; i < end; ++i)
+            chains.set_rates(Bodies{bodies.first[i], bodies.asks_ahead}, out);
     }
-    [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage, BodiesAbreast const& bodies,
-                                             std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, stage);
+    [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage,
+                                             BodiesAbreast const& bodies, std::int64_t begin,
+                                             std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i)
+            steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.asks_ahead},
+                                                  stage);
     }
-    [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps, EmbeddedStage const& stage, BodiesAbreast const& bodies,
-                                                std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) steps.template advance<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, stage);
+    [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps,
+                                                EmbeddedStage const& stage,
+                                                BodiesAbreast const& bodies, std::int64_t begin,
+                                                std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i)
+            steps.template advance<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, stage);
     }
     static constexpr JointLoops loops() {
-        return {set_relative, follow, follow_hinges, begin_runs, set_motion, set_rates, runge_kutta, embedded_stage};
+        return {set_relative, follow,    follow_revolutes, begin_runs,
+                set_motion,   set_rates, runge_kutta,      embedded_stage};
     }
 };
 
