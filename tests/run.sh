@@ -9,7 +9,7 @@ usage: tests/run.sh [--quick] [--long] [--cluster] [--slow-device-code] [--help]
 Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
-  cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
+  cuda        the GPU's backend compiles with nvcc, where there is one (tests/cuda/run.sh runs it)
   fuzz        damaged files for the readers of scenes, tables, PDB, FASTA, System XML, HDF5 bodies and checkpoints, 5 seconds each (libFuzzer,
               where clang has it); a minute of changed scenes from outside the process
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the tests of readers, writers, commands, dynamics and restarts
@@ -156,9 +156,9 @@ cat "$logs/fuzz.log" "$logs/changed-scenes.log"
 # What takes half of the tests' time under sanitizers. Vectors' kernels have none, and shared chains run on 2 ranks.
 # What the sanitizers and other builds leave to the release build: mathematics and whole runs, which take most of their time. Readers, writers,
 # the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.
-mathematics=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics mixed-precision)
+mathematics=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics)
 runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
-      command_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
+      bench_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
 unbuilt=("${mathematics[@]}" "${runs[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then

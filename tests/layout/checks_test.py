@@ -33,6 +33,18 @@ def pages(readme, page="# Page\n\nShort.\n"):
         return run(os.path.join(HERE, "pages.py"), root)
 
 
+def rooms(**files):
+    """What rooms.py says of src/low, src/high and these files."""
+    order = "| `src` | s |\n| `src/low` | l |\n| `src/high` | h |\n"
+    with tempfile.TemporaryDirectory() as root:
+        write(root, "src/README.md", order)
+        for path, text in {"src/low/low.hpp": "", "src/high/high.hpp": '#include "low/low.hpp"\n', **files}.items():
+            write(root, path, text)
+        for command in (["init", "-q"], ["add", "-A"]):
+            subprocess.run(["git", "-C", root, *command], check=True)
+        return run(os.path.join(HERE, "rooms.py"), root)
+
+
 def commands(catena, page):
     with tempfile.TemporaryDirectory() as root:
         write(root, "page.md", page)
@@ -44,6 +56,15 @@ def expect(name, answer, status, words):
         return True
     print(f"FAILED: {name}: status {answer[0]}, not {status} with `{words}`:\n{answer[1]}")
     return False
+
+
+def of_rooms():
+    yield expect("folders in order", rooms(), 0, "no circle")
+    yield expect("a circle", rooms(**{"src/low/back.hpp": '#include "high/high.hpp"\n'}), 1, "src/high and src/low include each other")
+    against = {"src/high/high.hpp": "", "src/low/low.hpp": '#include "high/high.hpp"\n'}
+    yield expect("a wrong order", rooms(**against), 1, "has src/low above src/high")
+    full = {f"src/low/{number}.hpp": "" for number in range(41)}
+    yield expect("a full folder", rooms(**full), 1, "src/low has 42 files")
 
 
 def of_pages():
@@ -80,7 +101,7 @@ def of_commands(catena):
 
 
 def main():
-    results = list(of_pages())
+    results = [*of_pages(), *of_rooms()]
     if sys.argv[1:2] == ["--catena"]:
         results += of_commands(os.path.abspath(sys.argv[2]))
     print(f"{sum(results)} of {len(results)} checks passed")

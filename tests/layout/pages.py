@@ -106,7 +106,8 @@ def numbers_of(text):
 
 def check_equations(texts, page):
     """Each of the chapter's equations is named once in src/dca, and once in the table of its page."""
-    cited = " ".join(found for path, text in texts if path.startswith("src/dca/") for found in re.findall(r"chapter, eqs? ([\d.,\s-]+)", text))
+    joined = (re.sub(r"\n\s*//+ *", " ", text) for path, text in texts if path.startswith("src/dca/"))
+    cited = " ".join(found for text in joined for found in re.findall(r"chapter, eqs? ([\d.,\s-]+)", text))
     tabled = " ".join(line.split("|")[1] for line in page.split("\n") if re.match(r"\| 2\.\d", line))
     for where, text in (("src/dca", cited), ("src/dca/README.md", tabled)):
         found = sorted(numbers_of(text))

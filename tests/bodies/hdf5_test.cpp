@@ -1,0 +1,217 @@
+// Bodies from an HDF5 file: the same arrays as from a list, the same checks.
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "io/hdf5_data.hpp"
+#include "reader/load_scene.hpp"
+#include "tests/reader/refusal.hpp"
+
+namespace catena::test {
+namespace {
+
+using Numbers = std::vector<double>;
+using Shape = std::vector<hsize_t>;
+
+class Hdf5Bodies : public testing::Test {
+  protected:
+    ~Hdf5Bodies() override { std::filesystem::remove(file_); }
+
+    /// Three bodies: universal, helical, spherical.
+    std::map<std::string, std::pair<Shape, Numbers>> data_{
+        {"mass", {{3}, {1, 2, 3}}},
+        {"com", {{3, 3}, {0, 0, 0, 0.5, 0, 0, 0, 0, 1}}},
+        {"inertia", {{3, 6}, {1, 0, 2, 0, 0, 2.5, 1, 0.1, 1, 0, 0, 1, 1, 0, 1, 0, 0, 1}}},
+        {"axis", {{3, 3}, {0, 2, 0, 0, 0, 3, 0, 0, 0}}},
+        {"first_axis", {{3, 3}, {1, 0, 0, 0, 0, 0, 0, 0, 0}}},
+        {"pitch", {{3}, {0, 0.5, 0}}},
+        {"translation", {{3, 3}, {0, 0, 0, 1, 0, 0, 0, 1, 0}}},
+        {"q", {{3, 4}, {0.1, 0.2, 7, 7, 0.3, 7, 7, 7, 0.6, 0, 0.8, 0}}},
+        {"qd", {{3, 3}, {1, 2, 7, 3, 7, 7, 4, 5, 6}}},
+        {"stiffness", {{3, 3}, {1, 2, 7, 3, 7, 7, 4, 5, 6}}},
+        {"wrench", {{3, 6}, {0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 0, 0, 0, 0, 0, 0}}},
+    };
+    std::vector<std::string> types_{"universal", "helical", "spherical"};
+    Numbers type_numbers_;  // instead of the texts
+    std::string base_ = "fixed";
+
+    std::string write() {
+        hdf5::Quiet const quiet;
+        hdf5::File file(H5Fcreate(file_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+        std::string const doing = "write a test";
+        hdf5::Place const place{file.get(), file_, doing};
+        for (auto const& [name, values] : data_)
+            hdf5::put_array(place, name, H5T_NATIVE_DOUBLE, values.second.data(), values.first);
+        if (!type_numbers_.empty())
+            hdf5::put_array(place, "joint_type", std::span<double const>(type_numbers_));
+        else if (!types_.empty())
+            hdf5::put_array(place, "joint_type", std::span<std::string const>(types_));
+        return "chains: [{base: " + base_ + ", bodies: {hdf5: " + file_ + "}}]";
+    }
+    std::string refusal() { return refusal_of(write()); }
+    std::string at(std::string const& name, int body = 0) const {
+        return " (" + file_ + ": dataset `" + name + "`" +
+               (body > 0 ? ", body " + std::to_string(body) : "") + "): ";
+    }
+
+    /// Of this test alone: others may run beside it.
+    std::string file_ = std::string("hdf5_") +
+                        testing::UnitTest::GetInstance()->current_test_info()->name() + ".h5";
+};
+
+TEST_F(Hdf5Bodies, are_those_of_the_list) {
+    Scene const from_file = parse_scene(write(), "s.yaml");
+    Scene const from_list = parse_scene(
+        "chains: [{base: fixed, bodies: ["
+        "{mass: 1, inertia: [1, 2, 2.5], joint: {type: universal, axes: [[1, 0, 0], [0, 2, 0]], q: "
+        "[0.1, 0.2], qd: [1, 2], stiffness: [1, "
+        "2]}},"
+        "{mass: 2, com: [0.5, 0, 0], inertia: [[1, 0.1, 0], [0.1, 1, 0], [0, 0, 1]], wrench: "
+        "{torque: [1, 2, 3], force: [4, 5, 6]},"
+        " joint: {type: helical, axis: [0, 0, 3], pitch: 0.5, translation: [1, 0, 0], q: 0.3, qd: "
+        "3, stiffness: 3}},"
+        "{mass: 3, com: [0, 0, 1], inertia: [1, 1, 1], joint: {type: spherical, translation: [0, "
+        "1, 0], q: [0.6, 0, 0.8, 0], qd: [4, 5, "
+        "6], "
+        "stiffness: [4, 5, 6]}}]}]",
+        "s.yaml");
+    EXPECT_EQ(from_file.hash, from_list.hash);
+    EXPECT_EQ(from_file.chains[0].velocities, StartVelocities::given);
+}
+
+TEST_F(Hdf5Bodies, types_by_number_and_defaults) {
+    type_numbers_ = {0, 3, 5};
+    base_ = "free";
+    for (char const* const name :
+         {"com", "first_axis", "pitch", "translation", "q", "qd", "stiffness", "wrench"})
+        data_.erase(name);
+    data_["inertia"] = {{3, 3, 3}, {1, 0, 0, 0, 2, 0, 0, 0, 2.5, 1, 0.1, 0, 0.1, 1,
+                                    0, 0, 0, 1, 1, 0, 0, 0, 1,   0, 0,   0, 1}};
+    data_["free_position"] = {{3}, {1, 2, 3}};
+    BodyArrays const b = parse_scene(write(), "s.yaml").chains[0].bodies;
+    EXPECT_EQ(b.joint,
+              (std::vector<JointType>{JointType::free, JointType::revolute, JointType::weld}));
+    EXPECT_EQ(b.q[0], (std::array<double, 4>{1, 0, 0, 0}));
+    EXPECT_EQ(b.q[1], (std::array<double, 4>{0, 0, 0, 0}));
+    EXPECT_EQ(b.free_position[2], 3);
+    EXPECT_EQ(b.inertia[1](1, 0), 0.1);
+    EXPECT_EQ(b.axis[1][2], 1);
+    EXPECT_TRUE(b.torque.empty() && b.stiffness.empty() && b.wrench.empty() &&
+                b.first_axis.empty() && b.pitch.empty() && b.drag.empty());
+}
+
+/// A few hundred bytes that would take 2 GB of memory.
+TEST_F(Hdf5Bodies, a_chunk_of_texts_beyond_a_gigabyte) {
+    types_.clear();
+    std::string const scene = write();
+    {
+        hdf5::File const file(H5Fopen(file_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+        hsize_t const rows = 3, most = H5S_UNLIMITED, chunk = hsize_t{1} << 27;
+        hdf5::Type const text(H5Tcopy(H5T_C_S1));
+        H5Tset_size(text.get(), 16);
+        hdf5::Space const space(H5Screate_simple(1, &rows, &most));
+        hdf5::Properties const how(H5Pcreate(H5P_DATASET_CREATE));
+        H5Pset_chunk(how.get(), 1, &chunk);
+        H5Pset_deflate(how.get(), 1);
+        hdf5::Dataset const data(H5Dcreate2(file.get(), "joint_type", text.get(), space.get(),
+                                            H5P_DEFAULT, how.get(), H5P_DEFAULT));
+        ASSERT_TRUE(data);
+    }
+    EXPECT_EQ(refusal_of(scene),
+              "a chunk of the dataset is larger than a gigabyte, which is read at once" +
+                  at("joint_type") + "write it in smaller chunks");
+}
+
+TEST_F(Hdf5Bodies, refusals_of_the_file) {
+    EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: {hdf5: nowhere.h5}}]")
+                  .rfind("the file is not there or no HDF5 file: ", 0),
+              0u);
+    data_["dampening"] = {{3}, {0, 0, 0}};
+    EXPECT_EQ(refusal(), "unknown dataset" + at("dampening") + "did you mean `damping`?");
+    data_.erase("dampening");
+    data_["com"].first = {3, 1, 3};
+    EXPECT_EQ(refusal(),
+              "the dataset has shape [3, 1, 3], not [3, 3]" + at("com") + "give one row a body");
+    data_["com"] = {{2, 3}, {0, 0, 0, 0, 0, 0}};
+    EXPECT_EQ(refusal(),
+              "the dataset has shape [2, 3], not [3, 3]" + at("com") + "give one row a body");
+    data_.erase("com");
+    auto const inertia = data_["inertia"];
+    data_["inertia"] = {{3, 3}, {1, 1, 1, 1, 1, 1, 1, 1, 1}};
+    EXPECT_EQ(refusal(), "the dataset has shape [3, 3], not [3, 3, 3] or [3, 6]" + at("inertia") +
+                             "give one row a body");
+    data_.erase("inertia");
+    EXPECT_EQ(refusal(), "the dataset is missing" + at("inertia") +
+                             "add it: a tensor a body, about its centre of mass");
+    data_["inertia"] = inertia;
+    data_.erase("axis");
+    EXPECT_EQ(refusal(),
+              "the dataset is missing" + at("axis") + "add it: body 1 has a universal joint");
+    data_.erase("mass");
+    EXPECT_EQ(refusal(), "the dataset is missing" + at("mass") + "add it: its rows are the bodies");
+    EXPECT_EQ(refusal_of("chains: [{bodies: {hdf: a.h5}}]"),
+              "unknown key `hdf` (s.yaml: chains[0].bodies.hdf, line 1): did you mean `hdf5`?");
+}
+
+TEST_F(Hdf5Bodies, refusals_of_values) {
+    auto const with = [&](std::string const& name, std::size_t entry, double value) {
+        auto const before = data_[name];
+        data_[name].second[entry] = value;
+        std::string const message = refusal();
+        data_[name] = before;
+        return message;
+    };
+    double const nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(with("mass", 1, -2),
+              "mass -2 is not positive" + at("mass", 2) + "give a number above 0");
+    EXPECT_EQ(with("mass", 2, nan), "nan is not finite" + at("mass", 3) + "give finite numbers");
+    EXPECT_EQ(
+        with("inertia", 0, 5),
+        "no rigid body has the principal moments 2, 2.5, 5: they break the triangle inequality" +
+            at("inertia", 1) + "the largest may not exceed the sum of the other two");
+    EXPECT_EQ(with("axis", 5, 0),
+              "the axis is zero" + at("axis", 2) + "give a direction such as [0, 0, 1]");
+    EXPECT_EQ(with("first_axis", 1, 1e9),
+              "the two axes are parallel" + at("first_axis", 1) +
+                  "give two directions, best at right angles, or use a revolute joint");
+    EXPECT_EQ(with("pitch", 1, 0), "a helical joint without pitch" + at("pitch", 2) +
+                                       "give its shift a radian, or use a revolute joint");
+    EXPECT_EQ(with("q", 8, 1), "the quaternion is not a unit quaternion: its norm is 1.28062485" +
+                                   at("q", 3) +
+                                   "normalise it: divide its four numbers by their norm");
+    EXPECT_EQ(with("stiffness", 3, -1),
+              "stiffness -1 is negative" + at("stiffness", 2) + "give 0 or numbers above it");
+    data_["rotation"] = {{3, 3, 3}, Numbers(27, 0)};
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i : {0, 4, 8}) data_["rotation"].second[9 * k + i] = 1;
+    EXPECT_EQ(refusal(), "accepted");
+    EXPECT_EQ(with("rotation", 17, -1), "the rotation is left-handed: its determinant is -1" +
+                                            at("rotation", 2) + "change the sign of one column");
+    data_["drag"] = {{3, 2}, {1, 1, 1, 1, 1, 1}};
+    EXPECT_EQ(with("drag", 5, -1),
+              "drag 1, -1 is negative" + at("drag", 3) + "give 0 or numbers above it");
+    types_[1] = "revolute joint";
+    EXPECT_EQ(refusal(), "`revolute joint` is no joint type" + at("joint_type", 2) +
+                             "use the names of `joint.type`");
+    types_[1] = "link";
+    EXPECT_EQ(refusal(), "a link in a file of rigid bodies on joints" + at("joint_type", 2) +
+                             "write chains of links as a list or a generator");
+    types_[1] = "free";
+    EXPECT_EQ(refusal(), "a free joint inside a chain" + at("joint_type", 2) +
+                             "use it for body 1 of a chain with `base: free`");
+    type_numbers_ = {4, 7, 8};
+    EXPECT_EQ(
+        refusal(),
+        "8 is no joint type" + at("joint_type", 3) +
+            "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 prismatic, 7 helical");
+    type_numbers_ = {0, 7, 2};
+    EXPECT_EQ(refusal(), "a free joint on a fixed base" + at("joint_type", 1) +
+                             "write `base: free`, or give joint 1 another type");
+    type_numbers_ = {2, 7, 2};
+    base_ = "free";
+    EXPECT_EQ(refusal(), "a spherical joint 1 on a free base, which has no joint 1" +
+                             at("joint_type", 1) + "write `base: fixed`, or make joint 1 free");
+}
+
+}  // namespace
+}  // namespace catena::test

@@ -1,0 +1,81 @@
+// The same run on all ranks together and on rank 0 alone ends in the same bits, and can be
+// restarted on either, by another backend too.
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "math/executor.hpp"
+#include "reader/load_scene.hpp"
+#include "tests/run/whole_run.hpp"
+
+namespace catena::test {
+namespace {
+
+using Trajectory = WholeRun;
+
+TEST_P(Trajectory, IsTheSameOnOneRankAndOnAll) {
+    Communicator const& world = catena::testing::world();
+    nlohmann::json const summary = run(world, "all", 40);
+    run(world, "half", 20);
+    if (world.rank() == 0) {
+        std::string const collective = "collective";
+        if (char const* const wish = std::getenv("CATENA_HDF5");
+            wish != nullptr && wish == collective && world.size() > 1) {
+            for (char const* const what : {"frames_written", "checkpoints_written"})
+                EXPECT_TRUE(
+                    summary.at("parallel").at(what).get<std::string>().starts_with(collective))
+                    << summary.at("parallel");
+        }
+        auto const one = serial_communicator();
+        run(*one, "one", 40);
+        run(*one, "half-then-one", 40, "half/checkpoint.h5");
+        run(*one, "half-of-one", 20, "", Backend::segments);
+        auto const expected = arrays("one");
+        ASSERT_FALSE(expected.empty());
+        EXPECT_EQ(arrays("all"), expected);
+        EXPECT_EQ(arrays("half-then-one"), expected);
+    }
+    world.barrier();
+    run(world, "one-then-all", 40, "half-of-one/checkpoint.h5",
+        openmp_is_built() ? Backend::openmp : Backend::automatic);
+    run(world, "half", 40, "half/checkpoint.h5");  // goes on in its own folder
+    if (world.rank() != 0) return;
+    for (char const* const name : {"one-then-all", "half"})
+        EXPECT_EQ(arrays(name), arrays("one")) << name;
+}
+
+/// Thin, tilted bodies between thick ones, whose solutions lose digits: refined or not, bits
+/// differ, and positions only by those digits.
+RunScene const refined{"refined",
+                       "units: si\nforces: {gravity: [0, -3, -5]}\n"
+                       "chains: [{base: fixed, generator: {random: {bodies: 70, joint: revolute, "
+                       "seed: 3, inertia: {log_uniform: [1e-6, 1e-1]}}}}]\n"
+                       "dynamics: {integrator: velocity-verlet, step: 0.0001, steps: 20}\noutput: "
+                       "{every: 5, checkpoint_every: 10}\n"
+                       "solver: {refine: 2}\n"};
+
+using Refined = WholeRun;
+
+TEST_P(Refined, HasAnEffectOnARun) {
+    Communicator const& world = catena::testing::world();
+    run(world, "refined", 20);
+    RunOptions options;
+    options.output = folder_ + "/plain";
+    options.quiet = true;
+    run_simulation(parse_scene(GetParam().text, "scene.yaml", {"solver.refine=0"}), world, options);
+    if (world.rank() != 0) return;
+    auto const with = arrays("refined").at("qd"), without = arrays("plain").at("qd");
+    EXPECT_NE(with, without);
+    for (std::size_t i = 0; i < with.size(); ++i)
+        EXPECT_NEAR(with[i], without[i], 1e-6 * (1 + std::abs(without[i])));
+}
+
+INSTANTIATE_TEST_SUITE_P(Solver, Refined, ::testing::Values(refined),
+                         [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Solver, Trajectory, ::testing::Values(refined),
+                         [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Integrators, Trajectory, ::testing::ValuesIn(run_scenes),
+                         [](auto const& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace catena::test
