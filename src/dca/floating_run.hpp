@@ -320,7 +320,8 @@ CATENA_HD Symmetric<Real, 6> inertia_of_end(SpatialInertia<Real> const& inboard,
     for (int i = 0; i < 3; ++i) {
         auto unit = Vector<Real, 3>::zero();
         unit[i] = last.mass;
-        Vector<Real, 3> const arm = cross(last.centre, unit);  // column i of the last body's coupling
+        // Column i of the last body's coupling.
+        Vector<Real, 3> const arm = cross(last.centre, unit);
         CATENA_UNROLL
         for (int j = 0; j < 3; ++j) {
             all(3 + j, i) = inboard.coupling(j, i) + arm[j];

@@ -1,3 +1,4 @@
+// Default implementations of the solver interface, and the error message for pivot failures.
 #include "dca/solver.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// A part of the tree's levels in any Space, level by level as the chapter has it: one loop (on a
-// GPU: one kernel) a level.
+// Part of the tree's levels in any Space, computed level by level as in the chapter: one loop per
+// level, on a GPU one kernel per level.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace catena::dca {
 
 namespace loops {
 
+/// Inward pass of one item: a run, a merge or a root.
 template <class Sweep>
 struct Climb {
     Sweep sweep;
@@ -19,6 +20,7 @@ struct Climb {
     CATENA_HD void operator()(Merge const& m) const { climb_merge(sweep, m); }
     CATENA_HD void operator()(Root const& root) const { close_root(sweep, root); }
 };
+/// Outward pass of one item: a run or a merge.
 template <class Sweep>
 struct Descend {
     Sweep sweep;
@@ -27,6 +29,7 @@ struct Descend {
         descend_merge(sweep, m, sweep.node(m.joint));
     }
 };
+/// Copies the records at `places` into a contiguous array.
 template <class T, Order order>
 struct Pack {
     RecordsView<T, order> items;
@@ -34,6 +37,7 @@ struct Pack {
     T* packed;
     CATENA_HD void operator()(std::int64_t i) const { packed[i] = items.load(places[i]); }
 };
+/// Copies a contiguous array into the records at `places`.
 template <class T, Order order>
 struct Unpack {
     T const* packed;
@@ -44,7 +48,8 @@ struct Unpack {
 
 }  // namespace loops
 
-/// How views and numbers of the host come to the host's own space: they are there.
+/// Transfers of views and numbers between the host and the host's own space. The data are already
+/// there.
 class HostCrossing {
   public:
     explicit HostCrossing(ChainGroup const&, HostSpace const&) {}
@@ -60,7 +65,8 @@ class HostCrossing {
     }
 };
 
-/// `Crossing`: as HostCrossing, of the space.
+/// LevelPart in a Space. `Crossing` transfers data between the host and that space and has the
+/// interface of HostCrossing.
 template <class Leaf, class Space, class Crossing>
 class SpaceLevels final : public LevelPart {
     static constexpr int K = Leaf::K;
@@ -141,7 +147,7 @@ class SpaceLevels final : public LevelPart {
     }
     void fetch() override {
         if (work_.leaves_down) crossing_.fetch(host_out_);
-        // Of the joint after this rank's last body: the top alone knows it.
+        // The force of the joint after this rank's last body is known to the top only.
         if (work_.top && out_.joint_force)
             host_out_.joint_force.template store<K>(schedule_.bodies,
                                                     force_of(sweeps_.forces.load(schedule_.halo)));
@@ -171,10 +177,12 @@ class SpaceLevels final : public LevelPart {
     int threads() const override { return space_.threads(); }
 
   private:
+    // Lists of a part that has no leaves or no roots.
     struct Empty {
         std::vector<Run> runs;
         std::vector<Root> roots;
     };
+    // Slots or joints chosen by choose(), on the host and in the space.
     struct Places {
         explicit Places(std::vector<std::int64_t> const& places_in) : host(places_in), list(host) {}
         std::vector<std::int64_t> host;
@@ -212,7 +220,7 @@ class SpaceLevels final : public LevelPart {
                 return use(forces_.view());
         }
     }
-    /// Memory for the numbers of `count` items on their way.
+    /// Returns memory for the numbers of `count` items during a transfer.
     template <class T>
     T* parcel(std::size_t count) {
         static_assert(sizeof(T) % sizeof(double) == 0);
@@ -220,6 +228,7 @@ class SpaceLevels final : public LevelPart {
         if (parcel_.size() < numbers) parcel_ = Array<double>(numbers);
         return reinterpret_cast<T*>(parcel_.data());
     }
+    /// Copies the chosen records to `numbers` on the host.
     template <class T, Order order>
     void get(RecordsView<T, order> items, Places const& places, std::vector<double>& numbers) {
         numbers.resize(places.host.size() * (sizeof(T) / sizeof(double)));
@@ -229,6 +238,7 @@ class SpaceLevels final : public LevelPart {
             loops::Pack<T, order>{items, places.list.data(), parcel<T>(places.host.size())});
         crossing_.download(parcel_, numbers);
     }
+    /// Copies `numbers` from the host to the chosen records.
     template <class T, Order order>
     void put(RecordsView<T, order> items, Places const& places,
              std::vector<double> const& numbers) {

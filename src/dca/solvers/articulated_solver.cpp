@@ -1,3 +1,4 @@
+// Host solver of chains with articulated handles (articulated.hpp).
 #include "dca/leaf_choice.hpp"
 #include "dca/solvers/tree_solver.hpp"
 

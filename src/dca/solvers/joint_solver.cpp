@@ -1,3 +1,4 @@
+// Host solvers of chains in joint coordinates, and the selection of the host solver of a group.
 #include "dca/solvers/tree_solver.hpp"
 
 namespace catena {
@@ -12,6 +13,8 @@ std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor
 
 namespace {
 
+/// Returns the host solver with K directions per handle. `sliding`: some joint is prismatic or
+/// helical.
 template <int K, bool sliding = false>
 std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor const& executor,
                                                Communicator const& communicator) {

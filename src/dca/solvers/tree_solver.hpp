@@ -1,5 +1,5 @@
-// The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in
-// segment.hpp, leaf.hpp, articulated.hpp.
+// Driver of the divide-and-conquer solver for any Space: which sweeps run over which trees, and
+// when ranks exchange records. The mathematics is in segment.hpp, leaf.hpp and articulated.hpp.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@
 
 namespace catena::dca {
 
-/// Views that it is given are of its space.
+/// Solver of one group of chains with one kind of leaf in one Space. The views that its members
+/// take must be in the memory of that Space.
 template <class Leaf, class Space>
 class TreeSolver final : public ChainSolver {
     static constexpr int K = Leaf::K;
@@ -96,7 +97,8 @@ class TreeSolver final : public ChainSolver {
             if (at_once()) return evaluate(configuration, loads, out);
         ChainSolver::assemble_and_solve(configuration, loads, out);
     }
-    /// The chapter's tree of pairs stays plain, and so do full handles.
+    /// True if evaluations use the fused sweep. The chapter's pairwise tree and full handles keep
+    /// separate sweeps.
     bool at_once() const override {
         return Leaf::projected && group_.partition.trees.front().run_length > 1;
     }
@@ -127,7 +129,8 @@ class TreeSolver final : public ChainSolver {
             each(schedule_.runs);
             auto const pivot = [this](std::int64_t joint) {
                 double const inverse =
-                    sweeps_.joints.load(joint).factor(0, 0);  // 0 where nothing is restricted
+                    // This pivot is 0 where nothing is restricted.
+                    sweeps_.joints.load(joint).factor(0, 0);
                 return inverse != 0 ? 1 / inverse : 1.0;
             };
             space_.for_each(group_.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
@@ -139,11 +142,11 @@ class TreeSolver final : public ChainSolver {
         }
     }
 
-    /// Whether chains can be carried through several sweeps block by block, without a word from
-    /// other ranks, and it pays.
+    /// True if whole chains can run through several sweeps block by block, without exchange between
+    /// ranks, and if this is faster.
     bool carries() const { return schedule_.shared.empty() && space_.pays_by_blocks(group_); }
-    /// action(sweeps)(block) for every block of whole chains, which does so many sweeps of each
-    /// kind. Precondition: carries().
+    /// Calls action(sweeps)(block) for every block of whole chains. Each call executes the given
+    /// numbers of matrix and bias sweeps, which are added to the report. Precondition: carries().
     template <class Action>
     void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps,
                Action const& action) {
@@ -180,7 +183,8 @@ class TreeSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
 
-    /// What does not go side by side: runs, one level after the other, and the roots.
+    /// Builds the trees of everything that is not processed side by side: runs, one level after the
+    /// other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
             rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint,
@@ -194,7 +198,8 @@ class TreeSolver final : public ChainSolver {
         if (!blocks_) blocks_.emplace(group_);
         return *blocks_;
     }
-    /// Whether chains short enough for a team of threads each were left to such.
+    /// Assembles the matrices by teams of threads, one thread per part of a run, if all chains are
+    /// short enough. Returns false if they are not, and does nothing then.
     bool assemble_by_teams() {
         if constexpr (Space::template has_teams<K>)
             if (carries() && group_.partition.trees.front().run_length == longest_run) {
@@ -204,6 +209,7 @@ class TreeSolver final : public ChainSolver {
         return false;
     }
 
+    /// One evaluation by the fused sweep.
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads,
                   AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);
@@ -222,8 +228,8 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
-    /// With runs and merges that go side by side where there are any, and the others of each level
-    /// after them.
+    /// Executes the fused sweep. If some runs and merges are processed side by side, the others of
+    /// each level follow them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration,
                        LoadsView const& loads, AccelerationsView const& out) {
@@ -247,7 +253,8 @@ class TreeSolver final : public ChainSolver {
         up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, of_both(), out);
     }
 
-    /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
+    /// Adds the seconds of a sweep to the report. If the space does not wait for its work, it does
+    /// so only while measurement is on.
     class Stopwatch {
       public:
         Stopwatch(TreeSolver& solver, double& seconds)
@@ -265,8 +272,8 @@ class TreeSolver final : public ChainSolver {
         double start_;
     };
 
-    /// `shown`: of the sweep's records. A solver that is measured says how long ranks exchange
-    /// them.
+    /// Executes the inward and the outward pass with the exchange of the shared units' records
+    /// (`shown`) between them. With measurement on, the seconds of the exchange are reported.
     template <class Sweep, class Shown>
     void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Shown const& shown,
                      AccelerationsView const& out) {
@@ -285,12 +292,13 @@ class TreeSolver final : public ChainSolver {
     }
 
     using NumbersOfSegments = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
+    // Exchange of shared units and the numbers of the records to be exchanged.
     template <class Numbers>
     struct Shown {
         FrontierExchange<Space>& units;
         Numbers numbers;
     };
-    /// The shared units' records, to all ranks.
+    /// Distributes the records of the shared units to all ranks.
     template <class Numbers>
     void gather(Shown<Numbers> const& shown) {
         auto const start = seconds_now();
@@ -306,7 +314,7 @@ class TreeSolver final : public ChainSolver {
     Shown<RecordNumbers<typename Sweeps::Biases>> of_biases() {
         return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
     }
-    /// Precondition: at_once().
+    /// Returns the exchange of matrices and biases together. Precondition: at_once().
     Shown<NumbersOfSegments> of_both() {
         return {*shown_both_,
                 {matrices_.view(), biases_.view(), shown_both_->own_units(), shown_both_->units()}};
@@ -321,21 +329,22 @@ class TreeSolver final : public ChainSolver {
     std::vector<std::vector<Merge>> no_levels_;
     std::vector<Root> no_roots_;
     typename Space::Tree tree_, top_;
-    std::optional<typename Space::Tree>
-        whole_runs_;  // that evaluations go by whose runs are taken whole
+    // Tree of evaluations that compute runs on revolute joints by articulated-body inertias.
+    std::optional<typename Space::Tree> whole_runs_;
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
     FrontierExchange<Space> shown_matrices_, shown_biases_;
-    std::optional<FrontierExchange<Space>> shown_both_;  // where evaluations are at once
+    // Exchange of the fused sweep, if evaluations use it.
+    std::optional<FrontierExchange<Space>> shown_both_;
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;
     std::optional<SideBySide<Leaf>> aside_;
     std::vector<typename Space::Tree> rest_;
-    /// Of invert(), where it is asked for.
+    /// Arrays of InverseSweep; allocated when invert() is called.
     struct Inverse {
         explicit Inverse(Schedule const& schedule) : own(schedule.joints), across(schedule.slots) {}
         Records<double, Order::plain> own, across;
