@@ -70,7 +70,7 @@ class ArticulatedLeaf {
     CATENA_HD Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const {
         return released(loads, k, restricted).bias;
     }
-    /// Writes the accelerations of body k from the states of its two joints, if they are wanted.
+    /// Writes the accelerations of body k from the states of its two joints, if they are requested.
     CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted,
                               HandleState<double, K> const& inboard, int restricted_outboard,
                               HandleState<double, K> const& outboard,
@@ -161,6 +161,7 @@ struct ArticulatedSweeps {
                    static_cast<std::int64_t>(sizeof(Joint) + sizeof(Offset) + sizeof(State));
     }
     CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
+    /// Reports a pivot failure to `lost`.
     CATENA_HD void note(PivotFailure const& found) const {
         if (found.joint != PivotFailure{}.joint) lower_to(lost, found.joint);
     }
@@ -177,6 +178,7 @@ struct ArticulatedMatrixSweep {
     Sweeps s;
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the matrices of part p and stores the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         PivotFailure found;
         std::int64_t const begin = begin_of(run, p);
@@ -186,6 +188,7 @@ struct ArticulatedMatrixSweep {
         s.note(found);
         return segment;
     }
+    /// Returns the merged matrices and stores their joint.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard,
                              JointAt const& at) const {
         PivotFailure found;
@@ -207,6 +210,7 @@ struct ArticulatedMatrixSweep {
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
         s.matrices.store(slot, segment);
     }
+    /// Does nothing: chains are open, and the first joint's state follows from the biases.
     CATENA_HD void close(Root const& /*root*/, Segment const& /*whole*/) const {}
 };
 
@@ -226,6 +230,7 @@ struct ArticulatedBiasSweep {
     AccelerationsView out;
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the bias of part p and stores the offsets of the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.bias(loads, begin, s.restricted[begin]);
@@ -233,6 +238,7 @@ struct ArticulatedBiasSweep {
             segment = joined(segment, s.leaf.bias(loads, k, s.restricted[k]), s.at(k));
         return segment;
     }
+    /// Returns the merged bias and stores the joint's offset.
     CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard,
                                    JointAt const& at) const {
         typename Sweeps::Offset offset;
@@ -250,9 +256,12 @@ struct ArticulatedBiasSweep {
         s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p});
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
+    /// Returns the state of an eliminated joint from those at its run's two ends.
     CATENA_HD State force(Node const& node, State const& first, State const& next) const {
         return state_between(node.joint, node.offset, first, next);
     }
+    /// Outward pass of part p from the states at its two ends: writes joint forces and
+    /// accelerations.
     template <bool /*unroll*/>
     CATENA_HD void down(Run const& run, int p, Part, State const& first, State next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);

@@ -32,7 +32,7 @@ CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, 
         b.b2 = b.b2 - read_directions<K>(loads.tip_bias, k);
 }
 
-/// Writes the forces at body k's two joints, if they are wanted.
+/// Writes the forces at body k's two joints, if they are requested.
 template <int K, class Place>
 CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, Place k,
                             Vector<RealAt<Place>, K> const& inboard,
@@ -45,9 +45,13 @@ CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out
 template <int K_>
 class BeadLeaf {
   public:
+    // Properties of a leaf. `beads`: it has point beads. `in_joints`: it uses joint coordinates.
+    // `projected`: its handles carry fewer directions than full ones. `reads_neighbours` and
+    // `by_inertia` are explained in BodyLeaf.
     static constexpr int K = K_;
     static constexpr bool beads = true, in_joints = false, projected = K == 1,
                           reads_neighbours = true, by_inertia = false;
+    /// Leaf that reads positions and velocities instead of link directions, for the fused sweep.
     using Moving = BeadLeafFromPositions<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
@@ -73,7 +77,7 @@ class BeadLeaf {
         add_joint_biases(group_, loads, k, b);
         return b;
     }
-    /// Writes the acceleration of bead k from the forces at its two links, if it is wanted.
+    /// Writes the acceleration of bead k from the forces at its two links, if it is requested.
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k,
                               Vector<RealAt<Place>, K> const& inboard_force,
@@ -138,6 +142,8 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
 template <int K, bool sliding>
 class JointFrameHandles {
   public:
+    // Properties of handles. `any_forces`: directions may combine forces and torques. `in_joints`:
+    // joint coordinates. `on_links`: handles along links.
     static constexpr bool any_forces = sliding, in_joints = true, on_links = false;
     explicit JointFrameHandles(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
@@ -297,7 +303,7 @@ class BodyLeaf {
     static constexpr int K = K_;
     using Frames = Frames_;
     static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
-    // True if the leaf reads bodies beside its own, or must find out whether there are any.
+    // True if the leaf reads bodies other than its own, or must find out whether there are any.
     static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;
     /// True if runs of bodies on revolute joints alone are computed by articulated-body inertias
     /// (floating_run.hpp).
@@ -370,7 +376,7 @@ class BodyLeaf {
         auto const t = turned(loads, at_k);
         return bias(loads, at_k, t, frames_.handles(at_k.state, k, t.turn));
     }
-    /// Writes the acceleration of body k from the forces at its two joints, if it is wanted.
+    /// Writes the acceleration of body k from the forces at its two joints, if it is requested.
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
@@ -379,7 +385,7 @@ class BodyLeaf {
         accelerate(at_k, turned(loads, at_k), inboard_force, outboard_force, out);
     }
     /// Writes the acceleration of a body whose data were read before. Precondition: accelerations
-    /// are wanted.
+    /// are requested.
     template <class Place>
     CATENA_HD void accelerate(Body<Place> const& at_k, Turned<Place> const& t, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {

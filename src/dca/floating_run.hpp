@@ -142,14 +142,14 @@ template <class Real>
 CATENA_HD void take_difference(Real& e, Wrench<Real> const& first, BodyAcceleration<Real> const& d) {
     e = e - (dot(first.torque, d.alpha) + dot(first.force, d.a));
 }
-/// Updates the velocity-only acceleration from handle 2 of the body before to handle 2 of this
+/// Updates the velocity bias from handle 2 of the body before to handle 2 of this
 /// body. `Body` has the members `difference` and `across`, as LoadedBodyInRun.
 template <class Real, class Body>
 CATENA_HD void swing_on(BodyAcceleration<Real>& swing, Body const& body) {
     swing.alpha = swing.alpha + body.difference.alpha;
     swing.a = (swing.a + body.difference.a) + cross(swing.alpha, body.across);
 }
-/// Returns the loads on a body minus the inertial wrench of its velocity-only acceleration, about
+/// Returns the loads on a body minus the inertial wrench of its velocity bias, about
 /// its centre of mass.
 template <class Real>
 CATENA_HD Wrench<Real> load_of(LoadedBodyInRun<Real> const& body, BodyAcceleration<Real> const& swing) {
@@ -494,7 +494,7 @@ CATENA_HD Vector<Real, 5> inboard_force(ArticulatedBody<Real> const& body, BodyA
     return {{along_force[0], along_force[1], along_force[2], along_torque[0], along_torque[1]}};
 }
 
-/// Default callback of climb_revolutes(): no run begins later than the others beside it.
+/// Default callback of climb_revolutes(): all runs of a vector begin at body 0.
 struct BeginsOnce {
     template <class Real, class Bodies>
     CATENA_HD void operator()(int, FloatingRun<Real>&, Bodies&) const {}
@@ -574,8 +574,8 @@ CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_revolutes(int count, Bodies&& bo
 /// except the last but one, which gets it only with `all`.
 ///
 /// at(i, acceleration) is called for every body but the last. The acceleration is that of handle 2
-/// in the run's axes, relative to the body's swing; at() may change it. turn(i, joint acceleration)
-/// is called for every revolute joint.
+/// in the run's axes, relative to the body's velocity bias; at() may change it. turn(i, joint
+/// acceleration) is called for every revolute joint.
 template <class Real, class Frame, class Kept, class Accelerate, class At, class Turn>
 CATENA_HD_IN_PLACE void descend_revolutes(int count, bool all, Frame const& frame, Kept const& kept, Vector<Real, 5> const& first,
                                        Vector<Real, 5> const& next, Accelerate&& accelerate, At&& at, Turn&& turn) {

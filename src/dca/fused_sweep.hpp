@@ -70,7 +70,8 @@ struct Resting {
     CATENA_HD Turning turning(Body<std::int64_t> const& body, Factorizer const& factors) const {
         return leaf.turning(loads, body, factors);
     }
-    /// Writes the accelerations of one body from the forces at its two joints, if they are wanted.
+    /// Writes the accelerations of one body from the forces at its two joints, if they are
+    /// requested.
     CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Turning const& turning,
                                        Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard,
@@ -153,13 +154,15 @@ struct FusedSweep {
     using Passed = OneSided<double, K>;
     using Passage = Elimination<double, K>;
     static constexpr bool descends = true, one_by_one = Bodies::one_by_one;
-    // A node is stored where a segment was.
+    // True if a node fits into the storage of a segment and replaces it there.
     static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);
     static constexpr bool takes_whole_runs = Leaf::by_inertia;
+    /// True if short chains can be processed as a whole (tree_sweeps.hpp).
     static constexpr bool goes_short = !takes_whole_runs;
     /// True if parts are always processed in rolled loops: with larger handles, unrolled code
     /// overflows a processor's instruction cache.
     static constexpr bool in_loops = K > 3;
+    /// Arrays, bodies and results of the sweep.
     Sweeps s;
     Bodies bodies;
     AccelerationsView out;
@@ -239,10 +242,10 @@ struct FusedSweep {
     CATENA_HD RevoluteFrame<double> frame(Run const& run, RunWorkspace<Sweeps> const& kept, int i) const {
         return follows() ? with_loads(run).frame(i, kept) : s.leaf.revolute_frame(bodies.loads, run.body + i);
     }
-    /// True if results of every body of a run are wanted.
+    /// True if results of every body of a run are requested.
     CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }
-    /// Writes the wanted results of body i of a run on revolute joints. `a` is its acceleration in
-    /// its own axes.
+    /// Writes the requested results of body i of a run on revolute joints. `a` is its acceleration
+    /// in its own axes.
     CATENA_HD void accelerate(Run const& run, int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) const {
         std::int64_t const k = run.body + i;
         if (out.revolute_acceleration.origin) {
@@ -407,6 +410,8 @@ struct FusedSweep {
     }
     /// Storage of a part's passages in registers.
     struct PassagesHere {
+        /// Number of passages that have room; the last joint's passage is apart if parts are
+        /// processed in rolled loops.
         static constexpr int most = part_length - (in_loops ? 2 : 1);
         // Some callers leave the last element unused, which compilers do not detect.
         Passage passage[part_length - 1] = {};

@@ -50,7 +50,7 @@ class HostSpace : public HostAccess {
         return false;
     }
     using HostAccess::exchange;
-    /// Memory shared by loops and the host: after wait(), each finds what the other wrote.
+    /// Memory shared by loops and the host: after wait(), each sees what the other wrote.
     template <class T>
     using HostArray = std::vector<T>;
     template <int D>

@@ -20,6 +20,7 @@ struct InverseSweep {
     RecordsView<double, Order::plain> across;
     View<1> beside;  // Output, see InverseView.
 
+    /// Starts a chain: entries of its first joint and of its tip's joint.
     void operator()(Root const& root) const {
         double const first = s.joints.load(root.first).factor(0, 0);
         Entries const tip = root.tip == TipTo::ground ? entries(root.next, first, 0, 0) : Entries{};
@@ -27,6 +28,7 @@ struct InverseSweep {
         across.store(root.slot, tip.inboard);
         if (root.tip == TipTo::ground) own.store(root.next, tip.own);
     }
+    /// Computes the entries of a merge's joint and the off-diagonal entries of its two segments.
     void operator()(Merge const& m) const {
         Entries const e =
             entries(m.joint, own.load(m.first), across.load(m.slot), own.load(m.next));

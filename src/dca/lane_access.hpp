@@ -34,6 +34,7 @@ inline constexpr bool is_one_body = std::is_same_v<Place, std::int64_t>;
 template <class Place>
 concept SeveralBodies = requires { typename Place::Real; };
 
+/// Returns body k's numbers of a field.
 template <class T, int D>
 CATENA_HD Vector<double, D> read(FieldView<T, D> const& view, std::int64_t k) {
     return view.load(k);
@@ -84,6 +85,7 @@ struct ReadLast {
         return Vector<double, D>::zero();
     }
 };
+/// Writes body k's numbers of a field.
 template <int D>
 CATENA_HD void write(View<D> const& view, std::int64_t k, Vector<double, D> const& value) {
     view.store(k, value);
@@ -98,7 +100,8 @@ CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k,
     view.store<K>(k, value);
 }
 
-// Overloads for bodies side by side: where neighbours are read, every body has both.
+// Position of a body in its chain. The overloads for bodies side by side (simd/tile.hpp) assume
+// that every body has both neighbours.
 CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
 CATENA_HD bool begins_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
 /// True if a run's last body k is followed by a body that forms a run of its own, or may do so: one

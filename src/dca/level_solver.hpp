@@ -32,13 +32,18 @@ class LevelPart {
     // joint.
     enum class Items { matrices, biases, joints, offsets, forces };
     virtual ~LevelPart() = default;
+    /// Sets the configuration; only parts with leaves need it.
     virtual void set(ConfigurationView const&) = 0;
+    /// Sets the loads and the views for the results.
     virtual void set(LoadsView const&, AccelerationsView const&) = 0;
+    /// Inward pass of the matrices over this part's leaves and levels.
     virtual void assemble_matrices() = 0;
     virtual void close_matrices() = 0;  // Computes the top: its levels, then the roots.
+    /// Inward pass of the biases over this part's leaves and levels.
     virtual void assemble_biases() = 0;
     // Computes the top and, in its outward pass, the joint forces there.
     virtual void close_biases() = 0;
+    /// Outward pass over this part's levels and leaves, from the joint forces that it has.
     virtual void disassemble() = 0;
     virtual void fetch() = 0;  // Copies the results to the host's views.
     /// Returns the first joint of this part whose matrix is not positive definite, or the number of
@@ -50,6 +55,7 @@ class LevelPart {
     virtual int choose(std::vector<std::int64_t> const& places) = 0;
     virtual void get(Items, int list, std::vector<double>& numbers) = 0;
     virtual void put(Items, int list, std::vector<double> const& numbers) = 0;
+    /// Returns the size of this part's arrays, in bytes.
     virtual std::int64_t memory_bytes() const = 0;
     virtual int threads() const = 0;
 };

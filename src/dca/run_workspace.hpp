@@ -26,6 +26,7 @@ class RunWorkspace {
                          of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
     static constexpr int of_end = sizeof(End) / sizeof(double),
                          most = sizeof(typename Sweeps::Node) / sizeof(double);
+    // Velocity bias of a body, FloatingRun::swing.
     using Swing = BodyAcceleration<double>;
     static constexpr int of_swing = sizeof(Swing) / sizeof(double);
     static constexpr int at_axes = of_revolute + of_body, at_swing = at_axes + of_axes,
@@ -44,7 +45,7 @@ class RunWorkspace {
         Mat3 axes;
         Swing swing;
     };
-    /// `all`: the outward pass needs the swing of every body.
+    /// `all`: the outward pass needs the velocity bias of every body.
     CATENA_HD RunWorkspace(Sweeps const& sweeps, Run const& run, bool all)
         : sweeps_(sweeps), run_(run), all_(all) {}
     CATENA_HD void put(int i, Revolute const& revolute) {

@@ -82,7 +82,7 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
     return f;
 }
 
-/// The exact way to factorize matrices and to compute reciprocals. Leaves and sweeps take it as a
+/// Default factorizer, with exact reciprocals. Leaves and sweeps have the factorizer as a
 /// parameter, so that faster ones that may fail can replace it.
 struct Factorizer {
     static constexpr bool may_fail = false;

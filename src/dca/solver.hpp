@@ -158,7 +158,7 @@ struct InverseView {
     View<1> beside;  // Entry (T^-1)_k,k+1 of the two links of body k; 0 if it does not have two.
 };
 
-/// Results of a solver. Each view may be absent (without origin) if its values are not wanted.
+/// Results of a solver. Each view may be absent (without origin) if its values are not requested.
 struct AccelerationsView {
     View<3> alpha;  // Angular acceleration, B.
     // Acceleration of the centre of mass or of the bead, in the axes of LoadsView::force.
@@ -261,6 +261,7 @@ class ChainSolver {
     /// Computes entries of T^-1 from the matrices that assemble_matrices() assembled last.
     /// Precondition: links, a backend without a GPU.
     virtual void invert(InverseView const&);
+    /// Returns the statistics since construction.
     virtual SolverReport report() const = 0;
 };
 

@@ -24,8 +24,8 @@
 // that not all of them are written.
 //
 // A sweep with matrices() and biases() may leave stages with runs to these two, one after the other
-// (cuda/sweeps/stage_walk.cuh). A sweep that takes factors has joined(..., factors), close_free(),
-// down(..., passages, factors) and PassagesHere, which other storage may replace
+// (cuda/sweeps/stage_walk.cuh). A sweep whose members accept `factors` has joined(..., factors),
+// close_free(), down(..., passages, factors) and PassagesHere, which other storage may replace
 // (cuda/sweeps/run_parts.cuh).
 #pragma once
 
@@ -42,7 +42,7 @@ struct JointAt {
     int restricted = 0;
 };
 
-/// The first joint found whose matrix is not positive definite; no joint at first.
+/// The smallest joint whose matrix is not positive definite; no joint at first.
 struct PivotFailure {
     unsigned long long joint = ~0ULL;
     CATENA_HD void add(std::int64_t k) {
@@ -66,6 +66,7 @@ struct TreeSweeps {
     using Directions = Vector<double, K>;
     using Offset = Directions;
     using State = Directions;  // State of a joint that the outward pass hands on: its force.
+    /// Numbers of doubles per segment and joint that a GPU stage stores in a block (StageRecords).
     static constexpr StageRecords in_stage = stage_records(K, Leaf::projected),
                                   in_stage_of_whole_runs = stage_records(K, Leaf::projected, true);
 
@@ -190,7 +191,9 @@ struct MatrixSweep {
     using Part = NothingRead;
     Sweeps s;
 
+    /// Reads nothing in advance; the bodies are read one by one in part().
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the segment of part p and stores the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         PivotFailure found;
@@ -202,6 +205,7 @@ struct MatrixSweep {
         s.note(found);
         return segment;
     }
+    /// Returns the merged segment and stores its joint.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         PivotFailure found;
         Segment segment = inboard;
@@ -211,6 +215,7 @@ struct MatrixSweep {
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    /// Closes a chain at its root: factorizes the joint that is closed last.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         s.fasten(root, floating, root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating);
     }
@@ -239,6 +244,7 @@ struct BiasSweep {
     AccelerationsView out;
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the bias of part p and stores the offsets of the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.bias(loads, begin);
@@ -248,6 +254,7 @@ struct BiasSweep {
         });
         return segment;
     }
+    /// Returns the merged bias and stores the joint's offset.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Segment segment = inboard;
         append(segment, outboard, at.k);
@@ -265,6 +272,8 @@ struct BiasSweep {
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
+    /// Outward pass of part p from the forces at its two ends: writes joint forces and
+    /// accelerations.
     template <bool /*unroll*/>
     CATENA_HD void down(Run const& run, int p, Part, Directions const& first, Directions next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);

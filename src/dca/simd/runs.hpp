@@ -118,8 +118,9 @@ constexpr int kept_of_run(bool keeps_all) {
 }
 
 /// Numbers of vectors for a run computed by articulated-body inertias. `revolute_numbers` belongs
-/// to a joint with the body outboard of it, with its angular velocity and its swing. `end_numbers`
-/// belongs to the run's end, with the last revolute joint's axes and the last body's orientation.
+/// to a joint with the body outboard of it, with its angular velocity and its velocity bias.
+/// `end_numbers` belongs to the run's end, with the last revolute joint's axes and the last body's
+/// orientation.
 inline constexpr int released_numbers =
     static_cast<int>(sizeof(ReleasedRevolute<double>) / sizeof(double));
 inline constexpr int passed_body_numbers =

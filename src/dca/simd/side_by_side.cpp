@@ -29,11 +29,11 @@ struct RunsOfGroup {
             shorter += tree.runs - whole_ones;
         }
     }
-    /// True if vectors pay. One or two runs take less time one after the other than in a vector
-    /// with most lanes idle.
+    /// True if vectors save time. One or two runs take less time one after the other than in a
+    /// vector with most lanes idle.
     bool enough() const { return whole + shorter >= few; }
-    /// True if shorter runs pay as well, which needs enough of them or free lanes beside whole
-    /// runs.
+    /// True if shorter runs save time as well: if there are enough of them, or if the last vector
+    /// of whole runs has free lanes for all.
     bool shorter_ones_pay() const {
         return shorter >= few ||
                (whole % most_lanes > 0 && whole % most_lanes + shorter <= most_lanes);
