@@ -12,8 +12,7 @@
 //
 // A light last body makes handle 2 extremely mobile along the free directions of its joint. This
 // part of the mobility, `tip`, is stored apart. The directions of each joint are rotated until
-// `tip` lies along the first of them, so that its rounding errors stay out
-// of the other directions.
+// `tip` lies along the first of them, so that its rounding errors stay out of the other directions.
 #pragma once
 
 #include "dca/segment.hpp"
@@ -22,7 +21,7 @@ namespace catena::dca {
 
 /// A run between its first joint's inboard side, which has acceleration a1, and handle 2 of its
 /// last body, on which force f2 acts:
-///  f1 = inertia a1 - carry^T f2 + p,   a2 = carry a1 + (tip tip^T + rest rest^T) f2 + e + tip w.
+///   f1 = inertia a1 - carry^T f2 + p,   a2 = carry a1 + (tip tip^T + rest rest^T) f2 + e + tip w.
 /// Here f1 is the force of the first joint on the run. The last body's own joint contributes `tip`,
 /// the other joints contribute `rest`. All are along the directions of the joints. Entries of
 /// `inertia` and `carry` along free directions of the first joint are 0.

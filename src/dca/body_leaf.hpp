@@ -152,8 +152,8 @@ class JointFrameHandles {
         if (c.axes2.origin) axes2_ = c.axes2;
         if (c.r2.origin) r2_ = c.r2;
     }
-    // Data of one body that its handles are computed from: r1 and r2 from the centre of mass (B),
-    // the rotation (w x y z), and two axes of each meeting frame.
+    // Data from which a body's handles are computed: r1 and r2 from the centre of mass (B), the
+    // rotation (w x y z), and two axes of each meeting frame.
     template <class Real>
     struct State {
         Vector<Real, 3> r1, r2;

@@ -102,7 +102,7 @@ struct FloatingRun {
     Wrench<Real> bias, first[5];
     Symmetric<Real, 5> z;
     Vector<Real, 5> e;
-    // Acceleration of the current body's handle 2 due to velocities alone.
+    // Velocity bias: acceleration of the current body's handle 2 due to velocities alone.
     BodyAcceleration<Real> swing;
 };
 /// The end of a run, about the last body's inboard joint and in that joint's axes. `factor` is the

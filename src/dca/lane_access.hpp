@@ -104,8 +104,8 @@ CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k,
 // that every body has both neighbours.
 CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
 CATENA_HD bool begins_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
-/// True if a run's last body k is followed by a body that forms a run of its own, or may do so: one
-/// of another rank, or a chain's last body.
+/// True if a body that forms a run of its own, or may do so, follows a run's last body k: one of
+/// another rank, or a chain's last body.
 CATENA_HD bool comes_before_one(GroupView const& group, std::int64_t k) {
     return k + 1 >= group.size || group.is_last[k + 1];
 }

@@ -1,6 +1,6 @@
 // Local copy of the data of a few runs' bodies, transposed so that those of several runs lie side
-// by side: a part, or the whole, of as many runs as a vector has lanes. Views of a tile are read at
-// a Column, a place that stands for one body of every run.
+// by side. It holds a part, or the whole, of as many runs as a vector has lanes. Views of a tile
+// are read at a Column, a place that stands for one body of every run.
 #pragma once
 
 #include "dca/lane_access.hpp"
