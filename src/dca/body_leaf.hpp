@@ -340,7 +340,7 @@ class BodyLeaf {
         RealAt<Place> scale;  // Value of matrix_scale() of the body's rotation.
         Vec3At<Place> torque;  // Torque on the body in B, gyroscopic torque included.
     };
-    /// Turning with the rotation expanded to a matrix.
+    /// `Turning` with the rotation expanded to a matrix.
     template <class Place>
     struct Turned {
         Mat3At<Place> turn;  // Matrix of the body's rotation, to_matrix().

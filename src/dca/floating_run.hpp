@@ -30,14 +30,14 @@ namespace catena::dca {
 /// axes.
 template <class Real>
 struct RevoluteFrame {
-    // Handles 1 and 2, from the centre of mass.
+    /// Handles 1 and 2, from the centre of mass.
     Vector<Real, 3> r1, r2;
-    // Axes of the two handles, in columns; the last column of `e1` is the inboard revolute joint's
-    // axis.
+    /// Axes of the two handles, in columns; the last column of `e1` is the inboard revolute joint's
+    /// axis.
     Matrix<Real, 3, 3> e1, e2;
-    // Centripetal accelerations omega x (omega x r) at the two handles.
+    /// Centripetal accelerations omega x (omega x r) at the two handles.
     Vector<Real, 3> inward1, inward2;
-    // Velocity terms of the inboard joint along its five directions (LoadsView::bias).
+    /// Velocity terms of the inboard joint along its five directions (LoadsView::bias).
     Vector<Real, 5> bias;
 
     CATENA_HD Handle<Real, 5> handle1() const { return make_handle<5>(r1, e1, e1); }
@@ -51,11 +51,11 @@ struct RevoluteFrame {
 /// RevoluteFrame with the inertia and the loads that the inward pass needs as well.
 template <class Real>
 struct ArticulatedBody : RevoluteFrame<Real> {
-    // Mass, and inertia about the centre of mass.
+    /// Mass, and inertia about the centre of mass.
     Real mass;
     Symmetric<Real, 3> inertia;
-    // Torque about the centre of mass and force on the body. The torque includes the gyroscopic
-    // torque.
+    /// Torque about the centre of mass and force on the body. The torque includes the gyroscopic
+    /// torque.
     Vector<Real, 3> torque, force;
 };
 
@@ -74,13 +74,13 @@ struct BodyInRun {
 /// BodyInRun with the inertia and the loads that the inward pass needs as well.
 template <class Real>
 struct LoadedBodyInRun : BodyInRun<Real> {
-    // Velocity-dependent relative acceleration of the inboard joint: outboard side minus inboard
-    // side, at the meeting point.
+    /// Velocity-dependent relative acceleration of the inboard joint: outboard side minus inboard
+    /// side, at the meeting point.
     BodyAcceleration<Real> difference;
     Vector<Real, 3> centre;  // Centre of mass, from handle 2.
     Real mass;
     Symmetric<Real, 3> inertia;
-    // Torque about the centre of mass and force on the body.
+    /// Torque about the centre of mass and force on the body.
     Vector<Real, 3> torque, force;
 };
 /// A body on a revolute joint within a run whose velocities are computed along the run
@@ -88,9 +88,9 @@ struct LoadedBodyInRun : BodyInRun<Real> {
 template <class Real>
 struct BodyOnRevolute {
     Quaternion<Real> turn;  // Rotation to the axes of the body before.
-    // Axis of the joint, and the two handles from the centre of mass.
+    /// Axis of the joint, and the two handles from the centre of mass.
     Vector<Real, 3> axis, r1, r2;
-    // Rate of the joint, in radians per unit of time, and mass of the body.
+    /// Rate of the joint, in radians per unit of time, and mass of the body.
     Real rate, mass;
     Symmetric<Real, 3> inertia;
 };
@@ -102,7 +102,7 @@ struct FloatingRun {
     Wrench<Real> bias, first[5];
     Symmetric<Real, 5> z;
     Vector<Real, 5> e;
-    // Velocity bias: acceleration of the current body's handle 2 due to velocities alone.
+    /// Velocity bias: acceleration of the current body's handle 2 due to velocities alone.
     BodyAcceleration<Real> swing;
 };
 /// The end of a run, about the last body's inboard joint and in that joint's axes. `factor` is the

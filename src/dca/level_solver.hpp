@@ -15,11 +15,11 @@ namespace catena::dca {
 /// Work of one part on a rank's schedule. Level l is the l-th vector of merges of the schedule; the
 /// part owns the levels [first, end).
 struct LevelWork {
-    // True if the part computes the matrices and biases of the bodies, and their accelerations.
+    /// True if the part computes the matrices and biases of the bodies, and their accelerations.
     bool leaves_up = false, leaves_down = false;
     std::size_t first_up = 0, end_up = 0, first_down = 0, end_down = 0;
-    // True if the part computes the roots and what is above the units of shared chains. Only a part
-    // in host memory can.
+    /// True if the part computes the roots and what is above the units of shared chains. Only a
+    /// part in host memory can.
     bool top = false;
     bool leaves() const { return leaves_up || leaves_down; }
 };
@@ -28,8 +28,8 @@ struct LevelWork {
 /// returns when its work is complete.
 class LevelPart {
   public:
-    // Records that can be transferred: matrices and biases are indexed by slot, the others by
-    // joint.
+    /// Records that can be transferred: matrices and biases are indexed by slot, the others by
+    /// joint.
     enum class Items { matrices, biases, joints, offsets, forces };
     virtual ~LevelPart() = default;
     /// Sets the configuration; only parts with leaves need it.
@@ -41,7 +41,7 @@ class LevelPart {
     virtual void close_matrices() = 0;  // Computes the top: its levels, then the roots.
     /// Inward pass of the biases over this part's leaves and levels.
     virtual void assemble_biases() = 0;
-    // Computes the top and, in its outward pass, the joint forces there.
+    /// Computes the top and, in its outward pass, the joint forces there.
     virtual void close_biases() = 0;
     /// Outward pass over this part's levels and leaves, from the joint forces that it has.
     virtual void disassemble() = 0;
@@ -69,11 +69,11 @@ LevelPartMaker host_levels(Executor const&);
 /// Items that cross the cuts. The lower part owns `up` levels of merges in the inward pass and
 /// `down` levels in the outward pass.
 struct LevelCut {
-    // Slots from which the upper part's levels and roots start.
+    /// Slots from which the upper part's levels and roots start.
     std::vector<std::int64_t> segments;
-    // Joints from whose forces the lower part's disassembly starts.
+    /// Joints from whose forces the lower part's disassembly starts.
     std::vector<std::int64_t> forces;
-    // Joints that one part eliminates and the other disassembles.
+    /// Joints that one part eliminates and the other disassembles.
     std::vector<std::int64_t> joints_up, joints_down;
 };
 /// Returns the items that cross the cuts for the given numbers of levels.

@@ -80,13 +80,13 @@ CATENA_HD LocalPiece const& piece_of(LocalPiece const* piece, std::int64_t piece
 /// Configuration of the bodies, on which the matrices depend. W stands for ground axes, B for body
 /// axes.
 struct ConfigurationView {
-    // Links: unit direction of link k, from inboard to outboard, W; [0, size]; 0 if there is no
-    // link.
+    /// Links: unit direction of link k, from inboard to outboard, W; [0, size]; 0 if there is no
+    /// link.
     ConstView<3> direction;
-    // Bodies: quaternion w x y z. With Axes::joint it is the rotation of B in the meeting frame of
-    // the inboard joint, with Axes::world that in W.
+    /// Bodies: quaternion w x y z. With Axes::joint it is the rotation of B in the meeting frame of
+    /// the inboard joint, with Axes::world that in W.
     ConstView<4> rotation;
-    // Links: direction of the link from last body k to the ground; absent if no tip is jointed.
+    /// Links: direction of the link from last body k to the ground; absent if no tip is jointed.
     ConstView<3> tip_direction;
     /// Outboard handle of bodies whose meeting frame depends on the joint's coordinates
     /// (ChainGroup::moving_meeting): handle 2 from the centre of mass, and two axes of the meeting
@@ -109,36 +109,36 @@ struct ConfigurationView {
 /// zero.
 struct RevoluteLoads {
     bool given = false;
-    // Rotation of bodies on revolute joints: quaternion of B in the axes of the body before. Bodies
-    // that are processed side by side have `frame` instead.
+    /// Rotation of bodies on revolute joints: quaternion of B in the axes of the body before.
+    /// Bodies that are processed side by side have `frame` instead.
     ConstView<4> rotation;
-    // Rotation of the meeting frame in the axes of the body before, as a quaternion.
+    /// Rotation of the meeting frame in the axes of the body before, as a quaternion.
     ConstView<4> frame;
     /// Torques of joints along their free directions, on body k along the axes of its inboard
     /// joint; [0, size]. That of a revolute joint is about the last axis.
     ConstView<3> joint_torque;
     static constexpr int about_revolute = 2;  // Component of `joint_torque`.
     ConstView<3> torque, force;  // External torque about the centre of mass and external force, W.
-    // Rotation of first bodies, if there are external loads: quaternion of B in W.
+    /// Rotation of first bodies, if there are external loads: quaternion of B in W.
     ConstView<4> orientation;
 };
 
 /// Loads and velocities of the bodies, on which the biases depend. A view without origin means
 /// zero.
 struct LoadsView {
-    // Torque on each body about its centre of mass, B. Joint torques and -omega x J omega are
-    // included, except where stated below.
+    /// Torque on each body about its centre of mass, B. Joint torques and -omega x J omega are
+    /// included, except where stated below.
     ConstView<3> torque;
-    // Force on each body; in B with Axes::joint, in W with Axes::world and for beads.
+    /// Force on each body; in B with Axes::joint, in W with Axes::world and for beads.
     ConstView<3> force;
     ConstView<3> omega;  // Angular velocity, B, for the centripetal terms at the handles.
-    // Subtracted velocity terms of joint k along its directions (chapter, eq 2.5): D^T (A_1^B -
-    // A_2^A) = -bias.
+    /// Subtracted velocity terms of joint k along its directions (chapter, eq 2.5): D^T (A_1^B -
+    /// A_2^A) = -bias.
     ConstDirectionsView bias;
-    // Subtracted velocity terms of the joint between last body k and the ground.
+    /// Subtracted velocity terms of the joint between last body k and the ground.
     ConstDirectionsView tip_bias;
-    // Velocities of beads with their halo, W; given instead of `bias` where positions replace
-    // directions.
+    /// Velocities of beads with their halo, W; given instead of `bias` where positions replace
+    /// directions.
     ConstView<3> velocity{};
     bool gyroscopic = false;  // True if `torque` lacks -omega x J omega; the solver then adds it.
     /// Rates of the revolute joints, for assemble_and_solve() of a solver that goes_by_revolutes().
@@ -151,8 +151,8 @@ struct LoadsView {
 /// Results of ChainSolver::invert() for links: entries of the inverse of their matrix T
 /// (src/dca/README.md, "Link chains").
 struct InverseView {
-    // Pivot of link k in the elimination order of the tree; 1 if there is no link. The product of
-    // all pivots, those of tips included, is det T.
+    /// Pivot of link k in the elimination order of the tree; 1 if there is no link. The product of
+    /// all pivots, those of tips included, is det T.
     View<1> pivot;
     View<1> tip_pivot;  // Pivot of the link from last body k to the ground.
     View<1> beside;  // Entry (T^-1)_k,k+1 of the two links of body k; 0 if it does not have two.
@@ -161,9 +161,9 @@ struct InverseView {
 /// Results of a solver. Each view may be absent (without origin) if its values are not requested.
 struct AccelerationsView {
     View<3> alpha;  // Angular acceleration, B.
-    // Acceleration of the centre of mass or of the bead, in the axes of LoadsView::force.
+    /// Acceleration of the centre of mass or of the bead, in the axes of LoadsView::force.
     View<3> acceleration;
-    // Constraint force on body k along the directions of its inboard joint; [0, size].
+    /// Constraint force on body k along the directions of its inboard joint; [0, size].
     DirectionsView joint_force;
     DirectionsView tip_force;  // Constraint force on the ground at the jointed tip of last body k.
     /// Joint accelerations, for assemble_and_solve() of a solver that goes_by_revolutes(); [0,
@@ -184,7 +184,7 @@ struct AccelerationsView {
 /// Seconds of a solver whose tree is cut: its lowest levels are computed in one place and the
 /// others in another (cuda-levels: GPU and CPU).
 struct SplitSeconds {
-    // Leaves, top and exchange between ranks are included.
+    /// Leaves, top and exchange between ranks are included.
     double lower_assembly = 0, upper_assembly = 0, lower_disassembly = 0, upper_disassembly = 0;
     double upload = 0, download = 0;
 
@@ -208,14 +208,14 @@ struct SplitSeconds {
 /// Statistics of a solver, printed in reports.
 struct SolverReport {
     std::string backend, handles;
-    // SIMD level of runs that are processed side by side, if there are any.
+    /// SIMD level of runs that are processed side by side, if there are any.
     SimdLevel simd = SimdLevel::off;
     int directions = 0, threads = 1, ranks = 1;
     std::int64_t run_length = 0, depth = 0, merges = 0;
     std::int64_t memory_bytes = 0;
-    // True if the GPUs of ranks write directly to each other's memory.
+    /// True if the GPUs of ranks write directly to each other's memory.
     bool direct_exchange = false;
-    // Numbers of sweeps; an evaluation computes matrices and biases together.
+    /// Numbers of sweeps; an evaluation computes matrices and biases together.
     std::int64_t matrix_sweeps = 0, bias_sweeps = 0, evaluations = 0;
     double matrix_seconds = 0, bias_seconds = 0, exchange_seconds = 0;
     SplitSeconds split;

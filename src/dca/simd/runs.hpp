@@ -19,10 +19,10 @@ inline constexpr int most_lanes = 8;
 /// their results are discarded.
 struct RunsInLanes {
     std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
-    // Body that column 0 corresponds to: the first body minus the skipped columns.
+    /// Body that column 0 corresponds to: the first body minus the skipped columns.
     std::int64_t column[most_lanes];
     int skipped[most_lanes];  // Number of skipped columns, longest_run - part_length at most.
-    // Bit j: the run in lane j begins in this column; set for all lanes in column 0.
+    /// Bit j: the run in lane j begins in this column; set for all lanes in column 0.
     std::uint8_t begins[longest_run];
     std::uint8_t late;  // Bit j: the run in lane j is a shorter one.
 };
@@ -93,12 +93,12 @@ struct RunWork {
     LoadsView loads;
     AccelerationsView out;
     RunsInLanes const* runs = nullptr;
-    // Array [part of an item of `runs`][number][body][lane] of each_constant() and joint frames.
+    /// Array [part of an item of `runs`][number][body][lane] of each_constant() and joint frames.
     double const* constants = nullptr;
-    // Storage of kept_of_run_of<Leaf> vectors per item between inward and outward pass.
+    /// Storage of kept_of_run_of<Leaf> vectors per item between inward and outward pass.
     double* nodes = nullptr;
-    // True if `nodes` has the data of all bodies. Otherwise it has only the joints between parts,
-    // and the outward pass eliminates the others again.
+    /// True if `nodes` has the data of all bodies. Otherwise it has only the joints between parts,
+    /// and the outward pass eliminates the others again.
     bool keeps_all = false;
     bool asks_ahead = false;  // True if the kernels prefetch, see asks_ahead().
 };

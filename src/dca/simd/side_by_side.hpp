@@ -22,10 +22,10 @@ bool asks_ahead(ChainGroup const&);
 
 /// Selection of runs to be processed side by side.
 struct RunsTaken {
-    // True if runs shorter than longest_run, but not shorter than a part, are included where this
-    // saves time.
+    /// True if runs shorter than longest_run, but not shorter than a part, are included where this
+    /// saves time.
     bool of_parts;
-    // True if the leaf reads neighbours; only runs inside their chains are then included.
+    /// True if the leaf reads neighbours; only runs inside their chains are then included.
     bool read_neighbours;
 };
 /// Distributes runs to lanes. A run is processed side by side with others if its length fits
