@@ -32,6 +32,7 @@ class Clock {
 /// Runs both parts and transfers segments, forces and joints between them.
 class LevelSolver final : public ChainSolver {
   public:
+    /// Makes both parts and registers the lists of records that cross the cuts.
     LevelSolver(ChainGroup const& group, Communicator const& communicator, GpuLevels levels,
                 LevelPartMaker const& lower, LevelPartMaker const& upper)
         : group_(group), communicator_(communicator), has_lower_(levels.up > 0 || levels.down > 0) {
@@ -56,6 +57,8 @@ class LevelSolver final : public ChainSolver {
         all_units_ = upper_.part->choose(all);
     }
 
+    /// Matrix sweep: lower part, transfer of segments, upper part with the exchange between ranks,
+    /// transfer of joints.
     void assemble_matrices(ConfigurationView const& configuration) override {
         double const start = seconds_now();
         SplitSeconds& spent = report_.split;
@@ -84,6 +87,8 @@ class LevelSolver final : public ChainSolver {
         if (bad < group_.schedule.joints) refuse_indefinite(group_, communicator_.rank(), bad);
     }
 
+    /// Bias sweep and disassembly: lower part, upper part with the exchange between ranks, lower
+    /// part.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         double const start = seconds_now();
         SplitSeconds& spent = report_.split;

@@ -53,13 +53,17 @@ struct Unpack {
 class HostCrossing {
   public:
     explicit HostCrossing(ChainGroup const&, HostSpace const&) {}
+    /// Returns views in the space with the values of the host's views.
     ConfigurationView take(ConfigurationView const& host) const { return host; }
     LoadsView take(LoadsView const& host) const { return host; }
+    /// Returns views in the space for results; fetch() copies them to the host's views.
     AccelerationsView wanted(AccelerationsView const& host) const { return host; }
     void fetch(AccelerationsView const&) const {}
+    /// Copies to.size() numbers from the space to the host.
     void download(std::vector<double> const& from, std::vector<double>& to) const {
         std::copy_n(from.begin(), to.size(), to.begin());
     }
+    /// Copies all numbers from the host to the space.
     void upload(std::vector<double> const& from, std::vector<double>& to) const {
         std::copy(from.begin(), from.end(), to.begin());
     }
@@ -81,6 +85,8 @@ class SpaceLevels final : public LevelPart {
     using Records = typename Space::template Records<T, order>;
 
   public:
+    /// Allocates the arrays for all slots and joints of the schedule, of which the part uses its
+    /// own.
     SpaceLevels(ChainGroup const& group, LevelWork const& work, Space const& space)
         : schedule_(group.schedule),
           work_(work),
@@ -189,22 +195,27 @@ class SpaceLevels final : public LevelPart {
         List<std::int64_t> list;
     };
 
+    /// Returns the bias sweep with the current loads and results.
     OfBiases biases() const { return {sweeps_, loads_, out_}; }
+    /// Returns the merges of the levels [first, end) as lists of the space.
     static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels,
                                           std::size_t first, std::size_t end) {
         std::vector<List<Merge>> all;
         for (std::size_t l = first; l < end; ++l) all.emplace_back(levels[l]);
         return all;
     }
+    /// Inward pass over levels of merges.
     template <class Action>
     void climb(std::vector<List<Merge>> const& levels, Action const& action) const {
         for (List<Merge> const& level : levels) space_.over(level, action);
     }
+    /// Outward pass over levels of merges.
     void descend(std::vector<List<Merge>> const& levels) const {
         for (std::size_t l = levels.size(); l-- > 0;)
             space_.over(levels[l], loops::Descend<OfBiases>{biases()});
     }
 
+    /// Calls use(view) with the records of the given kind.
     template <class Use>
     void with(Items items, Use const& use) {
         switch (items) {
@@ -250,24 +261,30 @@ class SpaceLevels final : public LevelPart {
         space_.wait();
     }
 
+    // Group's schedule, which must outlive the part, and the part's share of it.
     Schedule const& schedule_;
     LevelWork work_;
     Space space_;
     Crossing crossing_;
     typename Space::Model model_;
     Empty none_;
+    // Lists of the part's runs, merges and roots.
     List<Run> leaves_up_, leaves_down_;
     std::vector<List<Merge>> up_, down_, top_;
     List<Root> roots_, top_roots_;
+    // Records: segments are indexed by slot, the others by joint.
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
+    // Smallest joint with a pivot failure.
     Array<unsigned long long> lost_;
+    // Contiguous buffer for transfers.
     Array<double> parcel_;
     std::vector<std::unique_ptr<Places>> places_;
     Sweeps sweeps_;
+    // Loads and results in the space, and the host's views of the results.
     LoadsView loads_;
     AccelerationsView out_, host_out_;
 };

@@ -25,6 +25,7 @@ TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs) {
     if (!pieces.empty()) first.push_back(pieces.size());
 
     TeamPlan plan;
+    // Threads per team: enough for the team with most runs, rounded up to whole warps.
     plan.threads = static_cast<int>((most * parts_of_run + 31) / 32 * 32);
     plan.place.resize((first.size() - 1) * static_cast<std::size_t>(plan.threads));
     for (std::size_t team = 0; team + 1 < first.size(); ++team) {

@@ -20,12 +20,14 @@ struct Abreast {
 /// Prefetch distance of loops over the bodies, in bodies.
 inline constexpr int ahead_of_bodies = 64;
 
+/// Reads one number of the bodies.
 template <class T, int D, class Real>
 Real read(FieldView<T, D> const& view, Abreast<Real> const& bodies, int component) {
     auto const* const place = view.origin + component * view.pitch + bodies.first;
     if (bodies.asks_ahead) prefetch<Real>(place, ahead_of_bodies);
     return Real::load_anywhere(place);
 }
+/// Reads D numbers of the bodies.
 template <class T, int D, class Real>
 Vector<Real, D> read(FieldView<T, D> const& view, Abreast<Real> const& bodies) {
     Vector<Real, D> v;
@@ -33,6 +35,7 @@ Vector<Real, D> read(FieldView<T, D> const& view, Abreast<Real> const& bodies) {
     for (int i = 0; i < D; ++i) v[i] = read(view, bodies, i);
     return v;
 }
+/// Writes D numbers of the bodies.
 template <int D, class Real>
 void write(View<D> const& view, Abreast<Real> const& bodies, Vector<Real, D> const& value) {
     CATENA_UNROLL

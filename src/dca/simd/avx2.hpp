@@ -12,6 +12,8 @@ namespace catena::dca::avx2 {
 class Real {
   public:
     static constexpr int lanes = 4;
+    // Default construction leaves the lanes uninitialized; construction from `x` sets all lanes to
+    // x.
     Real() = default;
     Real(double x) : v_(_mm256_set1_pd(x)) {}
     static Real load(double const* place) { return Real(_mm256_load_pd(place)); }

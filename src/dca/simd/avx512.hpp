@@ -12,6 +12,8 @@ namespace catena::dca::avx512 {
 class Real {
   public:
     static constexpr int lanes = 8;
+    // Default construction leaves the lanes uninitialized; construction from `x` sets all lanes to
+    // x.
     Real() = default;
     Real(double x) : v_(_mm512_set1_pd(x)) {}
     static Real load(double const* place) { return Real(_mm512_load_pd(place)); }

@@ -43,9 +43,11 @@ template <class Real, class Leaf>
 class RunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes;
     using Base = RunsInTile<Real, Leaf>;
+    // Members of RunsInTile that this kernel uses.
     using Base::work_, Base::begin_, Base::bodies_, Base::out_, Base::fill, Base::empty, Base::ask;
     using Bodies = typename Base::Bodies;
     using Body = typename Bodies::template Body<Column<Real>>;
+    // Intermediate results of a body for its accelerations.
     using Kept = decltype(std::declval<Bodies const&>().keep(std::declval<Body const&>()));
     using Segment = BiasedSegment<Real, K>;
     using Directions = Vector<Real, K>;
@@ -54,6 +56,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
     static_assert(fits_nodes<Real, K>);
     static constexpr int numbers_of_node = node_numbers<K> * lanes,
                          numbers_of_passed = passed_numbers<K> * lanes;
+    // Sizes of the records in RunWork::nodes, in doubles.
 
   public:
     explicit RunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
@@ -97,6 +100,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
     }
 
   private:
+    /// Returns the storage of an item's runs.
     double* place_of(std::int64_t item) const {
         return work_.nodes + item * kept_of_run<K>(work_.keeps_all) * lanes;
     }
@@ -117,17 +121,21 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         Node node;
         each_body<unrolled<K>>(0, part_length, [&](int i) {
             ask(runs, p * part_length + i, 1);
+            // Placement new constructs the segment where it is used, without a copy.
             ::new (i == 0 ? &segment : &body) Segment(bodies_.segment(bodies.body(i)));
             if (i == 0) return keep(item, p, 0, {{}, segment.matrix.z12, segment.bias});
             append(segment, body, node, runs, p * part_length + i);
             keep(item, p, i, {node.joint.factor, node.joint.outboard, body.bias});
         });
     }
+    /// Stores what body i of part p needs in the outward pass, if all bodies are kept.
     void keep(std::int64_t item, int p, int i, Passed const& passed) const {
         if constexpr (!Leaf::beads)
             if (work_.keeps_all)
                 store_vectors<Real>(place_of_passed(item, p * part_length + i), passed);
     }
+    /// Joins `outboard` to `segment` and records pivot failures; `body` is the index of the joint
+    /// in the run.
     void append(Segment& segment, Segment const& outboard, Node& node, RunsInLanes const& runs,
                 int body) const {
         node.append(segment, outboard);

@@ -50,7 +50,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         gather<Real>(work_.sweeps.forces, runs.next, next);
         Vector3 omega;
         PassedOn passed{next, {}, {}, Real(0)};
-        // Accelerations of first bodies, in the lanes in which other runs have bodies before them.
+        // Accelerations of the first bodies of shorter runs, kept until column 0 is reached.
         BodyAcceleration<Real> of_late;
         int part = parts_of_run;
         ask(runs, 0, -1);
@@ -109,6 +109,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         RunsInLanes const& runs;
         double* place;
 
+        /// Stores joint i and checks its pivot.
         void put(int i, ReleasedRevolute<Real> const& revolute) {
             double* const kept = of_revolute(i);
             int const further =
@@ -118,6 +119,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             store_vectors<Real>(kept, revolute);
             watch(i, revolute.inverse.not_positive());
         }
+        /// Stores joint i and the body outboard of it. The velocity bias is stored only if the
+        /// outward pass reads it.
         void put(int i, ReleasedRevolute<Real> const& revolute, BodyInRun<Real> const& body,
                  BodyAcceleration<Real> const& swing) {
             put(i, revolute);
@@ -129,6 +132,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         void put_omega(int i, Vector3 const& omega) {
             store_vectors<Real>(of_revolute(i) + at_omega, omega);
         }
+        /// Stores the axes of the last revolute joint, in the run's axes.
         void put_axes(Matrix3 const& axes) {
             store_vectors<Real>(place + met_numbers * lanes, axes);
         }
@@ -142,10 +146,13 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         Matrix3 axes() const { return load<Matrix3>(place + met_numbers * lanes); }
         Matrix3 orientation() const { return load<Matrix3>(place + at_orientation); }
+        /// Stores the end of the run and checks its pivots.
         void put(RunsEnd<Real> const& end) {
             store_vectors<Real>(place, end);
             for (int i = 0; i < 6; ++i) watch(count - 1, end.factor(i, i).not_positive());
         }
+        /// Returns joint i; with prefetching, it also prefetches a joint that follows in the
+        /// outward pass.
         ReleasedRevolute<Real> revolute(int i) const {
             double const* const kept = of_revolute(i);
             if (asks_ahead())
@@ -177,9 +184,12 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             return record;
         }
         bool asks_ahead() const { return all.work_.asks_ahead; }
+        /// Returns the storage of joint i and the body outboard of it.
         double* of_revolute(int i) const {
             return place + end_numbers * lanes + (i - 1) * numbers_of_revolute;
         }
+        /// Records pivot failures. Skipped columns and the first body of a lane's run have no joint
+        /// within the run.
         void watch(int i, unsigned bad) const {
             for (int j = 0; bad != 0 && j < lanes; ++j)
                 if (i <= runs.skipped[j]) bad &= ~(1U << j);
@@ -192,6 +202,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
       public:
         FollowedBodies(RevoluteRunsSideBySide& all, std::int64_t item)
             : all_(all), runs_(all.work_.runs[item]), kept_{all, runs_, all.place_of(item)} {}
+        /// Reads the first bodies and starts the recursion of the velocities.
         ArticulatedBody<Real> first() {
             all_.fill(runs_, 0, 1);
             all_.ask(runs_, 0, 1);
@@ -204,6 +215,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             state = {Quaternion<Real>{Real(1), Real(0), Real(0), Real(0)}, omega, body.inward2};
             return body;
         }
+        /// Returns body i in the run's axes with its velocity terms and external loads.
         LoadedBodyInRun<Real> next(int i) {
             if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
             all_.ask(runs_, i, 1);
@@ -216,6 +228,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             if (i >= count - 2 || all_.out_.by_all_bodies()) keep_omega(i);
             return body;
         }
+        /// Returns the last body in its own axes, with its velocity terms and all loads.
         ArticulatedBody<Real> last(int i) {
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
@@ -235,6 +248,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             kept_.put_omega(i, omega);
             return body;
         }
+        /// Returns the outboard handle of the last body but one.
         OutboardHandle<Real> before_last() {
             axes_ = turn_ *
                     axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
@@ -283,6 +297,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
     }
+    /// Returns the storage of an item's runs.
     double* place_of(std::int64_t item) const {
         return work_.nodes + item * kept_of_revolute_run * lanes;
     }
@@ -303,6 +318,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
                    ? read(in_tile().revolute_torque, Column<Real>{i % part_length})[0]
                    : Real(0);
     }
+    /// Adds the external loads on the bodies `here`. `from_ground` is the rotation matrix from W to
+    /// the axes of `torque` and `force`.
     void add_wrench(Column<Real> const& here, Matrix3 const& from_ground, Vector3& torque,
                     Vector3& force) const {
         if (!has_wrenches()) return;
@@ -353,6 +370,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         passed.torque = torque_about(i);
         return passed.force;
     }
+    /// Sets the velocity terms of body i from its angular velocity.
     void set_moving(RunsInLanes const& runs, int i, Vector3 const& omega,
                     RevoluteFrame<Real>& frame) const {
         bodies_.leaf.set_moving(bodies_.loads, Column<Real>{i % part_length}, omega, frame);

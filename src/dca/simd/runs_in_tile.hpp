@@ -166,6 +166,7 @@ class RunsInTile {
     RunWork<Leaf> const& work_;
 
   private:
+    /// Returns the constants of part p of the runs.
     double const* constants(RunsInLanes const& runs, int p) const {
         return work_.constants + ((&runs - work_.runs) * parts_of_run + p) *
                                      (constants_of<Leaf> * part_length * lanes);
@@ -175,6 +176,7 @@ class RunsInTile {
         return way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force ? in_tile_.on_way_back
                                                                         : tile_.count();
     }
+    // Whole runs of beads, otherwise single parts.
     Tile<Real, by_runs ? longest_run : part_length> tile_;
     BodiesInTile<Real, Leaf> in_tile_;
 

@@ -50,8 +50,9 @@ constexpr std::size_t few_merges = 3;
 }  // namespace
 
 bool asks_ahead(ChainGroup const& group) {
-    // Measured with a cache of 32 MiB: without prefetching, 16,384 bodies take a tenth less time,
-    // 32,768 bodies half as much again.
+    // Estimated bytes per body and per bead, and bytes that stay in the caches. Measured with a
+    // cache of 32 MiB: without prefetching, 16,384 bodies take a tenth less time, 32,768 bodies
+    // half as much again.
     constexpr std::int64_t of_body = 1200, of_bead = 300, kept = std::int64_t{24} << 20;
     return group.size * (group.beads ? of_bead : of_body) > kept;
 }
@@ -72,6 +73,7 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, RunsTaken const& 
         }
         RunsInLanes& item = dealt.items.back();
         int const skipped = static_cast<int>(longest_run - run.count);
+        // The first run of an item fills all lanes, so that free lanes repeat it.
         for (int j = lane; j < (lane == 0 ? lanes : lane + 1); ++j) {
             item.body[j] = run.body, item.slot[j] = run.slot, item.next[j] = run.next;
             item.column[j] = run.body - skipped, item.skipped[j] = skipped;
@@ -94,6 +96,8 @@ std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
         LevelDealtOut& dealt = all.emplace_back(LevelDealtOut{{}, {{}}});
         std::vector<Merge> alike;
         for (Merge const& m : level) {
+            // Merges in vectors require that the rest of the program rounds as vectors do.
+            // Otherwise the distribution to ranks could change the results.
             bool const goes =
                 rounds_as_vectors() &&
                 group.restricted_of_joint[static_cast<std::size_t>(m.joint)] == group.directions;

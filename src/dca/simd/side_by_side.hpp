@@ -123,7 +123,9 @@ class SideBySide {
         for (LevelDealtOut const& l : levels_)
             merge_nodes_.emplace_back(std::ssize(l.items) * node_numbers<Leaf::K> * lanes_);
     }
+    /// Returns the number of vectors of runs.
     std::int64_t items() const { return std::ssize(runs_.items); }
+    /// Returns the runs that are processed one by one.
     std::vector<Run> const& other_runs() const { return runs_.others; }
     std::vector<LevelDealtOut> const& levels() const { return levels_; }
     /// Returns the memory in bytes.

@@ -120,11 +120,13 @@ class Tile {
         written_ += D;
         return here;
     }
+    /// Registers a view of K directions to be read.
     template <int K>
     ConstDirectionsView in_directions(ConstDirectionsView view) {
         ConstView<K> const here = in(ConstView<K>{view.origin, view.pitch, 0});
         return {here.origin, here.pitch};
     }
+    /// Registers a view of K directions to be written.
     template <int K>
     DirectionsView out_directions(DirectionsView view) {
         View<K> const here = out(View<K>{view.origin, view.pitch, 0});
@@ -190,9 +192,11 @@ class Tile {
     }
 
   private:
+    // Storage: the numbers to be read are at the beginning, those to be written at the end.
     static constexpr std::int64_t pitch = columns * lanes;
     static constexpr int line_of(int i) { return i / numbers_of_line * numbers_of_line; }
     double* place(int n) { return numbers_ + n * pitch + lanes; }
+    // A number to be read from its field.
     struct Source {
         double const* origin;
         bool neighbours;

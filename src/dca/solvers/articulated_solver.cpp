@@ -4,6 +4,7 @@
 
 namespace catena::dca {
 
+/// Returns the host solver of bodies held at their inboard joints.
 std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const& group,
                                                      Executor const& executor,
                                                      Communicator const& communicator) {

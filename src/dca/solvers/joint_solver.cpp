@@ -4,6 +4,7 @@
 namespace catena {
 namespace dca {
 
+// Host solvers that are compiled in other files of this folder.
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Executor const&,
                                               Communicator const&);
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor const&,
@@ -25,6 +26,7 @@ std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor
 }  // namespace
 }  // namespace dca
 
+/// Selects the host solver by handles, coordinates and number of directions.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
     if (group.handles == Handles::articulated)

@@ -26,11 +26,14 @@ class TreeSolver final : public ChainSolver {
     using OfBiases = typename SweepsOf<Leaf>::OfBiases;
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
+    // True if evaluations compute runs on revolute joints by articulated-body inertias.
     static constexpr bool takes_runs_whole = requires { requires Leaf::by_inertia; };
+    // True if runs of this leaf can be processed side by side in the vectors of this Space.
     static constexpr bool has_lanes =
         goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
 
   public:
+    /// Allocates all arrays. The group and the communicator must outlive the solver.
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
           schedule_(group.schedule),
@@ -70,6 +73,8 @@ class TreeSolver final : public ChainSolver {
         }
     }
 
+    /// Matrix sweep: own trees first, then the exchange of shared units, then the top of shared
+    /// chains.
     void assemble_matrices(ConfigurationView const& configuration) override {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
@@ -85,12 +90,14 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
+    /// Bias sweep with the matrices assembled last; may be repeated.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         Stopwatch const watch(*this, report_.bias_seconds);
         up_and_down(tree_, OfBiases{sweeps_, loads, out}, of_biases(), out);
         ++report_.bias_sweeps;
     }
 
+    /// One evaluation: a fused sweep if at_once(), otherwise a matrix sweep and a bias sweep.
     void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads,
                             AccelerationsView const& out) override {
         if constexpr (Leaf::projected)
@@ -102,10 +109,13 @@ class TreeSolver final : public ChainSolver {
     bool at_once() const override {
         return Leaf::projected && group_.partition.trees.front().run_length > 1;
     }
+    /// True if evaluations compute runs by articulated-body inertias and all joints but those of
+    /// chains' first bodies are revolute.
     bool goes_by_revolutes() const override {
         return takes_runs_whole && at_once() && group_.revolute;
     }
     bool has_runs_side_by_side() const override { return aside_.has_value(); }
+    /// Times evaluations; shared units may make them depend on work of the host.
     std::vector<double> time_evaluations(ConfigurationView const& configuration,
                                          LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
@@ -113,6 +123,8 @@ class TreeSolver final : public ChainSolver {
                                    [&] { assemble_and_solve(configuration, loads, out); });
     }
 
+    /// Computes entries of T^-1 from the roots to the leaves (InverseSweep). The leaves must be
+    /// links.
     void invert(InverseView const& out) override {
         if constexpr (Space::answers_at_once && std::is_same_v<Sweeps, TreeSweeps<Leaf>>) {
             if (!inverse_) inverse_.emplace(schedule_);
@@ -127,10 +139,9 @@ class TreeSolver final : public ChainSolver {
             each(schedule_.roots);
             each_level(schedule_.levels);
             each(schedule_.runs);
+            // Returns the pivot of a joint; its inverse is 0 if nothing is restricted there.
             auto const pivot = [this](std::int64_t joint) {
-                double const inverse =
-                    // This pivot is 0 where nothing is restricted.
-                    sweeps_.joints.load(joint).factor(0, 0);
+                double const inverse = sweeps_.joints.load(joint).factor(0, 0);
                 return inverse != 0 ? 1 / inverse : 1.0;
             };
             space_.for_each(group_.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
@@ -157,15 +168,19 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
+    /// Throws if a pivot failure was found, and resets the record of failures.
     void check() override {
         unsigned long long const bad = space_.get(lost_.data());
         if (bad == none_lost) return;
         space_.put(lost_.data(), none_lost);
         refuse_indefinite(group_, communicator_.rank(), static_cast<std::int64_t>(bad));
     }
+    /// Waits until all work of the Space is complete.
     void wait() override { space_.wait(); }
     void measure(bool on) override { measured_ = on; }
 
+    /// Returns the statistics, with the size of the arrays and the run length and depth of the
+    /// tree.
     SolverReport report() const override {
         SolverReport r = report_;
         add_tree(group_, communicator_, r);
@@ -181,6 +196,7 @@ class TreeSolver final : public ChainSolver {
     }
 
   private:
+    // Value of `lost_` without a pivot failure.
     static constexpr unsigned long long none_lost = ~0ULL;
 
     /// Builds the trees of everything that is not processed side by side: runs, one level after the
@@ -194,6 +210,7 @@ class TreeSolver final : public ChainSolver {
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
         add(no_runs_, no_levels_, schedule_.roots);
     }
+    /// Returns the blocks of whole chains; they are made on the first call.
     typename Space::Blocks const& blocks() {
         if (!blocks_) blocks_.emplace(group_);
         return *blocks_;
@@ -286,11 +303,13 @@ class TreeSolver final : public ChainSolver {
             space_.climb_and_descend(top_, sweep);
             space_.descend(tree, sweep);
         }
+        // The neighbour rank needs the force of the joint between the two ranks' bodies.
         if (out.joint_force && group_.neighbour_outboard >= 0)
             space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo,
                                                        schedule_.bodies});
     }
 
+    // Numbers of a shared unit's record when matrices and biases are exchanged together.
     using NumbersOfSegments = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
     // Exchange of shared units and the numbers of the records to be exchanged.
     template <class Numbers>
@@ -307,10 +326,12 @@ class TreeSolver final : public ChainSolver {
         if (measured_) space_.wait();
         report_.exchange_seconds += seconds_now() - start;
     }
+    /// Returns the exchange of the matrices of shared units.
     Shown<RecordNumbers<typename Sweeps::Matrices>> of_matrices() {
         return {shown_matrices_,
                 {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
     }
+    /// Returns the exchange of the biases of shared units.
     Shown<RecordNumbers<typename Sweeps::Biases>> of_biases() {
         return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
     }
@@ -325,24 +346,32 @@ class TreeSolver final : public ChainSolver {
     Space space_;
     Communicator const& communicator_;
     typename Space::Model model_;
+    // Empty lists for trees without runs, merges or roots.
     std::vector<Run> no_runs_;
     std::vector<std::vector<Merge>> no_levels_;
     std::vector<Root> no_roots_;
+    // Tree of the chains' parts on this rank, and the top of shared chains.
     typename Space::Tree tree_, top_;
     // Tree of evaluations that compute runs on revolute joints by articulated-body inertias.
     std::optional<typename Space::Tree> whole_runs_;
+    // Segments, indexed by slot.
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
+    // Nodes and states, indexed by joint.
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
     FrontierExchange<Space> shown_matrices_, shown_biases_;
     // Exchange of the fused sweep, if evaluations use it.
     std::optional<FrontierExchange<Space>> shown_both_;
+    // Smallest joint with a pivot failure, or none_lost.
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
+    // Made on first use or only if needed: blocks of whole chains, and runs and merges that are
+    // processed side by side.
     std::optional<typename Space::Blocks> blocks_;
     std::optional<SideBySide<Leaf>> aside_;
+    // Trees of everything that is not processed side by side, see lay_out_rest().
     std::vector<typename Space::Tree> rest_;
     /// Arrays of InverseSweep; allocated when invert() is called.
     struct Inverse {
