@@ -1,43 +1,49 @@
-// Articulated handles: bodies and runs of them with the joint they hang on, held at its inboard
-// side and free at handle 2, host and device.
+// Articulated handles, host and device: a body or a run, together with its inboard joint, is held
+// at that joint's inboard side and free at handle 2.
 //
-// Mobilities (segment.hpp) belong to runs that float: where a light body hangs between heavy ones,
-// or revolute joints are nearly parallel, what two of them have in common is large and cancels when
-// they are joined. Here the inboard side is held, as in the articulated-body algorithm
-// (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.3), and runs are joined by sums of
-// positive semidefinite matrices (Redheffer's star product; in estimation Sarkka and
-// Garcia-Fernandez, IEEE Trans. Autom. Control 66, 2021, Lemma 8). A light last body makes handle 2
-// mobile out of all proportion along what its joint leaves free: that part is kept apart, and each
-// joint's directions are turned until it lies along the first of them, so that it hides nothing.
+// Mobilities (segment.hpp) belong to runs that float. Where a light body hangs between heavy ones,
+// or revolute joints are nearly parallel, two runs have large mobilities in common that cancel when
+// the runs are merged.
+//
+// Here the inboard side is held, as in the articulated-body algorithm (Featherstone, Rigid Body
+// Dynamics Algorithms, 2008, section 7.3). Runs are merged by sums of positive semidefinite
+// matrices (Redheffer's star product; in estimation Sarkka and Garcia-Fernandez, IEEE Trans. Autom.
+// Control 66, 2021, Lemma 8).
+//
+// A light last body makes handle 2 extremely mobile along the free directions of its joint. This
+// part of the mobility, `tip`, is stored apart. The directions of each joint are rotated until
+// `tip` lies along the first of them, so that its rounding errors stay out of the other directions.
 #pragma once
 
 #include "dca/segment.hpp"
 
 namespace catena::dca {
 
-/// A run from its first joint's inboard side, which has acceleration a1 there, to handle 2 of its
+/// A run between its first joint's inboard side, which has acceleration a1, and handle 2 of its
 /// last body, on which force f2 acts:
-///   f1 = inertia a1 - carry^T f2 + p,   a2 = carry a1 + (tip tip^T + rest rest^T) f2 + e + tip w,
-/// f1 the force of the first joint on the run. `tip`: by the last body's own joint; `rest`: by the
-/// others. Along the directions of the joints; what the first joint does not restrict of `inertia`
-/// and `carry` is 0.
+///   f1 = inertia a1 - carry^T f2 + p,   a2 = carry a1 + (tip tip^T + rest rest^T) f2 + e + tip w.
+/// Here f1 is the force of the first joint on the run. The last body's own joint contributes `tip`,
+/// the other joints contribute `rest`. All are along the directions of the joints. Entries of
+/// `inertia` and `carry` along free directions of the first joint are 0.
 template <class Real, int K>
 struct ArticulatedMatrix {
     Symmetric<Real, K> inertia;
     Matrix<Real, K, K> carry, tip, rest;
 };
+/// Bias terms p, e and w of the equations of ArticulatedMatrix.
 template <class Real, int K>
 struct ArticulatedBias {
     Vector<Real, K> p, e, w;
 };
 
-/// A = P^-1 L U with partial pivoting, L and U in one matrix. (Products with an inverse would lose
-/// what pivoting keeps.)
+/// LU factorization with partial pivoting, A = P^-1 L U, with L and U in one matrix. Products with
+/// an explicit inverse would lose the digits that pivoting preserves.
 template <class Real, int K>
 struct LuFactor {
     Matrix<Real, K, K> lu;
-    Vector<Real, K> row;  // row i of P A is row[i] of A
+    Vector<Real, K> row;  // Row i of P A is row row[i] of A.
 };
+/// Returns the LU factorization of `a`. The caller checks the pivots lu(i, i) for zeros.
 template <class Real, int K>
 CATENA_HD_APART LuFactor<Real, K> lu_of(Matrix<Real, K, K> const& a) {
     using std::fabs;
@@ -64,7 +70,7 @@ CATENA_HD_APART LuFactor<Real, K> lu_of(Matrix<Real, K, K> const& a) {
     }
     return f;
 }
-/// A^-1 b
+/// Returns A^-1 b.
 template <class Real, int K>
 CATENA_HD_APART Vector<Real, K> solve(LuFactor<Real, K> const& f, Vector<Real, K> const& b) {
     Vector<Real, K> x;
@@ -78,7 +84,7 @@ CATENA_HD_APART Vector<Real, K> solve(LuFactor<Real, K> const& f, Vector<Real, K
     }
     return x;
 }
-/// A^-T b
+/// Returns A^-T b.
 template <class Real, int K>
 CATENA_HD_APART Vector<Real, K> solve_transposed(LuFactor<Real, K> const& f, Vector<Real, K> b) {
     for (int i = 0; i < K; ++i) {
@@ -92,16 +98,18 @@ CATENA_HD_APART Vector<Real, K> solve_transposed(LuFactor<Real, K> const& f, Vec
     return x;
 }
 
-/// Orthonormal `turn` of the leading `rows` directions for which turn a = upper is upper triangular
-/// in columns order[0], order[1], ..., `rank` of them, and 0 in the others: by Householder's
-/// reflections, each of the largest column that is left (Golub and Van Loan, Matrix Computations,
-/// 2013, section 5.4.2). Not `with_turn`: `turn` stays 1.
+/// Triangular form of a matrix under an orthonormal transformation of its leading `rows`
+/// directions: turn a = upper. `upper` is upper triangular in the columns order[0], order[1], ...,
+/// `rank` of them, and 0 in the others. Householder reflections with column pivoting compute it
+/// (Golub and Van Loan, Matrix Computations, 2013, section 5.4.2). Without `with_turn`, `turn`
+/// stays the identity.
 template <class Real, int K, int N>
 struct Turned {
     Matrix<Real, K, K> turn;
     Matrix<Real, K, N> upper;
     int order[N], rank;
 };
+/// Returns the triangular form of `a` with respect to its leading `rows` rows.
 template <bool with_turn = true, class Real, int K, int N>
 CATENA_HD_APART Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int rows) {
     using std::sqrt;
@@ -140,12 +148,12 @@ CATENA_HD_APART Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int row
     return t;
 }
 
-/// How many times the terms of another formula a formula's must be for the other one to be taken:
-/// below, both are as good.
+/// Ratio of the terms of two formulas from which on the formula with the smaller terms is used.
+/// Below it, both are equally accurate.
 inline constexpr double far_larger = 64;
 
-/// A power of two within a factor of two of 1 / sqrt(x), or 1 where x is no positive finite number:
-/// scaling by it is free of rounding.
+/// Returns a power of two within a factor of two of 1 / sqrt(x), or 1 if x is not a positive finite
+/// number. Scaling by it causes no rounding.
 template <class Real>
 CATENA_HD Real unit_of(Real x) {
     using std::frexp;
@@ -156,32 +164,33 @@ CATENA_HD Real unit_of(Real x) {
     return ldexp(Real(1), -(exponent / 2));
 }
 
-/// Two runs that meet at the outboard one's first joint, in directions of its own: each of the
-/// joint's in a unit in which the outboard run's inertia is about 1 (lengths and angles must not be
-/// mixed as they come), then turned.
+/// Two runs that meet at the outboard run's first joint, in scaled and rotated directions of that
+/// joint. Each direction is first scaled so that the outboard run's inertia along it is about 1;
+/// otherwise lengths and angles would be mixed in arbitrary units. Then the directions are rotated.
 template <class Real, int K>
 struct ArticulatedJoint {
-    Matrix<Real, K, K> motion, force;  // of accelerations and forces to these directions
-    Matrix<Real, K, K> tip;            // of the inboard run
-    LuFactor<Real, K> factor;          // of 1 + mobility inertia
-    Symmetric<Real, K> mobility,
-        inertia;  // of the inboard run's handle 2, tip and all; of the outboard run
-    Matrix<Real, K, K> inboard, outboard;  // their `carry`
+    // Transformations of accelerations and forces to these directions.
+    Matrix<Real, K, K> motion, force;
+    Matrix<Real, K, K> tip;    // Matrix `tip` of the inboard run.
+    LuFactor<Real, K> factor;  // Factorization of 1 + mobility inertia.
+    // Mobility of the inboard run's handle 2, `tip` included, and inertia of the outboard run.
+    Symmetric<Real, K> mobility, inertia;
+    Matrix<Real, K, K> inboard, outboard;  // Matrices `carry` of the inboard and the outboard run.
 };
-/// Acceleration of the joint's inboard side and its force where none comes from the joined run's
-/// ends, turned.
+/// Acceleration of the joint's inboard side and the joint's force in the transformed directions, if
+/// the ends of the merged run contribute nothing.
 template <class Real, int K>
 struct ArticulatedOffset {
     Vector<Real, K> acceleration, force;
 };
-/// What is known at a joint on the way down: acceleration of its inboard side and its force on the
+/// State of a joint in the outward pass: acceleration of its inboard side and its force on the
 /// outboard body.
 template <class Real, int K>
 struct HandleState {
     Vector<Real, K> acceleration, force;
 };
 
-/// a + s, s the symmetric part of m.
+/// Returns a + (m + m^T) / 2.
 template <class Real, int K>
 CATENA_HD Symmetric<Real, K> plus_symmetric_part(Symmetric<Real, K> a,
                                                  Matrix<Real, K, K> const& m) {
@@ -190,9 +199,9 @@ CATENA_HD Symmetric<Real, K> plus_symmetric_part(Symmetric<Real, K> a,
     return a;
 }
 
-/// r with r r^T = s, by Cholesky's factorisation from the largest entry on the diagonal down.
-/// Precondition: s positive semidefinite, to rounding; what is left when none is above 0 is taken
-/// for that.
+/// Returns r with r r^T = s, by Cholesky factorization with diagonal pivoting. Precondition: s is
+/// positive semidefinite up to rounding. The remainder is dropped when no positive diagonal entry
+/// is left.
 template <class Real, int K>
 CATENA_HD_APART Matrix<Real, K, K> root_of(Symmetric<Real, K> s) {
     using std::sqrt;
@@ -216,7 +225,7 @@ CATENA_HD_APART Matrix<Real, K, K> root_of(Symmetric<Real, K> s) {
     return r;
 }
 
-/// r with r r^T = a a^T + b b^T
+/// Returns r with r r^T = a a^T + b b^T.
 template <class Real, int K>
 CATENA_HD_APART Matrix<Real, K, K> root_of_sum(Matrix<Real, K, K> const& a,
                                                Matrix<Real, K, K> const& b) {
@@ -233,7 +242,8 @@ CATENA_HD_APART Matrix<Real, K, K> root_of_sum(Matrix<Real, K, K> const& a,
     return r;
 }
 
-/// The joined run.
+/// Merges two runs at a joint with `restricted` restricted directions. Returns the matrices of the
+/// merged run; `joint` gets what the biases and the outward pass need.
 template <class Real, int K>
 CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const& inboard,
                                                 ArticulatedMatrix<Real, K> const& outboard,
@@ -276,8 +286,9 @@ CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const
         joint.outboard * carried, outboard.tip,
         root_of_sum(outboard.rest, joint.outboard * root_of(plus_symmetric_part(none, yielding)))};
 }
-/// Forces of two formulas for one vector, direction by direction: `second` where its terms are far
-/// smaller. Where both are alike the bits are those of `first`.
+/// Chooses between two formulas for the same vector, direction by direction: `second` where its
+/// terms are far smaller (far_larger), otherwise `first`. Equally accurate results thus have the
+/// bits of `first`.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> by_smaller_terms(Vector<Real, K> first, Vector<Real, K> const& of_first,
                                            Vector<Real, K> const& second,
@@ -286,19 +297,22 @@ CATENA_HD Vector<Real, K> by_smaller_terms(Vector<Real, K> first, Vector<Real, K
         if (Real(far_larger) * of_second[i] < of_first[i]) first[i] = second[i];
     return first;
 }
-/// The joint's force where none comes from the joined run's ends, from what is apart there, `e`,
-/// the outboard run's `p` and the acceleration `a` found. By the factor forces along the tip's
-/// direction keep their digits; inertia times acceleration has smaller terms where a mobile last
-/// body, accelerated by much, is held by a heavy run: there the factor's are as large as if the
-/// body moved freely.
+/// Returns the joint's force if the ends of the merged run contribute nothing. `e` is the
+/// acceleration of the inboard run at the joint while no force acts there, `p` the outboard run's
+/// bias and `a` the acceleration found.
+///
+/// The formula by the factor keeps the digits of forces along the tip's direction. Inertia times
+/// acceleration has smaller terms where a heavy run holds a mobile last body that accelerates
+/// strongly. There the factor's terms are as large as if the body moved freely.
 template <class Real, int K>
 CATENA_HD_APART Vector<Real, K> force_at(ArticulatedJoint<Real, K> const& joint,
                                          Vector<Real, K> const& e, Vector<Real, K> const& p,
                                          Vector<Real, K> const& a) {
     using std::fabs;
     Matrix<Real, K, K> const& lu = joint.factor.lu;
-    Vector<Real, K> of_sum, of_factor,
-        by_row;  // sizes of the terms; of_factor: in rows of the factor
+    // Sizes of the terms; `of_factor` and `by_row` are those of the factor, in its own and in the
+    // original row order.
+    Vector<Real, K> of_sum, of_factor, by_row;
     for (int i = 0; i < K; ++i) {
         of_sum[i] = of_factor[i] = fabs(p[i]);
         for (int j = 0; j < K; ++j) {
@@ -317,6 +331,7 @@ CATENA_HD_APART Vector<Real, K> force_at(ArticulatedJoint<Real, K> const& joint,
     return by_smaller_terms(solve_transposed(joint.factor, joint.inertia * e + p), by_row,
                             joint.inertia * a + p, of_sum);
 }
+/// Merges the biases of two runs at `joint`. `offset` gets what the outward pass needs.
 template <class Real, int K>
 CATENA_HD_APART ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& inboard,
                                               ArticulatedBias<Real, K> const& outboard,
@@ -329,7 +344,7 @@ CATENA_HD_APART ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& in
     return {inboard.p + transposed_times(joint.inboard, offset.force),
             joint.outboard * offset.acceleration + outboard.e, outboard.w};
 }
-/// The joint's state from those at the joined run's two ends.
+/// Returns the joint's state from those at the merged run's two ends.
 template <class Real, int K>
 CATENA_HD_APART HandleState<Real, K> state_between(ArticulatedJoint<Real, K> const& joint,
                                                    ArticulatedOffset<Real, K> const& offset,
@@ -343,14 +358,15 @@ CATENA_HD_APART HandleState<Real, K> state_between(ArticulatedJoint<Real, K> con
     return {transposed_times(joint.force, a), transposed_times(joint.motion, f)};
 }
 
-/// Direction i of a body, released: its row of the inertia and its column of `carry` before.
+/// Released direction i of a body: row i of its inertia and column i of `carry` before the release.
+/// `own` is inertia(i, i).
 template <class Real>
 struct ReleasedDirection {
     Vector<Real, 6> inertia, carry;
     Real own;
 };
-/// Of a body that was held in direction i of its inboard joint: no force acts along it from here
-/// on. Precondition: inertia(i, i) > 0.
+/// Releases direction i of a body's inboard joint: no force acts along it from here on.
+/// Precondition: inertia(i, i) > 0.
 template <class Real>
 CATENA_HD_APART ReleasedDirection<Real> release(int i, ArticulatedMatrix<Real, 6>& body) {
     using std::sqrt;
@@ -367,6 +383,7 @@ CATENA_HD_APART ReleasedDirection<Real> release(int i, ArticulatedMatrix<Real, 6
     }
     return r;
 }
+/// Releases the same direction in the body's bias.
 template <class Real>
 CATENA_HD void release(int i, ReleasedDirection<Real> const& r, ArticulatedBias<Real, 6>& body) {
     using std::sqrt;
@@ -375,8 +392,8 @@ CATENA_HD void release(int i, ReleasedDirection<Real> const& r, ArticulatedBias<
         body.p[j] = j == i ? Real(0) : less_product(rate, r.inertia[j], body.p[j]);
     body.w[i] = -bias / sqrt(r.own);
 }
-/// |linear parts| |linear parts| + |angular parts| |angular parts|: of an acceleration and a force,
-/// whatever the axes.
+/// Returns |linear parts| |linear parts| + |angular parts| |angular parts| of an acceleration and a
+/// force. The value does not depend on the axes.
 template <class Real>
 CATENA_HD Real product_of_sizes(Vector<Real, 6> const& a, Vector<Real, 6> const& f) {
     using std::sqrt;
@@ -388,15 +405,19 @@ CATENA_HD Real product_of_sizes(Vector<Real, 6> const& a, Vector<Real, 6> const&
     }
     return sum;
 }
-/// Accelerations of a body along the six directions of its inboard joint, from the states of its
-/// two joints and how many directions either restricts. `body`, `bias`: with its free directions
-/// released, which `released` holds. What these contribute is found from the force at handle 2 or
-/// from the acceleration there: a light body between heavy ones is told by the latter alone. Taken
-/// is, direction by direction, whichever has the smaller terms for the roundings to go by: `size`
-/// those of the force, `terms` over the pivot those of the acceleration, with the largest pivot's,
-/// whose roundings the others carry. A force that is small along a direction of the joint may be
-/// what other directions' roundings left of it: where `whole`, its terms in no particular
-/// directions, is far larger, the acceleration is taken too.
+/// Returns the accelerations of a body along the six directions of its inboard joint, from the
+/// states of its two joints and the number of directions that each restricts. The free directions
+/// of `body` and `bias` have been released; `released` holds them.
+///
+/// The contribution of a free direction follows from the force at handle 2 or from the acceleration
+/// there. Only the acceleration determines a light body between heavy ones. In each direction the
+/// formula with the smaller terms is used, because its roundings are smaller: `size` bounds those
+/// of the force, `terms` over the pivot those of the acceleration. `terms` includes the largest
+/// pivot's terms, whose roundings reach the other rows.
+///
+/// A force that is small along a joint's direction may consist of roundings of other directions.
+/// Where `whole`, the size of its terms regardless of directions, is far larger, the acceleration
+/// is used too.
 template <class Real>
 CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& body,
                                               ArticulatedBias<Real, 6> const& bias,
@@ -431,8 +452,8 @@ CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& 
                               fabs(outboard.acceleration[j]) + fabs(by_inboard[j]), terms);
         }
         Real const pivot = turned.upper(i, at), found = sum / pivot;
-        terms = fused(fabs(turned.upper(0, turned.order[0])), fabs(found),
-                      terms);  // the pivot's own rounding
+        // The pivot's own rounding counts too.
+        terms = fused(fabs(turned.upper(0, turned.order[0])), fabs(found), terms);
         if (terms < fabs(pivot) * size[at] || Real(far_larger) * terms < fabs(pivot) * whole[at])
             z[at] = found;
     }

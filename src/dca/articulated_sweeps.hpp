@@ -1,5 +1,5 @@
-// The sweeps of articulated handles over the canonical tree, as tree_sweeps.hpp describes sweeps,
-// for open chains in joint coordinates.
+// The sweeps of articulated handles over the canonical tree (articulated.hpp), for open chains in
+// joint coordinates. They have the interface described in tree_sweeps.hpp.
 #pragma once
 
 #include "dca/articulated.hpp"
@@ -7,7 +7,8 @@
 
 namespace catena::dca {
 
-/// One body with its inboard joint. `sliding`: some joint is prismatic or helical.
+/// Leaf of articulated handles: one body with its inboard joint. `sliding`: some joint is prismatic
+/// or helical.
 template <bool sliding>
 class ArticulatedLeaf {
   public:
@@ -20,14 +21,16 @@ class ArticulatedLeaf {
     void set(ConfigurationView const& c) { frames_.set(c); }
     CATENA_HD GroupView const& group() const { return group_; }
 
-    /// A body held at its inboard joint in every direction, and what its handles see.
+    /// A body held at its inboard joint in every direction, with its handles.
     struct Held {
         typename JointFrameHandles<K, sliding>::template State<double> state;
         HandlePair<Handle<double, K, sliding>> handles;
-        Matrix<double, 3, K> turning,
-            shifting;  // angular acceleration and that of the centre for each direction of handle 1
+        // Angular acceleration, and linear acceleration of the centre of mass, for a unit
+        // acceleration along each direction of handle 1; B.
+        Matrix<double, 3, K> turning, shifting;
         Matrix6 matrix;
     };
+    /// Returns body k held at its inboard joint.
     CATENA_HD_APART Held held(std::int64_t k) const {
         Held b{frames_.state(k), {}, {}, {}, {}};
         b.handles = frames_.handles(b.state, k, to_matrix(as_quaternion(b.state.rotation)));
@@ -53,7 +56,8 @@ class ArticulatedLeaf {
                 j, along(b.handles.h2, b.turning.column(j), b.shifting.column(j)));
         return b;
     }
-    /// With the directions that the joint leaves free released.
+    /// Returns the matrices of body k with the free directions of its joint released. Adds a pivot
+    /// failure to `found`.
     CATENA_HD_APART Matrix6 matrix(std::int64_t k, int restricted, PivotFailure& found) const {
         Matrix6 m = held(k).matrix;
         for (int i = K - 1; i >= restricted; --i) {
@@ -62,9 +66,11 @@ class ArticulatedLeaf {
         }
         return m;
     }
+    /// Returns the bias of body k with the free directions of its joint released.
     CATENA_HD Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const {
         return released(loads, k, restricted).bias;
     }
+    /// Writes the accelerations of body k from the states of its two joints, if they are requested.
     CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted,
                               HandleState<double, K> const& inboard, int restricted_outboard,
                               HandleState<double, K> const& outboard,
@@ -79,9 +85,10 @@ class ArticulatedLeaf {
     }
 
   private:
+    // A body with the free directions of its joint released.
     struct Released {
         Held body;
-        Vec6 closure;  // velocity terms of the joint and of handle 1
+        Vec6 closure;  // Velocity terms of the joint and of handle 1.
         Bias6 bias;
         ReleasedDirection<double> direction[K];
     };
@@ -105,7 +112,7 @@ class ArticulatedLeaf {
         }
         return r;
     }
-    /// As turn_to_screw.
+    /// Combines directions 2 and 5 as turn_to_screw() does.
     CATENA_HD static void mix(Vec3 const& screw, Held& b) {
         auto const each = [&](Matrix<double, 3, K>& m) {
             Vec3 const linear = m.column(2), angular = m.column(5);
@@ -119,6 +126,7 @@ class ArticulatedLeaf {
     JointFrameHandles<K, sliding> frames_;
 };
 
+/// The arrays of the articulated sweeps, with the members of TreeSweeps.
 template <class Leaf>
 struct ArticulatedSweeps {
     static constexpr int K = Leaf::K;
@@ -130,32 +138,37 @@ struct ArticulatedSweeps {
     static constexpr StageRecords in_stage{
         static_cast<int>((sizeof(Matrices) + sizeof(Biases)) / sizeof(double)),
         static_cast<int>(sizeof(State) / sizeof(double)), 128};
+    // Data of a joint that the outward pass needs.
     struct Node {
         Joint joint;
         Offset offset;
     };
 
     Leaf leaf;
-    std::uint8_t const* restricted = nullptr;      // as TreeSweeps
-    RecordsView<Matrices, Order::plain> matrices;  // by slot
+    // Number of restricted directions of every joint, as in TreeSweeps.
+    std::uint8_t const* restricted = nullptr;
+    RecordsView<Matrices, Order::plain> matrices;  // Indexed by slot.
     RecordsView<Biases, Order::plain> biases;
-    RecordsView<Joint, Order::by_body> joints;  // by joint
+    RecordsView<Joint, Order::by_body> joints;  // Indexed by joint.
     RecordsView<Offset, Order::by_body> offsets;
     RecordsView<State, Order::by_body> forces;
     unsigned long long* lost = nullptr;
 
+    /// Returns the size of the arrays for a schedule, in bytes.
     static std::int64_t bytes(Schedule const& schedule) {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
                schedule.joints *
                    static_cast<std::int64_t>(sizeof(Joint) + sizeof(Offset) + sizeof(State));
     }
     CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
+    /// Reports a pivot failure to `lost`.
     CATENA_HD void note(PivotFailure const& found) const {
         if (found.joint != PivotFailure{}.joint) lower_to(lost, found.joint);
     }
     CATENA_HD_APART Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
 };
 
+/// The matrix sweep: matrices of every run and joint.
 template <class Leaf>
 struct ArticulatedMatrixSweep {
     static constexpr bool descends = false, keeps_nodes = false, goes_short = false;
@@ -165,6 +178,7 @@ struct ArticulatedMatrixSweep {
     Sweeps s;
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the matrices of part p and stores the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         PivotFailure found;
         std::int64_t const begin = begin_of(run, p);
@@ -174,6 +188,7 @@ struct ArticulatedMatrixSweep {
         s.note(found);
         return segment;
     }
+    /// Returns the merged matrices and stores their joint.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard,
                              JointAt const& at) const {
         PivotFailure found;
@@ -195,11 +210,12 @@ struct ArticulatedMatrixSweep {
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
         s.matrices.store(slot, segment);
     }
+    /// Does nothing: chains are open, and the first joint's state follows from the biases.
     CATENA_HD void close(Root const& /*root*/, Segment const& /*whole*/) const {}
 };
 
-/// Biases, then the joints' states and accelerations, with the matrices assembled last. Bodies are
-/// computed anew rather than kept.
+/// The bias sweep: biases, then the joints' states and accelerations, with the matrices assembled
+/// last. Bodies are computed again rather than stored.
 template <class Leaf>
 struct ArticulatedBiasSweep {
     static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
@@ -214,6 +230,7 @@ struct ArticulatedBiasSweep {
     AccelerationsView out;
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the bias of part p and stores the offsets of the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.bias(loads, begin, s.restricted[begin]);
@@ -221,6 +238,7 @@ struct ArticulatedBiasSweep {
             segment = joined(segment, s.leaf.bias(loads, k, s.restricted[k]), s.at(k));
         return segment;
     }
+    /// Returns the merged bias and stores the joint's offset.
     CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard,
                                    JointAt const& at) const {
         typename Sweeps::Offset offset;
@@ -232,15 +250,18 @@ struct ArticulatedBiasSweep {
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
         s.biases.store(slot, segment);
     }
-    /// The ground's acceleration stands in the biases of the joints to it, and at a free tip there
-    /// is no force.
+    /// Computes the state of the first joint. The ground's acceleration is contained in the biases
+    /// of the joints to it, and at a free tip there is no force.
     CATENA_HD void close(Root const& root, Segment const& whole) const {
         s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p});
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
+    /// Returns the state of an eliminated joint from those at its run's two ends.
     CATENA_HD State force(Node const& node, State const& first, State const& next) const {
         return state_between(node.joint, node.offset, first, next);
     }
+    /// Outward pass of part p from the states at its two ends: writes joint forces and
+    /// accelerations.
     template <bool /*unroll*/>
     CATENA_HD void down(Run const& run, int p, Part, State const& first, State next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
@@ -261,6 +282,7 @@ struct SweepsOf<ArticulatedLeaf<sliding>> {
     using OfMatrices = ArticulatedMatrixSweep<ArticulatedLeaf<sliding>>;
     using OfBiases = ArticulatedBiasSweep<ArticulatedLeaf<sliding>>;
 };
+/// Returns the force in a joint's state.
 template <int K>
 CATENA_HD Vector<double, K> const& force_of(HandleState<double, K> const& joint) {
     return joint.force;

@@ -1,5 +1,5 @@
-// Beads on links read from their positions and velocities: each link's direction is computed once
-// and serves the beads at its two ends.
+// Leaf of beads on links that reads positions and velocities. The direction of each link is
+// computed once and serves the beads at its two ends.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace catena::dca {
 
-/// 1 / |d|. Another way to it may answer NaN where it does not know.
+/// Computes 1 / |d|. Faster versions that may fail return NaN where they do.
 struct InverseLength {
     static constexpr bool may_fail = false;
     template <class Real>
@@ -19,6 +19,7 @@ struct InverseLength {
     }
 };
 
+/// A segment with its matrices and its biases.
 template <class Real, int K>
 struct BiasedSegment {
     SegmentMatrix<Real, K> matrix;
@@ -28,16 +29,21 @@ struct BiasedSegment {
     }
 };
 
-/// As Resting (fused_sweep.hpp). No jointed tips. K = 1 projected, 3 full.
+/// Leaf of beads without jointed tips, with the interface of Resting (fused_sweep.hpp). K = 1:
+/// projected handles, 3: full handles.
 template <int K>
 struct BeadLeafFromPositions {
     static constexpr bool one_by_one = false;
+    /// Direction and velocity term of one link.
     template <class Real>
     struct Link {
-        Vector<Real, 3> direction;  // 0 where there is none
-        Real swing;                 // src/dca/README.md, "Link chains": -c
+        // Unit direction from inboard to outboard, W; 0 if there is no link.
+        Vector<Real, 3> direction;
+        // Velocity term -c = |v_rel,perp|^2 / length (src/dca/README.md, "Link chains").
+        Real swing;
         static CATENA_HD Link none() { return {Vector<Real, 3>::zero(), Real(0)}; }
     };
+    /// All data of one bead and its two links; the force is in W.
     template <class Place>
     struct Body {
         using Real = RealAt<Place>;
@@ -52,7 +58,7 @@ struct BeadLeafFromPositions {
     ConfigurationView configuration;
     LoadsView loads;
 
-    /// Bodies from `begin` on, and the links between them and to their neighbours.
+    /// Beads from `begin` on, the links between them and those to their neighbours.
     template <int most>
     struct Neighbours {
         std::int64_t begin;
@@ -62,20 +68,21 @@ struct BeadLeafFromPositions {
         std::uint8_t restricted[most];
     };
     using Part = Neighbours<part_length>;
+    /// Reads the beads [begin, end) of one part.
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
     CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end,
                                  InverseLength const& inverse_length = {},
                                  Reader const& by = {}) const {
         return neighbours<part_length>(begin, end, inverse_length, by);
     }
-    /// One alone.
+    /// Reads a single bead.
     template <class InverseLength>
     CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k,
                                                   InverseLength const& inverse_length) const {
         return body(neighbours<1>(k, k + 1, inverse_length, ReadHere{}), 0);
     }
-    /// All is read at once, in the place of what is not there something that is: reads that wait
-    /// for each other cost more.
+    /// Reads the beads [begin, end), at most `most`. All reads are issued at once, and missing data
+    /// are replaced by valid neighbours: reads that wait for each other take longer.
     template <int most, class InverseLength, class Reader>
     CATENA_HD_IN_PLACE Neighbours<most> neighbours(std::int64_t begin, std::int64_t end,
                                                    InverseLength const& inverse_length,
@@ -86,7 +93,8 @@ struct BeadLeafFromPositions {
         Vec3 position[most + 2], velocity[most + 2];
         CATENA_UNROLL
         for (int i = 0; i < most + 2; ++i) {
-            std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;  // fields have a halo, and `restricted` more
+            // Fields have one halo body; `restricted` has more.
+            std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;
             position[i] = by(configuration.position, k);
             velocity[i] = by(loads.velocity, k);
             if (i == 0 || i > most) continue;
@@ -95,7 +103,8 @@ struct BeadLeafFromPositions {
             read.force[i - 1] = by.if_any(loads.force, k);
         }
         bool const floats = starts && read.restricted[0] == 0;
-        if constexpr (InverseLength::may_fail) {  // which has no branch that others would wait for
+        // This variant has no branch for which other reads would wait.
+        if constexpr (InverseLength::may_fail) {
             if (starts) {
                 if (!floats) position[0] = piece_of(configuration.piece, configuration.pieces, begin).anchor;
                 velocity[0] = Vec3::zero();
@@ -121,10 +130,12 @@ struct BeadLeafFromPositions {
         }
         return read;
     }
+    /// Returns bead `i` of those read.
     template <int most>
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Neighbours<most> const& part, int i) const {
         return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
     }
+    /// Writes the acceleration of bead `i` of a part from the forces at its two links.
     template <class Factorizer>
     CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard, Vector<double, K> const& outboard,
                                        AccelerationsView const& out, Factorizer const& factors) const {
@@ -135,7 +146,8 @@ struct BeadLeafFromPositions {
         return body;
     }
 
-    /// Of several beads side by side, none of which begins or ends a chain: one after the other.
+    /// Reads several beads side by side, none of which begins or ends a chain. Beads of a lane are
+    /// read in order, so that each link is computed once.
     template <class Place>
     class Walk {
       public:
@@ -156,6 +168,7 @@ struct BeadLeafFromPositions {
         return Walk<Place>(*this, begin);
     }
 
+    /// Returns the segment of one bead.
     template <class Place, class Factorizer = dca::Factorizer>
     CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Factorizer const& /*factors*/ = {}) const {
         using Kind = Vector<RealAt<Place>, K>;
@@ -169,6 +182,7 @@ struct BeadLeafFromPositions {
     CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Body<Place> const& /*kept*/) const {
         return segment(body);
     }
+    /// Writes the acceleration of one bead from the forces at its two links.
     template <class Place, class Factorizer = dca::Factorizer>
     CATENA_HD void accelerate(Body<Place> const& body, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out,
@@ -179,12 +193,14 @@ struct BeadLeafFromPositions {
     }
 
   private:
+    /// Returns the link with the vector `d` and the relative velocity `v` of its ends.
     template <class Real, class InverseLength = dca::InverseLength>
     CATENA_HD static Link<Real> link(Vector<Real, 3> const& d, Vector<Real, 3> const& v, InverseLength const& inverse_length = {}) {
         Real const per_length = inverse_length(d);
         Vector<Real, 3> const u = per_length * d, across = plus_scaled(v, -dot(v, u), u);
         return {u, per_length * dot(across, across)};
     }
+    /// Returns the link inboard of bead k.
     template <class Place>
     CATENA_HD Link<RealAt<Place>> link_before(Place k) const {
         return link(read(configuration.position, k) - read(configuration.position, k - 1), read(loads.velocity, k) - read(loads.velocity, k - 1));

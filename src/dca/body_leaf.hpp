@@ -1,5 +1,5 @@
-// How the tree solver reads one body from the arrays: its matrices, its bias, and its acceleration
-// once the joint forces are known.
+// Leaves of the tree: each reads one body from the arrays and computes its matrices, its bias and,
+// when the joint forces are known, its acceleration. B stands for body axes, W for ground axes.
 #pragma once
 
 #include "dca/floating_run.hpp"
@@ -7,12 +7,13 @@
 
 namespace catena::dca {
 
+/// Returns the value at `k`, or zero for a view without origin.
 template <int D, class Place>
 CATENA_HD Vector<RealAt<Place>, D> read_or_zero(ConstView<D> const& view, Place k) {
     return ReadHere{}.if_any(view, k);
 }
 
-/// Direction of the link on the outboard side of body k; 0 where there is none.
+/// Returns the unit direction of the link on the outboard side of body k; 0 if there is none.
 template <class Place>
 CATENA_HD Vector<RealAt<Place>, 3> outboard_direction(GroupView const& group,
                                                       ConstView<3> direction,
@@ -21,8 +22,8 @@ CATENA_HD Vector<RealAt<Place>, 3> outboard_direction(GroupView const& group,
     return has_jointed_tip(group, k) ? read(tip_direction, k) : Vector<RealAt<Place>, 3>::zero();
 }
 
-/// The velocity terms of the inboard joint, and of a jointed tip: the ground's handle 1 there is as
-/// good as the body's handle 2.
+/// Adds the velocity terms of body k's inboard joint and of a jointed tip. The tip's term has the
+/// opposite sign, because the body is on the inboard side of the tip's joint.
 template <int K, class Place>
 CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, Place k,
                                 SegmentBias<RealAt<Place>, K>& b) {
@@ -31,7 +32,7 @@ CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, 
         b.b2 = b.b2 - read_directions<K>(loads.tip_bias, k);
 }
 
-/// What is wanted of the forces at body k's two joints.
+/// Writes the forces at body k's two joints, if they are requested.
 template <int K, class Place>
 CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, Place k,
                             Vector<RealAt<Place>, K> const& inboard,
@@ -40,13 +41,17 @@ CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out
     if (out.tip_force && has_jointed_tip(group, k)) write_directions<K>(out.tip_force, k, outboard);
 }
 
-/// Point beads; K = 1 projected, 3 full.
+/// Leaf of point beads. K = 1: projected handles, 3: full handles.
 template <int K_>
 class BeadLeaf {
   public:
+    // Properties of a leaf. `beads`: it has point beads. `in_joints`: it uses joint coordinates.
+    // `projected`: its handles carry fewer directions than full ones. `reads_neighbours` and
+    // `by_inertia` are explained in BodyLeaf.
     static constexpr int K = K_;
     static constexpr bool beads = true, in_joints = false, projected = K == 1,
                           reads_neighbours = true, by_inertia = false;
+    /// Leaf that reads positions and velocities instead of link directions, for the fused sweep.
     using Moving = BeadLeafFromPositions<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
@@ -55,11 +60,13 @@ class BeadLeaf {
     }
     CATENA_HD GroupView const& group() const { return group_; }
 
+    /// Returns the matrices of bead k along the directions of its links.
     template <class Place>
     CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Place k) const {
         return bead_matrix(inverse_mass(k), read(direction_, k), outboard(k),
                            Vector<RealAt<Place>, K>{});
     }
+    /// Returns the bias of bead k along the directions of its links.
     template <class Place>
     CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Place k) const {
         using Real = RealAt<Place>;
@@ -70,6 +77,7 @@ class BeadLeaf {
         add_joint_biases(group_, loads, k, b);
         return b;
     }
+    /// Writes the acceleration of bead k from the forces at its two links, if it is requested.
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k,
                               Vector<RealAt<Place>, K> const& inboard_force,
@@ -94,7 +102,7 @@ class BeadLeaf {
     ConstView<3> direction_, tip_direction_;
 };
 
-/// The two handles of a body that keeps forces in its own axes.
+/// The two handles of a body whose forces are kept in its own axes (B).
 template <class Handle>
 struct HandlePair {
     Handle h1, h2;
@@ -103,7 +111,8 @@ struct HandlePair {
         return v;
     }
 };
-/// Of one that keeps them elsewhere, and the rotation from B there.
+/// The two handles of a body whose forces are kept in other axes, and the rotation matrix from B to
+/// these.
 template <class Handle, class Real>
 struct TurnedHandlePair {
     Handle h1, h2;
@@ -113,8 +122,8 @@ struct TurnedHandlePair {
     }
 };
 
-/// What the joint on the inboard side yields is part of a body's handle (src/dca/README.md,
-/// "Joints"): Z + P B^-1 P^T. The angular directions are the last ones of full handles.
+/// Adds the compliance of the inboard joint to the body's handle (src/dca/README.md, "Joints"): Z +
+/// P B^-1 P^T. The three angular directions of full handles are the last ones.
 template <int K, class Place>
 CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
                               SegmentMatrix<RealAt<Place>, K>& s) {
@@ -128,10 +137,13 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
         }
 }
 
-/// Joint coordinates: handles along the axes of the meeting frames, forces in B. `sliding`: prismatic and helical joints too.
+/// Handles of bodies in joint coordinates: along the axes of the meeting frames, with forces in B.
+/// `sliding`: some joint is prismatic or helical.
 template <int K, bool sliding>
 class JointFrameHandles {
   public:
+    // Properties of handles. `any_forces`: directions may combine forces and torques. `in_joints`:
+    // joint coordinates. `on_links`: handles along links.
     static constexpr bool any_forces = sliding, in_joints = true, on_links = false;
     explicit JointFrameHandles(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
@@ -140,6 +152,8 @@ class JointFrameHandles {
         if (c.axes2.origin) axes2_ = c.axes2;
         if (c.r2.origin) r2_ = c.r2;
     }
+    // Data from which a body's handles are computed: r1 and r2 from the centre of mass (B), the
+    // rotation (w x y z), and two axes of each meeting frame.
     template <class Real>
     struct State {
         Vector<Real, 3> r1, r2;
@@ -158,11 +172,12 @@ class JointFrameHandles {
     CATENA_HD Vector<RealAt<Place>, 3> r2(Place k, Reader&& by) const {
         return by(r2_, k);
     }
-    /// In B.
+    /// Returns the axes of the inboard handle in B. `turn` is the matrix of the body's rotation.
     template <class Real>
     CATENA_HD static Matrix<Real, 3, 3> inboard_axes(State<Real> const& state, Matrix<Real, 3, 3> const& turn) {
         return transposed_times(turn, axes_of(state.axes1));
     }
+    /// Returns the two handles of body k. `turn` is the matrix of the body's rotation.
     template <class Place>
     CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(State<RealAt<Place>> const& state, Place k,
                                                                     Mat3At<Place> const& turn) const {
@@ -179,6 +194,7 @@ class JointFrameHandles {
         }
         return pair;
     }
+    /// Adds the compliance of body k's inboard joint to its segment.
     template <class Place>
     CATENA_HD void yield(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
         add_compliance(compliance_, k, s);
@@ -192,7 +208,8 @@ class JointFrameHandles {
     ConstView<4> rotation_;
 };
 
-/// Bodies on spherical joints in absolute coordinates: handles along ground axes, forces there too.
+/// Handles of bodies on spherical joints in absolute coordinates: along ground axes, with forces in
+/// W.
 template <int K>
 class GroundFrames {
   public:
@@ -202,10 +219,13 @@ class GroundFrames {
         rotation_ = c.rotation;
         compliance_ = c.compliance;
     }
+    /// Adds the compliance of body k's inboard joint to its segment.
     template <class Place>
     CATENA_HD void yield(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
         add_compliance(compliance_, k, s);
     }
+    // Data of one body that its handles are computed from: r1 and r2 from the centre of mass (B),
+    // and the rotation (w x y z).
     template <class Real>
     struct State {
         Vector<Real, 3> r1, r2;
@@ -228,7 +248,8 @@ class GroundFrames {
     ConstView<6> compliance_;
 };
 
-/// Bodies and beads on links in absolute coordinates: handles along the links (full handles: and across), forces in ground axes.
+/// Handles of bodies and beads on links in absolute coordinates: along the links, with forces in W.
+/// Full handles have directions across the links too.
 template <int K>
 class LinkFrames {
   public:
@@ -241,7 +262,8 @@ class LinkFrames {
     }
     template <class Real>
     struct State {
-        Vector<Real, 3> r1, r2, inboard, outboard;  // directions
+        // Handles from the centre of mass (B), and unit directions of the two links (W).
+        Vector<Real, 3> r1, r2, inboard, outboard;
         Vector<Real, 4> rotation;
     };
     template <class Place, class Reader = ReadHere>
@@ -257,6 +279,7 @@ class LinkFrames {
     }
 
   private:
+    // Axes of a handle whose first direction is that of the link.
     template <class Real>
     CATENA_HD static Matrix<Real, 3, 3> axes(Vector<Real, 3> const& direction) {
         if constexpr (K == 1) {
@@ -272,21 +295,25 @@ class LinkFrames {
     ConstView<4> rotation_;
 };
 
-/// Rigid bodies; K = 1 links, 2 planar, 3 spherical, 4 universal, 5 revolute and sliding, 6 full.
+/// Leaf of rigid bodies. K = 1: links, 2: planar, 3: spherical, 4: universal, 5: revolute,
+/// prismatic and helical joints, 6: full handles.
 template <int K_, class Frames_>
 class BodyLeaf {
   public:
     static constexpr int K = K_;
     using Frames = Frames_;
     static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
-    static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;  // or whether there are any
-    /// Whether runs of them on revolute joints alone go by their inertias (floating_run.hpp).
+    // True if the leaf reads bodies other than its own, or must find out whether there are any.
+    static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;
+    /// True if runs of bodies on revolute joints alone are computed by articulated-body inertias
+    /// (floating_run.hpp).
     static constexpr bool by_inertia = K == 5 && in_joints && !Frames::any_forces;
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
     CATENA_HD GroupView const& group() const { return group_; }
 
-    /// All that is read of a body: first that, so that reads need not wait for what is computed from others.
+    /// All data that are read of one body. They are read first, so that no read waits for a result
+    /// of other data.
     template <class Place>
     struct Body {
         using Real = RealAt<Place>;
@@ -306,17 +333,20 @@ class BodyLeaf {
                 by.once_if_any(loads.torque, k),
                 by.once_if_any(loads.omega, k)};
     }
-    /// What both a body's segment and its accelerations need, and takes longer to compute than to keep.
+    /// Results that the segment and the accelerations of a body both need. Computing them again
+    /// takes longer than storing them.
     template <class Place>
     struct Turning {
-        RealAt<Place> scale;   // matrix_scale() of its rotation
-        Vec3At<Place> torque;  // the gyroscopic one included
+        RealAt<Place> scale;  // Value of matrix_scale() of the body's rotation.
+        Vec3At<Place> torque;  // Torque on the body in B, gyroscopic torque included.
     };
+    /// `Turning` with the rotation expanded to a matrix.
     template <class Place>
     struct Turned {
-        Mat3At<Place> turn;  // to_matrix() of its rotation
+        Mat3At<Place> turn;  // Matrix of the body's rotation, to_matrix().
         Vec3At<Place> torque;
     };
+    /// Computes what the segment and the accelerations of a body both need.
     template <class Place, class Factorizer = dca::Factorizer>
     CATENA_HD Turning<Place> turning(LoadsView const& loads, Body<Place> const& body, Factorizer const& factors = {}) const {
         return factors.with_inverse([&](auto const& inverse) {
@@ -331,6 +361,7 @@ class BodyLeaf {
     CATENA_HD Turned<Place> turned(LoadsView const& loads, Body<Place> const& body) const {
         return turned(body, turning(loads, body));
     }
+    /// Returns the segment of a body, its matrices and its bias.
     template <class Place>
     CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads, Body<Place> const& body, Turned<Place> const& t) const {
         auto const h = frames_.handles(body.state, body.k, t.turn);
@@ -345,6 +376,7 @@ class BodyLeaf {
         auto const t = turned(loads, at_k);
         return bias(loads, at_k, t, frames_.handles(at_k.state, k, t.turn));
     }
+    /// Writes the acceleration of body k from the forces at its two joints, if it is requested.
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
@@ -352,7 +384,8 @@ class BodyLeaf {
         auto const at_k = body(loads, k);
         accelerate(at_k, turned(loads, at_k), inboard_force, outboard_force, out);
     }
-    /// Of what was read before. Precondition: accelerations are wanted.
+    /// Writes the acceleration of a body whose data were read before. Precondition: accelerations
+    /// are requested.
     template <class Place>
     CATENA_HD void accelerate(Body<Place> const& at_k, Turned<Place> const& t, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
@@ -364,13 +397,15 @@ class BodyLeaf {
         write(out.acceleration, k, at_k.inverse_mass * force);
     }
 
-    /// Precondition of these: by_inertia.
+    /// Returns the kinematics of body k for floating_run.hpp. Precondition of this and the
+    /// following functions: `by_inertia`.
     template <class Place>
     CATENA_HD RevoluteFrame<RealAt<Place>> revolute_frame(LoadsView const& loads, Place k) const {
         auto f = frame_at_rest(k);
         set_moving(loads, k, read_or_zero(loads.omega, k), f);
         return f;
     }
+    /// Returns body k with its inertia and its loads for floating_run.hpp.
     template <class Place>
     CATENA_HD ArticulatedBody<RealAt<Place>> revolute(LoadsView const& loads, Place k) const {
         auto b = revolute_at_rest(loads, k);
@@ -379,7 +414,8 @@ class BodyLeaf {
         add_gyroscopic(loads, omega, b);
         return b;
     }
-    /// `loads.revolute joints` and `loads.revolute_rate` are given.
+    /// Returns body k for run_kinematics.hpp. Precondition: `loads.revolutes` and
+    /// `loads.revolute_rate` are given.
     template <class Place, class Reader = ReadHere>
     CATENA_HD BodyOnRevolute<RealAt<Place>> on_revolute(LoadsView const& loads, Place k, Reader&& by = {}) const {
         return {rotation_on_revolute(loads, k, by),
@@ -390,11 +426,14 @@ class BodyLeaf {
                 by(group_.mass, k)[0],
                 as_symmetric(by(group_.inertia, k))};
     }
+    /// Returns two axes of the meeting frame on body k's outboard side, in B.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 6> axes2(Place k) const {
         return frames_.state(k).axes2;
     }
-    // What they are made of. Not copied: a compiler may copy vectors by halves, which the next to read them waits for.
+    // The parts of these results. They are filled in place: a compiler may copy vectors by halves,
+    // and the next read of the whole vector then waits for both halves.
+    /// Returns the kinematics of body k without its velocity terms.
     template <class Place>
     CATENA_HD RevoluteFrame<RealAt<Place>> frame_at_rest(Place k) const {
         using Vector3 = Vec3At<Place>;
@@ -407,11 +446,13 @@ class BodyLeaf {
                 Vector3::zero(),
                 Vector<RealAt<Place>, 5>::zero()};
     }
+    /// Returns body k without velocity terms and gyroscopic torque.
     template <class Place>
     CATENA_HD ArticulatedBody<RealAt<Place>> revolute_at_rest(LoadsView const& loads, Place k) const {
         return {frame_at_rest(k), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)), read_or_zero(loads.torque, k),
                 read_or_zero(loads.force, k)};
     }
+    /// Sets the velocity terms of body k from its angular velocity `omega` (B).
     template <class Place>
     CATENA_HD void set_moving(LoadsView const& loads, Place k, Vec3At<Place> const& omega, RevoluteFrame<RealAt<Place>>& f) const {
         f.inward1 = cross(omega, cross(omega, f.r1));
@@ -422,6 +463,7 @@ class BodyLeaf {
         }
         if (loads.bias) f.bias = read_directions<5>(loads.bias, k);
     }
+    /// Adds the gyroscopic torque -omega x J omega, unless the loads contain it.
     template <class Real>
     CATENA_HD void add_gyroscopic(LoadsView const& loads, Vector<Real, 3> const& omega, ArticulatedBody<Real>& b) const {
         if (loads.gyroscopic) b.torque = b.torque - cross(omega, b.inertia * omega);
@@ -450,6 +492,8 @@ class BodyLeaf {
         add_joint_biases(group_, loads, body.k, b);
         return b;
     }
+    /// Returns the torque on a body in B, gyroscopic torque included. The inertia is recovered from
+    /// its inverse unless it is stored (`by_inertia`).
     template <class Place, class Inverse>
     CATENA_HD Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body, Inverse const& inverse) const {
         if (!loads.gyroscopic) return body.torque;
@@ -457,6 +501,7 @@ class BodyLeaf {
         return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega, inverse));
     }
 
+    /// Returns the rotation of body k to the axes of the body before.
     template <class Reader>
     CATENA_HD static Quat rotation_on_revolute(LoadsView const& loads, std::int64_t k, Reader&& by) {
         return as_quaternion(by(loads.revolutes.rotation, k));

@@ -1,6 +1,7 @@
-// Matrices, biases, forces and accelerations in one sweep, for where nothing is to be hidden and
-// nothing repeated: leaves are computed again on the way down, but for what takes longer than to
-// keep it.
+// The fused sweep: matrices, biases, joint forces and accelerations in one inward and one outward
+// pass. It serves where no other work could be overlapped with the matrix sweep, and where no sweep
+// is repeated. The outward pass computes leaves again, except for data that take longer to compute
+// than to store.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +11,22 @@
 
 namespace catena::dca {
 
-/// Bodies read one by one with what a leaf takes from the configuration.
+/// Reads bodies one by one; their handles come from the configuration that the leaf holds. This
+/// class defines the interface of `Bodies` in FusedSweep.
 template <class Leaf>
 struct Resting {
     static constexpr bool one_by_one = true;
+    // One body's data, with the number of directions that its inboard joint restricts.
     template <class Place>
     struct Body : Leaf::template Body<Place> {
         int restricted;
     };
     Leaf leaf;
+    // Number of restricted directions of every joint (ChainGroup::restricted_of_joint).
     std::uint8_t const* restricted = nullptr;
     LoadsView loads;
 
-    /// Bodies from `begin` on.
+    /// The bodies of one part, from `begin` on; nothing is read in advance.
     struct Part {
         std::int64_t begin;
     };
@@ -37,33 +41,37 @@ struct Resting {
                                                   InverseLength const& /*inverse_length*/) const {
         return body(Part{k}, 0);
     }
+    /// Returns body `i` of a part; `by` reads its numbers.
     template <class Reader = ReadHere>
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i,
                                                Reader const& by = {}) const {
         return {leaf.body(loads, part.begin + i, by), restricted[part.begin + i]};
     }
-    /// Of bodies that come by another way (cuda/sweeps/prefetch.cuh).
+    /// Returns body `i` of a part that another reader has loaded (cuda/sweeps/prefetch.cuh).
     template <class AnyPart>
         requires requires(AnyPart const& part) { part.body(0); }
     CATENA_HD_IN_PLACE Body<std::int64_t> body(AnyPart const& part, int i) const {
         return part.body(i);
     }
-    /// What its accelerations need of what its segment needed.
+    /// Intermediate results of a body's segment that its accelerations need again.
     template <class Place>
     struct Kept : Leaf::template Turned<Place> {
         Place k;
     };
+    /// Computes the intermediate results of one body.
     template <class Place>
     CATENA_HD Kept<Place> keep(Body<Place> const& body) const {
         return {leaf.turned(loads, body), body.k};
     }
 
-    /// What its segment and its accelerations need, for one that keeps less.
+    /// Smaller intermediate results, for callers that store fewer numbers per body.
     using Turning = typename Leaf::template Turning<std::int64_t>;
     template <class Factorizer>
     CATENA_HD Turning turning(Body<std::int64_t> const& body, Factorizer const& factors) const {
         return leaf.turning(loads, body, factors);
     }
+    /// Writes the accelerations of one body from the forces at its two joints, if they are
+    /// requested.
     CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Turning const& turning,
                                        Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard,
@@ -88,7 +96,8 @@ struct Resting {
                                        Factorizer const& factors) const {
         accelerate(body(part, i), inboard, outboard, out, factors);
     }
-    /// Of several bodies side by side, whose joints restrict what handles carry.
+    /// Reads bodies of several runs side by side. Each of their joints restricts all K directions
+    /// of the handles.
     template <class Place>
     struct Walk {
         Resting const& bodies;
@@ -102,6 +111,7 @@ struct Resting {
         return {*this, begin};
     }
 
+    /// Returns the segment of one body: its matrices and its biases.
     template <class Place, class Factorizer = dca::Factorizer>
     CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body,
                                                             Factorizer const& factors = {}) const {
@@ -126,8 +136,10 @@ struct Resting {
     }
 };
 
-/// Matrices and biases at once; on the way down a part is eliminated again from the force at its
-/// first joint, but for runs on revolute joints, which go by their inertias. `Bodies`: as Resting.
+/// One item of the fused sweep: matrices and biases in a single pass. The outward pass eliminates
+/// each part again, starting from the force at the part's first joint. Runs on revolute joints are
+/// computed by articulated-body inertias instead (floating_run.hpp). `Bodies` has the interface of
+/// Resting.
 template <class Leaf, class Bodies>
 struct FusedSweep {
     static constexpr int K = Leaf::K;
@@ -142,18 +154,21 @@ struct FusedSweep {
     using Passed = OneSided<double, K>;
     using Passage = Elimination<double, K>;
     static constexpr bool descends = true, one_by_one = Bodies::one_by_one;
-    static constexpr bool keeps_nodes =
-        sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
+    // True if a node fits into the storage of a segment and replaces it there.
+    static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);
     static constexpr bool takes_whole_runs = Leaf::by_inertia;
+    /// True if short chains can be processed as a whole (tree_sweeps.hpp).
     static constexpr bool goes_short = !takes_whole_runs;
-    /// Whether parts are walked in loops in any case: larger handles fill a processor's instruction
-    /// cache.
+    /// True if parts are always processed in rolled loops: with larger handles, unrolled code
+    /// overflows a processor's instruction cache.
     static constexpr bool in_loops = K > 3;
+    /// Arrays, bodies and results of the sweep.
     Sweeps s;
     Bodies bodies;
     AccelerationsView out;
 
-    /// One after the other, where both at once find no registers; the way down is this one.
+    /// Bias sweep for stages that compute matrices and biases one after the other, because both at
+    /// once need too many registers. Its outward pass is that of the fused sweep.
     struct Biases : BiasSweep<Leaf> {
         FusedSweep whole;
         template <bool unroll>
@@ -166,11 +181,12 @@ struct FusedSweep {
     MatrixSweep<Leaf> matrices() const { return {s}; }
     Biases biases() const { return {{s, bodies.loads, out}, *this}; }
 
-    /// Runs on revolute joints go by their inertias.
+    /// True if the run is computed by articulated-body inertias. It has two bodies or more on
+    /// revolute joints and no jointed tip.
     CATENA_HD bool takes(Run const& run) const {
         bool revolutes =
             run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
-        if (run.count == longest_run) {  // asked for together
+        if (run.count == longest_run) {  // The unrolled loop issues all reads together.
         CATENA_UNROLL
             for (int i = 1; i < longest_run; ++i) revolutes &= s.restricted[run.body + i] == K;
             return revolutes;
@@ -178,6 +194,8 @@ struct FusedSweep {
         for (int i = 1; i < run.count; ++i) revolutes &= s.restricted[run.body + i] == K;
         return revolutes;
     }
+    /// Inward pass of a run on revolute joints: returns its segment and stores what descend()
+    /// needs.
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
         RunWorkspace<Sweeps> kept(s, run, goes_by_all());
         int const count = static_cast<int>(run.count);
@@ -194,6 +212,8 @@ struct FusedSweep {
         s.note(kept.lost());
         return segment;
     }
+    /// Outward pass of a run on revolute joints. `first` is the force at its first joint, `next`
+    /// that at the joint after it.
     CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
         RunWorkspace<Sweeps> const kept(s, run, goes_by_all());
         typename RunWithLoads<Leaf>::PassedOn passed{next};
@@ -214,15 +234,18 @@ struct FusedSweep {
             },
             [](int, BodyAcceleration<double>&) {}, [&](int i, double of_revolute) { turn(run, i, of_revolute); });
     }
-    /// Whether what moves within runs is found on the way.
+    /// True if velocities within runs are computed along the run (RevoluteLoads).
     CATENA_HD bool follows() const { return bodies.loads.revolutes.given; }
+    /// Returns the run together with its loads.
     CATENA_HD RunWithLoads<Leaf> with_loads(Run const& run) const { return {s.leaf, bodies.loads, run}; }
+    // Returns the kinematics of body i for the outward pass.
     CATENA_HD RevoluteFrame<double> frame(Run const& run, RunWorkspace<Sweeps> const& kept, int i) const {
         return follows() ? with_loads(run).frame(i, kept) : s.leaf.revolute_frame(bodies.loads, run.body + i);
     }
-    /// Whether anything is wanted of each of a run's bodies.
+    /// True if results of every body of a run are requested.
     CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }
-    /// What is wanted of body i of a run on revolute joints.
+    /// Writes the requested results of body i of a run on revolute joints. `a` is its acceleration
+    /// in its own axes.
     CATENA_HD void accelerate(Run const& run, int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) const {
         std::int64_t const k = run.body + i;
         if (out.revolute_acceleration.origin) {
@@ -235,17 +258,19 @@ struct FusedSweep {
         write(out.alpha, k, a.alpha);
         write(out.acceleration, k, a.a);
     }
-    /// And of its revolute joint.
+    /// Writes the joint acceleration of the revolute joint inboard of body i.
     CATENA_HD void turn(Run const& run, int i, double of_revolute) const {
         if (out.revolute_acceleration.origin) out.revolute_acceleration.at(run.body + i, 0) = of_revolute;
     }
 
+    /// Reads the bodies [begin, end) of one part.
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
     CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {},
                                  Reader const& by = {}) const {
         return bodies.part(begin, end, inverse_length, by);
     }
-    /// `factors`: as factorize(), if not always.
+    /// Returns the segment of part `p`. `factors` factorizes joint matrices as factorize() does,
+    /// but may fail; the part is then computed again without it.
     template <class AnyPart, class Factorizer = dca::Factorizer>
     CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factorizer const& factors = {}) const {
         std::int64_t const begin = begin_of(run, p);
@@ -261,8 +286,11 @@ struct FusedSweep {
         s.note(found);
         return segment;
     }
-    /// Of `count` bodies whose segments `kept` has: get<Segment>(i). It takes what the way down wants of their joints, put(i, OneSided): of
-    /// the first body's, which is not passed, z12 and its biases. `restricted(i)`: of their joints, 0 from `count` on.
+    /// Joins `count` bodies whose segments kept.get<Segment>(i) returns. restricted(i) is the
+    /// number of restricted directions of joint i, and 0 from `count` on.
+    ///
+    /// kept.put(i, OneSided) gets what the outward pass needs of each joint. For the first body,
+    /// whose joint is not eliminated here, that is z12 and the biases.
     template <class Restricted, class Kept>
     CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept) const {
         Segment segment = first_of(kept.template get<Segment>(0), kept);
@@ -273,7 +301,8 @@ struct FusedSweep {
         s.note(found);
         return segment;
     }
-    /// The same without branches: missing bodies have zero() there and joints that are free. `factors` look after what is lost.
+    /// Joins bodies as join_bodies() does, without branches. Missing bodies have zero() segments
+    /// and joints without restricted directions. `factors` records pivot failures itself.
     template <class Restricted, class Kept, class Factorizer>
     CATENA_HD_IN_PLACE Segment join_bodies_at_once(int count, Restricted const& restricted, Kept&& kept, Factorizer const& factors) const {
         Segment own[part_length];
@@ -289,12 +318,14 @@ struct FusedSweep {
         }
         return segment;
     }
+    /// Merges two segments at joint `at` and stores the joint's node.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Node node;
         Segment const segment = joined(inboard, outboard, at, node);
         keep(at.k, node);
         return segment;
     }
+    /// Merges two segments at joint `at`. The joint's node is returned in `node`, not stored.
     template <class Factorizer = dca::Factorizer>
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
                              Factorizer const& factors = {}) const {
@@ -306,8 +337,9 @@ struct FusedSweep {
         s.note(found);
         return segment;
     }
-    /// The same by factors that look after what is lost. Beyond a free tip `outboard` may be zero() at a free joint: of the segment what
-    /// counts there, its inboard handle, stays as it was, but that the bias may be another zero.
+    /// Merges two segments as joined() does; `factors` records pivot failures itself. Beyond a free
+    /// tip, `outboard` may be zero() at a joint without restricted directions. The inboard handle
+    /// then stays as it was, except that a zero of the bias may change its sign.
     template <class Factorizer>
     CATENA_HD Segment joined_at_once(Segment const& inboard, Segment const& outboard, int restricted, Node& node,
                                      Factorizer const& factors) const {
@@ -316,6 +348,7 @@ struct FusedSweep {
         append(segment, outboard, {0, restricted}, node.joint, node.offset, found, factors);
         return segment;
     }
+    /// Stores the node of joint `k`.
     CATENA_HD void keep(std::int64_t k, Node const& node) const {
         s.joints.store(k, node.joint);
         s.offsets.store(k, node.offset);
@@ -325,6 +358,7 @@ struct FusedSweep {
         s.matrices.store(slot, segment.matrix);
         s.biases.store(slot, segment.bias);
     }
+    /// Stores row `i` of a segment. The numbers lie where store() would put them.
     CATENA_HD void store_row(std::int64_t slot, int i, SegmentRow<double, K> const& row) const {
         constexpr int at_z22 = Symmetric<double, K>::size, at_z12 = 2 * at_z22;
         using Matrices = SegmentMatrix<double, K>;
@@ -341,11 +375,12 @@ struct FusedSweep {
         s.biases.number(slot, i) = row.b1;
         s.biases.number(slot, K + i) = row.b2;
     }
+    /// Closes a chain at its root: computes the forces at its two ends.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
     }
-    /// The same of a chain whose tip is free. `factors`: as factorize(), always.
+    /// Closes a chain whose tip is free, as close() does. `factors` must not fail.
     template <class Factorizer>
     CATENA_HD void close_free(JointAt const& first, Segment const& floating, Factorizer const& factors) const {
         static_assert(!Factorizer::may_fail);
@@ -353,7 +388,7 @@ struct FusedSweep {
         s.forces.store(first.k, first_force(first, floating, factors, joint.factor));
         s.joints.store(first.k, joint);
     }
-    /// Of a whole chain whose tip is free, at its first joint: as close().
+    /// Returns the force at the first joint of a whole chain whose tip is free.
     template <class Factorizer = dca::Factorizer>
     CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factorizer const& factors = {}) const {
         Symmetric<double, K> factor;
@@ -361,25 +396,33 @@ struct FusedSweep {
     }
 
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
+    /// Returns the force at an eliminated joint from those at its segment's two ends.
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
     CATENA_HD static Directions force(Passage const& passed, Directions const& next) { return passed.gain * next + passed.offset; }
+    /// Outward pass of part `p`, with the passages in registers. `first` is the force at its first
+    /// joint, `next` that at the joint after it.
     template <bool unroll>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
         PassagesHere passages;
         down<unroll && !in_loops>(run, p, part, first, next, passages);
     }
-    /// In registers.
+    /// Storage of a part's passages in registers.
     struct PassagesHere {
+        /// Number of passages that have room; the last joint's passage is apart if parts are
+        /// processed in rolled loops.
         static constexpr int most = part_length - (in_loops ? 2 : 1);
-        Passage passage[part_length - 1] = {};  // some leave the last one unused, which compilers do not see
+        // Some callers leave the last element unused, which compilers do not detect.
+        Passage passage[part_length - 1] = {};
         CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
         CATENA_HD Passage const& get(int i) const { return passage[i]; }
     };
-    /// `passages`: put(i, Passage) and get(i), i < `most`, of what a part's joints pass on, the last one's apart where there is no place
-    /// for it; one that `keeps_turnings`: keep(i, Bodies::Turning) and turning(i), i < part_length, as well. `factors`: as factorize(),
-    /// always.
+    /// Outward pass of part `p`. `factors` must not fail.
+    ///
+    /// `passages` stores the recursion of the part's joints: put(i, Passage) and get(i), i <
+    /// `most`. The last joint's passage is kept apart if there is no room for it. If `passages` has
+    /// `keeps_turnings`, it also has keep(i, Bodies::Turning) and turning(i), i < part_length.
     template <bool unroll, class Passages, class Factorizer = dca::Factorizer>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next, Passages&& passages,
                                  Factorizer const& factors = {}) const {
@@ -411,7 +454,8 @@ struct FusedSweep {
         });
     }
 
-    /// The same with what was kept on the way up: action(i, inboard force, outboard force), from the last body to the first.
+    /// Outward pass from data that the inward pass kept: calls action(i, inboard force, outboard
+    /// force) from the last body to the first.
     template <class Kept, class Action>
     CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
         Directions b2{};
@@ -428,7 +472,8 @@ struct FusedSweep {
             next = at_i;
         });
     }
-    /// The same where `kept` has gain(i) of every joint but the first and takes offset(i), put_offset(i).
+    /// Outward pass as forces(), where kept.gain(i) is known for every joint but the first.
+    /// put_offset(i) and offset(i) store the offsets.
     template <class Kept, class Action>
     CATENA_HD_IN_PLACE void forces_by_gains(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
         Passed const begins = kept.template get<Passed>(0);
@@ -440,14 +485,15 @@ struct FusedSweep {
             next = at_i;
         });
     }
-    /// What the forces at its joints do to body k, with what its segment needed as well.
+    /// Writes the results of body `k` from the forces at its joints and the intermediate results of
+    /// its segment.
     template <class Turning>
     CATENA_HD_IN_PLACE void accelerate_turned(std::int64_t k, Body const& body, Turning const& turning, Directions const& inboard,
                                               Directions const& outboard) const {
         bodies.accelerate(body, turning, inboard, outboard, out);
         store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
-    /// What the forces at its joints do to body k.
+    /// Writes the results of body `k` from the forces at its joints.
     template <class Factorizer>
     CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard,
                                        Factorizer const& factors) const {
@@ -467,6 +513,7 @@ struct FusedSweep {
         s.note(found);
         return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
     }
+    // True if `Passages` stores the intermediate results of each body.
     template <class Passages>
     static constexpr bool turnings_kept = requires { requires std::remove_reference_t<Passages>::keeps_turnings; };
     template <class Passages>
@@ -487,6 +534,7 @@ struct FusedSweep {
             return bodies.segment(body, factors);
         }
     }
+    /// Discards what the outward pass would need, where it computes it again.
     struct Forgotten {
         CATENA_HD static void put(int, Passed const&) {}
     };

@@ -1,4 +1,5 @@
-// A block of whole chains on the host: one thread does all that a step asks for on them.
+// Blocks of whole chains on the host: one thread executes everything that a time step does with a
+// block.
 #pragma once
 
 #include <vector>
@@ -9,9 +10,10 @@
 
 namespace catena {
 
+/// The blocks of a group, one chain per block.
 class HostBlocks {
   public:
-    /// A chain a block. Precondition: the group has no chain that is shared with other ranks.
+    /// Makes the blocks. Precondition: the group shares no chain with other ranks.
     explicit HostBlocks(ChainGroup const& group)
         : schedule_(group.schedule),
           plan_(dca::plan_blocks(group.schedule, last_bodies(group.tips))) {
@@ -24,22 +26,26 @@ class HostBlocks {
     friend class HostBlock;
     dca::Schedule const& schedule_;
     dca::BlockPlan plan_;
-    std::vector<dca::Merge> merges_;  // of all levels
+    std::vector<dca::Merge> merges_;  // Merges of all levels, one level after the other.
 };
 
+/// One block: loops over its bodies and tips, and sweeps over its chains.
 class HostBlock {
   public:
     HostBlock(HostBlocks const& blocks, std::int64_t at)
         : blocks_(blocks), at_(static_cast<std::size_t>(at)) {}
 
+    /// Calls action(k) for every body of the block.
     template <class Action>
     void each_body(Action const& action) const {
         each(blocks_.plan_.body[at_], action);
     }
+    /// Calls action(i) for every tip of the block.
     template <class Action>
     void each_tip(Action const& action) const {
         each(blocks_.plan_.tip[at_], action);
     }
+    /// Inward pass of a sweep (tree_sweeps.hpp) over the block's chains.
     template <class Sweep>
     void climb(Sweep const& sweep) const {
         each(plan().run[at_], [&](std::int64_t i) {
@@ -51,6 +57,7 @@ class HostBlock {
             close_root(sweep, blocks_.schedule_.roots[static_cast<std::size_t>(i)]);
         });
     }
+    /// Inward and outward pass of a sweep over the block's chains.
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep) const {
         climb(sweep);

@@ -1,6 +1,6 @@
-// A Space: where arrays live and loops over them run. Solvers and integrators are written once for
-// any Space; this one is the host, cuda::DeviceSpace a GPU. Both have the same members; what they
-// promise is said here.
+// A Space defines where arrays are stored and where loops over them run. Solvers and integrators
+// are written once for any Space. HostSpace is the host; cuda::DeviceSpace is a GPU. Both have the
+// same members, which are specified here.
 #pragma once
 
 #include <algorithm>
@@ -13,48 +13,51 @@
 #include "dca/solver.hpp"
 #include "math/records.hpp"
 
-/// Of what a loop does with one item: all that it calls is inlined, small vectors and matrices then
-/// stay in registers. By itself gcc stops at a size that these functions are beyond, and they take
-/// two to three times as long.
-#if !defined(CATENA_WHOLE)  // a build with sanitizers leaves it out
+/// Attribute of the function that a loop applies to one item: everything that it calls is inlined,
+/// so that small vectors and matrices stay in registers. By default gcc stops inlining at a size
+/// that these functions exceed, and they then take two to three times as long.
+#if !defined(CATENA_WHOLE)  // Builds with sanitizers define it as empty.
 #define CATENA_WHOLE __attribute__((flatten))
 #endif
 
 namespace catena {
 
+/// The Space of this rank's host: arrays in host memory, loops on an Executor.
 class HostSpace : public HostAccess {
   public:
-    /// Whether what is asked for is done when the call returns.
+    /// True if calls return only when their work is complete.
     static constexpr bool answers_at_once = true;
     /// The executor must outlive the space.
     explicit HostSpace(Executor const& executor) : executor_(&executor) {}
 
-    /// Memory of the space, zero at first.
+    /// Memory of the space, initially zero.
     template <class T>
     using Array = std::vector<T>;
-    /// A way from this rank's memory to others' that leaves out the host, where there is one:
-    /// exchange() brings numbers as FrontierExchange::bring() says. The same on all ranks.
+    /// Direct connection from this rank's memory to that of others which bypasses the host, where
+    /// there is one. exchange() distributes numbers as FrontierExchange::bring() specifies. All
+    /// ranks have one or none has.
     struct Direct {
         explicit operator bool() const { return false; }
     };
     Direct connect(dca::Schedule const&, int /*width*/, int /*beside*/) const { return {}; }
     template <class Numbers, class... Beside>
     void exchange(Direct const&, Numbers const&, Beside const&...) const {}
-    /// As FrontierExchange::turn() says.
+    /// Executes a sweep over a shared tree as FrontierExchange::turn() specifies. Returns false if
+    /// the space cannot.
     template <class Numbers, class AnyTree, class Sweep, class... Beside>
     bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const& /*top*/,
                      Sweep const&, Beside const&...) const {
         return false;
     }
     using HostAccess::exchange;
-    /// Memory that loops and the host share: what one wrote the other finds after wait().
+    /// Memory shared by loops and the host: after wait(), each sees what the other wrote.
     template <class T>
     using HostArray = std::vector<T>;
     template <int D>
     using FieldOf = Field<D>;
-    /// `size` bodies of K numbers, K known at run time.
+    /// Storage of K numbers per body for `size` bodies, K known at run time.
     using Directions = DirectionsField;
-    /// What does not change, from the host's own array, which must outlive it.
+    /// Read-only copy or view of a host array, which must outlive it.
     template <class T>
     using List = std::span<T const>;
     template <int D>
@@ -66,7 +69,7 @@ class HostSpace : public HostAccess {
       private:
         ConstView<D> view_;
     };
-    /// The model that the sweeps read.
+    /// Model of a group that the sweeps read.
     class Model {
       public:
         explicit Model(ChainGroup const& group) : group_(group) {}
@@ -76,7 +79,7 @@ class HostSpace : public HostAccess {
       private:
         ChainGroup const& group_;
     };
-    /// `count` records, zero at first.
+    /// Storage of `count` records, initially zero.
     template <class T, dca::Order order>
     class Records {
       public:
@@ -86,8 +89,8 @@ class HostSpace : public HostAccess {
       private:
         LongArray<T> records_;
     };
-    /// Runs, merges level by level and roots: those of a level are independent, the next level's
-    /// need them.
+    /// The items of a tree: runs, merges level by level, and roots. The items of one level are
+    /// independent of each other and are computed before the next level.
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
@@ -102,11 +105,14 @@ class HostSpace : public HostAccess {
         std::span<dca::Root const> roots_;
     };
 
-    /// Of scans along the chains: of_run(run) is a run's value, joined(inboard, outboard) what two
-    /// neighbours make. whole(), set_whole(), before(), set_before() are by slot. After climb()
-    /// whole() is known of what is complete (roots, and what other ranks need) and stays as it is
-    /// until descend(), which finds before() in these slots and leaves it in those of the runs, or
-    /// of what the lowest level joins. Nothing else is promised of them.
+    /// The tree of a scan along the chains.
+    ///
+    /// of_run(run) is the value of a run; joined(inboard, outboard) combines the values of two
+    /// neighbours. whole(), set_whole(), before() and set_before() are indexed by slot.
+    ///
+    /// After climb(), whole() is defined for complete nodes: roots, and what other ranks need. It
+    /// stays valid until descend(). descend() reads before() in these slots and writes it in the
+    /// slots of the runs, or of the inputs of the lowest level. Other slots are unspecified.
     class ScanTree {
       public:
         ScanTree(std::vector<dca::Run> const& runs,
@@ -120,35 +126,37 @@ class HostSpace : public HostAccess {
         std::span<std::vector<dca::Merge> const> levels_;
     };
 
-    /// Blocks of whole chains that the group has on this rank. A block has loops over its own
+    /// Blocks of the whole chains that the group has on this rank. A block has loops over its own
     /// bodies and tips, and sweeps over its own chains (host_blocks.hpp).
     using Blocks = HostBlocks;
-    /// Whether there are any for a group whose handles carry K directions.
+    /// True if the space has blocks for handles with K directions.
     template <int K>
     static constexpr bool has_blocks = true;
-    /// Whether blocks are teams of threads (team_tree.hpp).
+    /// True if blocks are teams of threads (team_tree.hpp).
     template <int K>
     static constexpr bool has_teams = false;
-    /// Whether it pays to let each block do its whole work alone.
+    /// True if it is faster to let each block do its whole work alone.
     bool pays_by_blocks(ChainGroup const& group) const {
         return std::ssize(group.pieces) >= std::max(2, threads());
     }
-    /// action(block) for every block; they may run side by side.
+    /// Calls action(block) for every block, possibly concurrently.
     template <class Action>
     void each_block(Blocks const& blocks, Action const& action) const {
         executor_->for_each(blocks.count(), [&](std::int64_t b) { action(HostBlock(blocks, b)); });
     }
 
+    /// Calls action(i) for i < count, possibly concurrently.
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
         executor_->for_each(count, [&](std::int64_t i) CATENA_WHOLE { action(i); });
     }
+    /// Calls action(item) for every item, possibly concurrently.
     template <class T, class Action>
     void over(List<T> const& items, Action const& action) const {
         executor_->for_each(std::ssize(items),
                             [&](std::int64_t i) { action(items[static_cast<std::size_t>(i)]); });
     }
-    /// A scan from the runs to the roots, and from the roots to the runs.
+    /// Inward pass of a scan, from the runs to the roots.
     template <class Scan>
     void climb(ScanTree const& tree, Scan const& scan) const {
         over(tree.runs_, [&](dca::Run const& run) { scan.set_whole(run.slot, scan.of_run(run)); });
@@ -157,6 +165,7 @@ class HostSpace : public HostAccess {
                 scan.set_whole(m.slot, scan.joined(scan.whole(m.inboard), scan.whole(m.outboard)));
             });
     }
+    /// Outward pass of a scan, from the roots to the runs.
     template <class Scan>
     void descend(ScanTree const& tree, Scan const& scan) const {
         for (std::size_t l = tree.levels_.size(); l-- > 0;)
@@ -166,7 +175,7 @@ class HostSpace : public HostAccess {
                 scan.set_before(m.outboard, scan.joined(before, scan.whole(m.inboard)));
             });
     }
-    /// A sweep (tree_sweeps.hpp) from the leaves to the roots, and from the roots to the leaves.
+    /// Inward pass of a sweep (tree_sweeps.hpp), from the leaves to the roots.
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
         over(tree.runs_, [&](dca::Run const& run) CATENA_WHOLE { climb_run(sweep, run); });
@@ -175,6 +184,7 @@ class HostSpace : public HostAccess {
                  [&](dca::Merge const& m) CATENA_WHOLE { climb_merge(sweep, m); });
         over(tree.roots_, [&](dca::Root const& root) { close_root(sweep, root); });
     }
+    /// Outward pass of a sweep, from the roots to the leaves.
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
         for (std::size_t l = tree.levels_.size(); l-- > 0;)
@@ -183,34 +193,33 @@ class HostSpace : public HostAccess {
             });
         over(tree.runs_, [&](dca::Run const& run) CATENA_WHOLE { descend_run(sweep, run); });
     }
-    /// Both.
+    /// Inward pass, then outward pass.
     template <class AnyTree, class Sweep>
     void climb_and_descend(AnyTree const& tree, Sweep const& sweep) const {
         climb(tree, sweep);
         descend(tree, sweep);
     }
-    /// And then action(k) for k < count.
+    /// Inward and outward pass of a scan, then action(k) for k < count.
     template <class Scan, class Action>
     void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count,
                            Action const& action) const {
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
-    /// And then action(item) for each item.
+    /// Inward and outward pass of a scan, then action(item) for each item.
     template <class Scan, class T, class Action>
     void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items,
                            Action const& action) const {
         climb_and_descend(tree, scan);
         over(items, action);
     }
-    /// Whether scans by steps (RevoluteScan) of this tree that go over its items as well find these
-    /// steps by a thread a body.
+    /// True if scans by steps (RevoluteScan) over this tree, with a loop over its items, compute
+    /// these steps by one thread per body.
     static bool has_threads_for_bodies(ScanTree const& /*tree*/) { return false; }
-    /// Whether loops over so many items leave threads without work that loops over the bodies in
-    /// them would give them.
+    /// True if loops over `items` items leave threads idle that loops over their bodies would use.
     static bool has_threads_to_spare(std::int64_t /*items*/) { return false; }
-    /// The largest of value(0), ..., value(count - 1), which are 0 or more; a NaN counts as the
-    /// largest. 0 of none.
+    /// Returns the largest of value(0), ..., value(count - 1), which must be >= 0. NaN counts as
+    /// the largest value; an empty range gives 0.
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {
         double worst = 0;
@@ -219,8 +228,7 @@ class HostSpace : public HostAccess {
         return worst;
     }
 
-    /// One item of an array, from and to the host; get() and what the host gave to put() are done
-    /// with when they return.
+    /// Copies one item of an array to the host. get() and put() are complete when they return.
     template <class T>
     T get(T const* place) const {
         return *place;
@@ -229,38 +237,41 @@ class HostSpace : public HostAccess {
     void put(T* place, T const& value) const {
         *place = value;
     }
-    // Body k of a field, halo included.
+    // Overloads for body k of a field, halo included.
     using HostAccess::get, HostAccess::put;
-    /// A whole field for the host to read.
+    /// Returns a whole field for the host to read.
     template <int D>
     Field<D> const& read(Field<D> const& field) const {
         return field;
     }
     Directions const& read(Directions const& directions) const { return directions; }
     void write(Directions& directions, DirectionsField const& host) const { directions = host; }
-    /// What the host does to a field.
+    /// Lets the host modify a field: calls change(view).
     template <int D, class Edit>
     void edit(Field<D>& field, Edit const& change) const {
         change(field.view());
     }
-    /// The same where it sets all bodies and nobody wants what was there, nor in the halo.
+    /// Lets the host set all bodies of a field. The previous values, halo included, are not
+    /// preserved.
     template <int D, class Set>
     void set(Field<D>& field, Set const& all) const {
         all(field.view());
     }
-    /// A view for the host of what a field holds now; `mirror` may hold it.
+    /// Host copy of a field, where the host cannot read the field itself.
     template <int D>
     struct Mirror {};
+    /// Returns a view for the host with the current values of a field; `mirror` may hold them.
     template <int D>
     View<D> pull(Field<D>& field, Mirror<D>&) const {
         return field.view();
     }
-    /// What the host wrote there since. The mirror must stay as it is until the next pull.
+    /// Copies back what the host wrote to the view of pull(). The mirror must not change until the
+    /// next pull.
     template <int D>
     void push(Field<D>&, Mirror<D> const&) const {}
 
-    /// Seconds, `repeat` times the mean of `chained` calls one after the other. `asks_host`: what
-    /// they do is not the space's alone.
+    /// Returns `repeat` times in seconds, each the mean of `chained` consecutive calls of `action`.
+    /// `asks_host`: the calls include work of the host.
     template <class Action>
     std::vector<double> time_chained(int chained, int repeat, bool /*asks_host*/,
                                      Action const& action) const {
@@ -274,13 +285,13 @@ class HostSpace : public HostAccess {
         }
         return seconds;
     }
-    /// Until everything asked for so far is done.
+    /// Waits until all submitted work is complete.
     void wait() const {}
     int threads() const { return executor_->threads(); }
-    /// What the host does besides: for loops over what it read or is to write.
+    /// Executor for loops of the host over data that it has read or will write.
     Executor const& on_host() const { return *executor_; }
     SimdLevel simd() const { return executor_->simd(); }
-    /// action(begin, end) on ranges that together cover [0, count); they may run side by side.
+    /// Calls action(begin, end) on ranges that together cover [0, count), possibly concurrently.
     template <class Action>
     void over_ranges(std::int64_t count, int cost, Action const& action) const {
         executor_->for_ranges(count, cost, action);
@@ -290,7 +301,7 @@ class HostSpace : public HostAccess {
     Executor const* executor_;
 };
 
-/// Gives a field of a space the values of the host's.
+/// Copies a field of the host to a field of a space.
 template <class Space, class FieldOfSpace, int D>
 void fill(Space const& space, FieldOfSpace& field, Field<D> const& host) {
     space.edit(field, [&](View<D> view) {

@@ -1,6 +1,6 @@
-// How leaves read and write arrays of bodies. A place is a body's index, or what stands for several
-// bodies side by side (simd/tile.hpp); its scalar type follows from it, and the same source serves
-// one body and several.
+// Access of leaves to arrays of bodies. A place is either a body's index or stands for several
+// bodies side by side (simd/tile.hpp). Its scalar type follows from it, so that one source serves
+// single bodies and several at once.
 #pragma once
 
 #include <type_traits>
@@ -10,6 +10,7 @@
 
 namespace catena::dca {
 
+/// Scalar type of the values at a place: double for one body, a vector for several.
 template <class Place>
 struct RealOf {
     using type = typename Place::Real;
@@ -26,12 +27,14 @@ template <class Place>
 using Mat3At = Matrix<RealAt<Place>, 3, 3>;
 template <class Place>
 using QuatAt = Quaternion<RealAt<Place>>;
-/// Whether it stands for one body.
+/// True if the place is the index of one body.
 template <class Place>
 inline constexpr bool is_one_body = std::is_same_v<Place, std::int64_t>;
+/// A place that stands for several bodies side by side.
 template <class Place>
 concept SeveralBodies = requires { typename Place::Real; };
 
+/// Returns body k's numbers of a field.
 template <class T, int D>
 CATENA_HD Vector<double, D> read(FieldView<T, D> const& view, std::int64_t k) {
     return view.load(k);
@@ -40,9 +43,11 @@ template <class T, int D>
 CATENA_HD double read(FieldView<T, D> const& view, std::int64_t k, int component) {
     return view.at(k, component);
 }
-/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere, and some
-/// are wanted once: accelerations do without them where the turning is known (body_leaf.hpp).
-/// Another reader may have them elsewhere.
+/// Default reader of a leaf's data: reads each field from its array. Other readers may have the
+/// data elsewhere.
+///
+/// if_any() returns zero for a field without array. once_if_any() is for fields that the
+/// accelerations do not need where the body's `Turning` is stored (body_leaf.hpp).
 struct ReadHere {
     template <class T, int D, class Place>
     CATENA_HD Vector<RealAt<Place>, D> operator()(FieldView<T, D> const& view, Place k) const {
@@ -57,14 +62,15 @@ struct ReadHere {
         return if_any(view, k);
     }
 };
-/// Of a body whose turning is kept, and which is read once more, for its accelerations.
+/// Reader for a body whose `Turning` is stored and which is read a second time, for its
+/// accelerations.
 struct ReadFirst : ReadHere {
     template <class T, int D>
     CATENA_HD Vector<double, D> once_if_any(FieldView<T, D> const& view, std::int64_t k) const {
         return view.origin ? view.load_last(k) : Vector<double, D>::zero();
     }
 };
-/// Then; and of one that is not read again.
+/// Reader for that second time, and for a body that is not read again.
 struct ReadLast {
     template <class T, int D>
     CATENA_HD Vector<double, D> operator()(FieldView<T, D> const& view, std::int64_t k) const {
@@ -79,6 +85,7 @@ struct ReadLast {
         return Vector<double, D>::zero();
     }
 };
+/// Writes body k's numbers of a field.
 template <int D>
 CATENA_HD void write(View<D> const& view, std::int64_t k, Vector<double, D> const& value) {
     view.store(k, value);
@@ -93,11 +100,12 @@ CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k,
     view.store<K>(k, value);
 }
 
-// Bodies side by side whose neighbours are read have both.
+// Position of a body in its chain. The overloads for bodies side by side (simd/tile.hpp) assume
+// that every body has both neighbours.
 CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
 CATENA_HD bool begins_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
-/// Whether a run's last body comes before one that makes a run by itself, or may: the body after it
-/// is another rank's, or the next chain.
+/// True if a body that forms a run of its own, or may do so, follows a run's last body k: one of
+/// another rank, or a chain's last body.
 CATENA_HD bool comes_before_one(GroupView const& group, std::int64_t k) {
     return k + 1 >= group.size || group.is_last[k + 1];
 }

@@ -1,9 +1,10 @@
-// One body seen from its two handles, host and device.
+// One body as a segment between its two handles, host and device.
 //
-// Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force` per unit
-// of the joint force along it. Then  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d .
-// force_d' / m, which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter,
-// eqs 2.1-2.4, 2.6-2.7) for every kind of joint.
+// Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force`, per unit
+// of the joint force along d. Then
+//  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d . force_d' / m,
+// which is D_i^T zeta_ij D_j of the leaf for every kind of joint (src/dca/README.md, "Bodies";
+// chapter, eqs 2.1-2.4, 2.6-2.7).
 #pragma once
 
 #include "dca/segment.hpp"
@@ -11,29 +12,30 @@
 
 namespace catena::dca {
 
-/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which
-/// the caller keeps forces. The first three (K < 3: all) have forces, orthonormal, the others none,
-/// unless `any_forces`: then all may (screws).
+/// Directions of one handle: K unit wrenches. Torques are in body axes, forces in the axes in which
+/// the caller keeps forces. The first three directions (all if K < 3) have orthonormal forces, the
+/// others have no force. With `any_forces`, every direction may have a force (screws).
 template <class Real, int K, bool any_forces = false>
 struct Handle {
     static constexpr int forces = any_forces || K < 3 ? K : 3;
     Matrix<Real, 3, K> torque;
     Matrix<Real, 3, forces> force;
 };
-/// Whose first three directions are forces along the very axes in which forces are kept, the others
+/// Handle whose axes coincide with the force axes: directions 0-2 are forces along them, 3-5
 /// torques about them.
 template <class Real, int K>
 struct GroundHandle {
     Matrix<Real, 3, K> torque;
-    Vector<Real, 3> r;  // of make_handle
+    Vector<Real, 3> r;  // Handle from the centre of mass, body axes.
+    /// Rotation matrix from the force axes to body axes.
     Matrix<Real, 3, 3> angular;
 };
 
-/// Directions at a point `r` from the centre of mass (body axes): first the three forces along the
-/// columns of `linear`, then torques about the columns of `angular` (the same axes, `angular` in
-/// body axes, `linear` where forces are kept). The last column is the joint's axis, the free
-/// direction of a revolute joint. K < 3: the first K forces alone (a link's direction; the plane of
-/// a planar chain).
+/// Returns the directions at a point `r` from the centre of mass (body axes): first the three
+/// forces along the columns of `linear`, then torques about the columns of `angular`. Both hold the
+/// same axes, `angular` in body axes and `linear` in the axes of the forces. The last column is the
+/// joint's axis, the free direction of a revolute joint. K < 3: only the first K forces (a link's
+/// direction; the plane of a planar chain).
 template <int K, bool any_forces = false, class Real>
 CATENA_HD Handle<Real, K, any_forces> make_handle(Vector<Real, 3> const& r,
                                                   Matrix<Real, 3, 3> const& angular,
@@ -53,20 +55,24 @@ CATENA_HD Handle<Real, K, any_forces> make_handle(Vector<Real, 3> const& r,
     return h;
 }
 
+/// Returns the directions along the force axes at a point `r` from the centre of mass (body axes).
+/// `angular` is the rotation matrix from the force axes to body axes.
 template <int K, class Real>
 CATENA_HD GroundHandle<Real, K> make_ground_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular) {
     return {make_handle<K>(r, angular, Matrix<Real, 3, 3>{}).torque, r, angular};
 }
 
-/// A joint that slides along its axis a: the free motion is (angular c a, linear s a) with c^2 + s^2 = 1. In the order of
-/// directions above, place 2 holds what is restricted, (angular -s a, linear c a), and place 5 what is free.
+/// A joint that translates and rotates along its axis a: the free motion is (angular c a, linear s
+/// a) with c^2 + s^2 = 1. In the order of make_handle(), direction 2 is the restricted one,
+/// (angular -s a, linear c a), and direction 5 the free one.
 /// Revolute: c = 1, s = 0. Prismatic: c = 0, s = 1. Helical with pitch h: (1, h) / sqrt(1 + h^2).
 template <class Real>
 struct Screw {
     Real c, s;
 };
 
-/// Mixes places 2 and 5 of directions that were made for a revolute joint with the same axis: a force and a torque along it.
+/// Combines directions 2 and 5 of a handle made for a revolute joint, a force and a torque along
+/// the same axis, into those of a screw.
 template <int K, class Real>
 CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular,
                              Matrix<Real, 3, 3> const& linear, Handle<Real, K, true>& h) {
@@ -80,7 +86,7 @@ CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r,
     }
 }
 
-/// The torques' part of leaf_matrix.
+/// Returns the contribution of the torques to leaf_matrix().
 template <class Real, int K>
 CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& inverse_inertia, Matrix<Real, 3, K> const& torque1,
                                                 Matrix<Real, 3, K> const& torque2) {
@@ -99,7 +105,8 @@ CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& invers
         }
     return s;
 }
-/// Precondition: inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite.
+/// Returns the matrices of a body along the directions of its two handles. Precondition:
+/// inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite.
 template <class Real, int K, bool any_forces>
 CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia,
                                              Handle<Real, K, any_forces> const& h1, Handle<Real, K, any_forces> const& h2) {
@@ -122,6 +129,7 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
     }
     return s;
 }
+/// Returns the matrices of a body whose handles lie along the force axes.
 template <class Real, int K>
 CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, GroundHandle<Real, K> const& h1,
                                              GroundHandle<Real, K> const& h2) {
@@ -136,8 +144,8 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
     return s;
 }
 
-/// Acceleration along the handle's directions of a body with angular acceleration `alpha` (body axes) and acceleration `a` of
-/// its centre of mass, velocity terms left out.
+/// Returns the acceleration along the handle's directions, without velocity terms. The body has
+/// angular acceleration `alpha` (body axes), its centre of mass has acceleration `a`.
 template <class Real, int K, bool any_forces>
 CATENA_HD Vector<Real, K> along(Handle<Real, K, any_forces> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
     Vector<Real, K> v = transposed_times(h.torque, alpha);
@@ -153,7 +161,7 @@ CATENA_HD Vector<Real, K> along(GroundHandle<Real, K> const& h, Vector<Real, 3> 
     for (int i = 0; i < 3; ++i) v[i] = v[i] + a[i];
     return v;
 }
-/// Force and torque of unit wrenches, so many of each.
+/// Returns the force on the body when `f` are the forces along the handle's directions.
 template <class Real, int K, bool any_forces>
 CATENA_HD Vector<Real, 3> push(Handle<Real, K, any_forces> const& h, Vector<Real, K> const& f) {
     Vector<Real, Handle<Real, K, any_forces>::forces> pushing;
@@ -165,6 +173,8 @@ template <class Real, int K>
 CATENA_HD Vector<Real, 3> push(GroundHandle<Real, K> const&, Vector<Real, K> const& f) {
     return {{f[0], f[1], f[2]}};
 }
+/// Returns the torque about the centre of mass (body axes) when `f` are the forces along the
+/// handle's directions.
 template <class Real, int K, bool any_forces>
 CATENA_HD Vector<Real, 3> moment(Handle<Real, K, any_forces> const& h, Vector<Real, K> const& f) {
     return h.torque * f;
@@ -178,14 +188,14 @@ CATENA_HD Vector<Real, 3> moment(GroundHandle<Real, K> const& h, Vector<Real, K>
         return m;
 }
 
-/// A x from the inverse of A, symmetric and positive definite.
+/// Returns A x from the inverse of A, which is symmetric and positive definite.
 template <class Real, class Inverse = Quotient>
 CATENA_HD Vector<Real, 3> times_inverse_of(Symmetric<Real, 3> const& inverse, Vector<Real, 3> const& x, Inverse const& quotient = {}) {
     Symmetric<Real, 3> const factor = factorize(inverse, 3, quotient);
     return solve_upper(factor, solve_lower(factor, x));
 }
 
-/// Any unit vectors that make an orthonormal right-handed triple (axis, p, q) with the unit vector `axis`
+/// Returns an orthonormal right-handed triple (axis, p, q) for the unit vector `axis`, in columns
 /// (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> triple(Vector<Real, 3> const& axis) {
@@ -199,8 +209,9 @@ CATENA_HD Matrix<Real, 3, 3> triple(Vector<Real, 3> const& axis) {
     return m;
 }
 
-/// A point bead between the links with unit directions u1 (towards it from its inboard neighbour) and u2 (from it to its
-/// outboard neighbour). Projected: T of the link chain (src/dca/README.md, "Link chains"). A missing link has direction 0.
+/// Returns the matrices of a point bead between links with unit directions u1 (from its inboard
+/// neighbour to it) and u2 (from it to its outboard neighbour). Projected handles give T of the
+/// link chain (src/dca/README.md, "Link chains"). A missing link has direction 0.
 template <class Real>
 CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 1>) {
     SegmentMatrix<Real, 1> s;
@@ -209,7 +220,7 @@ CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> 
     s.z12(0, 0) = inverse_mass * dot(u1, u2);
     return s;
 }
-/// Full handles: all three directions, the link's first.
+/// Returns the matrices for full handles: all three directions, the link's first.
 template <class Real>
 CATENA_HD SegmentMatrix<Real, 3> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 3>) {
     SegmentMatrix<Real, 3> s;
@@ -222,7 +233,7 @@ CATENA_HD SegmentMatrix<Real, 3> bead_matrix(Real inverse_mass, Vector<Real, 3> 
     for (int a = 0; a < 9; ++a) s.z12.data[a] = inverse_mass * s.z12.data[a];
     return s;
 }
-/// Components of a vector along the directions of a bead's handle.
+/// Returns the components of a vector along the directions of a bead's handle.
 template <class Real>
 CATENA_HD Vector<Real, 1> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 1>) {
     return {{dot(u, a)}};
@@ -231,14 +242,15 @@ template <class Real>
 CATENA_HD Vector<Real, 3> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 3>) {
     return transposed_times(triple(u), a);
 }
-/// Of a bead between the links u1 and u2 that `force` acts on, the links' own forces apart.
+/// Returns the bias of a bead between the links u1 and u2 under the external force `force`.
 template <class Real, int K>
 CATENA_HD SegmentBias<Real, K> bead_bias(Real inverse_mass, Vector<Real, 3> const& force, Vector<Real, 3> const& u1,
                                          Vector<Real, 3> const& u2, Vector<Real, K> kind) {
     Vector<Real, 3> const a = inverse_mass * force;
     return {along_link(u1, a, kind), along_link(u2, a, kind)};
 }
-/// Of a bead that its links pull with `inboard` along u1 and `outboard` against u2.
+/// Returns the acceleration of a bead on which its links act with `inboard` along u1 and `outboard`
+/// against u2.
 template <class Real>
 CATENA_HD Vector<Real, 3> bead_acceleration(Real inverse_mass, Vector<Real, 3> const& force, Real inboard, Vector<Real, 3> const& u1,
                                             Real outboard, Vector<Real, 3> const& u2) {

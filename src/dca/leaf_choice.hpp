@@ -1,4 +1,5 @@
-// Which Leaf a group's bodies are: calls use(Of<Leaf>{}) and returns what it returns.
+// Selection of the Leaf type for a group's bodies. Each function calls use(Of<Leaf>{}) and returns
+// its result.
 #pragma once
 
 #include "dca/articulated_sweeps.hpp"
@@ -6,12 +7,13 @@
 
 namespace catena::dca {
 
+/// Tag that passes a type as a value.
 template <class T>
 struct Of {
     using type = T;
 };
 
-/// Beads, and bodies in absolute coordinates: on links or on spherical joints.
+/// Selects the leaf for beads, and for bodies in absolute coordinates on links or spherical joints.
 template <class Use>
 auto with_absolute_leaf(ChainGroup const& group, Use const& use) {
     if (group.beads) return group.directions == 1 ? use(Of<BeadLeaf<1>>{}) : use(Of<BeadLeaf<3>>{});
@@ -22,13 +24,13 @@ auto with_absolute_leaf(ChainGroup const& group, Use const& use) {
                                  : use(Of<BodyLeaf<6, GroundFrames<6>>>{});
 }
 
-/// Bodies in joint coordinates, held at their inboard joints.
+/// Selects the leaf with articulated handles, for bodies in joint coordinates.
 template <class Use>
 auto with_articulated_leaf(ChainGroup const& group, Use const& use) {
     return group.has_screws ? use(Of<ArticulatedLeaf<true>>{}) : use(Of<ArticulatedLeaf<false>>{});
 }
 
-/// And floating.
+/// Selects the leaf with floating handles, for bodies in joint coordinates.
 template <class Use>
 auto with_joint_leaf(ChainGroup const& group, Use const& use) {
     switch (group.directions) {

@@ -1,3 +1,5 @@
+// Solver whose pairwise tree is cut between two parts, one for the lowest levels and one for all
+// others (level_solver.hpp).
 #include "dca/level_solver.hpp"
 
 #include <algorithm>
@@ -9,11 +11,12 @@ namespace {
 
 using Items = LevelPart::Items;
 
+/// Returns the number of levels, limited to those of the schedule.
 std::size_t within(int levels, Schedule const& schedule) {
     return std::min(static_cast<std::size_t>(levels), schedule.levels.size());
 }
 
-/// Adds the time since the last call, or since it was made, to one of the sums.
+/// Adds the seconds since the previous call, or since construction, to one of the sums.
 class Clock {
   public:
     void to(double& sum) {
@@ -26,8 +29,10 @@ class Clock {
     double last_ = seconds_now();
 };
 
+/// Runs both parts and transfers segments, forces and joints between them.
 class LevelSolver final : public ChainSolver {
   public:
+    /// Makes both parts and registers the lists of records that cross the cuts.
     LevelSolver(ChainGroup const& group, Communicator const& communicator, GpuLevels levels,
                 LevelPartMaker const& lower, LevelPartMaker const& upper)
         : group_(group), communicator_(communicator), has_lower_(levels.up > 0 || levels.down > 0) {
@@ -52,6 +57,8 @@ class LevelSolver final : public ChainSolver {
         all_units_ = upper_.part->choose(all);
     }
 
+    /// Matrix sweep: lower part, transfer of segments, upper part with the exchange between ranks,
+    /// transfer of joints.
     void assemble_matrices(ConfigurationView const& configuration) override {
         double const start = seconds_now();
         SplitSeconds& spent = report_.split;
@@ -80,6 +87,8 @@ class LevelSolver final : public ChainSolver {
         if (bad < group_.schedule.joints) refuse_indefinite(group_, communicator_.rank(), bad);
     }
 
+    /// Bias sweep and disassembly: lower part, upper part with the exchange between ranks, lower
+    /// part.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         double const start = seconds_now();
         SplitSeconds& spent = report_.split;
@@ -123,19 +132,22 @@ class LevelSolver final : public ChainSolver {
     }
 
   private:
+    // One part of the tree with its lists of items to be transferred.
     struct Side {
         std::unique_ptr<LevelPart> part;
-        int segments = 0, forces = 0, joints_up = 0, joints_down = 0;  // lists
+        // Numbers of the lists that LevelPart::choose() returned.
+        int segments = 0, forces = 0, joints_up = 0, joints_down = 0;
     };
 
-    /// One collective: the units of chains that several ranks share, to all ranks.
+    /// Distributes the units of chains that several ranks share to all ranks, in one collective
+    /// operation.
     void gather_shared(Items items) {
         Schedule const& s = group_.schedule;
         if (s.shared.empty()) return;
         double const start = seconds_now();
         std::vector<double> own, all;
         upper_.part->get(items, own_units_, own);
-        upper_.part->get(items, all_units_, all);  // for its size
+        upper_.part->get(items, all_units_, all);  // Only the size of `all` matters here.
         std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
         std::size_t const unit_bytes = all.size() / s.shared.size() * sizeof(double);
         for (FrontierUnit const& unit : s.shared)
@@ -151,11 +163,12 @@ class LevelSolver final : public ChainSolver {
     bool has_lower_;
     Side lower_, upper_;
     int own_units_ = 0, all_units_ = 0;
-    std::vector<double> segments_, forces_, joints_up_, joints_down_;  // on their way
+    // Buffers for transfers between the parts.
+    std::vector<double> segments_, forces_, joints_up_, joints_down_;
     SolverReport report_;
 };
 
-/// Places that are in `wanted` but not in `made`, each once, in order.
+/// Returns the places that are in `wanted` but not in `made`, each once, in increasing order.
 std::vector<std::int64_t> missing(std::vector<std::int64_t> wanted,
                                   std::vector<std::int64_t> made) {
     std::sort(wanted.begin(), wanted.end());
@@ -167,6 +180,8 @@ std::vector<std::int64_t> missing(std::vector<std::int64_t> wanted,
     return left;
 }
 
+/// Returns the slots of segments that the levels from `up` on, the roots and the shared units read
+/// but do not compute.
 std::vector<std::int64_t> segments_at(Schedule const& s, std::size_t up) {
     std::vector<std::int64_t> wanted, made;
     for (std::size_t l = up; l < s.levels.size(); ++l)
@@ -180,6 +195,7 @@ std::vector<std::int64_t> segments_at(Schedule const& s, std::size_t up) {
     return missing(std::move(wanted), std::move(made));
 }
 
+/// Returns the joints whose forces the lowest `down` levels and the runs read but do not compute.
 std::vector<std::int64_t> forces_at(Schedule const& s, std::size_t down) {
     std::vector<std::int64_t> wanted, made{s.none};
     for (std::size_t l = 0; l < down; ++l)
@@ -191,6 +207,7 @@ std::vector<std::int64_t> forces_at(Schedule const& s, std::size_t down) {
     return missing(std::move(wanted), std::move(made));
 }
 
+/// Returns the joints of the merges of levels [from, to).
 std::vector<std::int64_t> joints_between(Schedule const& s, std::size_t from, std::size_t to) {
     std::vector<std::int64_t> joints;
     for (std::size_t l = from; l < to; ++l)

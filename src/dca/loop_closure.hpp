@@ -1,8 +1,8 @@
-// The joint that closes a chain last, host and device: of the first body to the ground or, in a
+// The joint that closes a chain last, host and device: from the first body to the ground or, in a
 // ring, to the last body.
 //
-// A loop may hold a chain more often than it can move: its closing joint's matrix then is singular.
-// What is determined is solved for, and of the forces that are not the least are taken.
+// A loop may be overconstrained; the matrix of its closing joint is then singular. The
+// accelerations are unique, and the least forces are chosen.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace catena::dca {
 
-/// Z of the joint between a ring's two handles (src/dca/README.md, "Ends and rings").
+/// Returns Z of the joint between a ring's two handles (src/dca/README.md, "Ends and rings").
 template <class Real, int K>
 CATENA_HD Symmetric<Real, K> ring_matrix(SegmentMatrix<Real, K> const& s) {
     Symmetric<Real, K> z;
@@ -22,11 +22,13 @@ CATENA_HD Symmetric<Real, K> ring_matrix(SegmentMatrix<Real, K> const& s) {
     return z;
 }
 
-/// Fractions of the open chain's answer that are taken for nothing: of their digits fewer than six would be left.
+/// Fraction of the open chain's response below which a value counts as 0: fewer than six of its
+/// digits would be significant.
 template <class Real>
 inline constexpr Real lost_digits = Real(0x1p-33);
 
-/// What the two sides of a closing joint answer to a unit force along each direction while the loop is open: Z's entries are judged by it.
+/// Returns the response of the closing joint's two sides to a unit force along each direction while
+/// the loop is open. It is the scale of Z's entries.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> open_response(SegmentMatrix<Real, K> const& s, bool ring) {
     Vector<Real, K> size;
@@ -35,7 +37,8 @@ CATENA_HD Vector<Real, K> open_response(SegmentMatrix<Real, K> const& s, bool ri
     return size;
 }
 
-/// Whether of a pivot so little is left that the matrix may be singular. `factor`: factorize() of its leading `restricted` rows.
+/// True if a pivot is so small that the matrix may be singular. `factor` is factorize() of its
+/// leading `restricted` rows.
 template <class Real, int K>
 CATENA_HD bool is_nearly_singular(Symmetric<Real, K> const& factor, Vector<Real, K> const& size, int restricted) {
     bool small = false;
@@ -44,16 +47,18 @@ CATENA_HD bool is_nearly_singular(Symmetric<Real, K> const& factor, Vector<Real,
     return small;
 }
 
-/// a = V diag(values) V^T by Jacobi's rotations; the columns of `vectors` are V.
+/// Spectral decomposition a = V diag(values) V^T; the columns of `vectors` are V.
 template <class Real, int K>
 struct Spectrum {
     Vector<Real, K> values;
     Matrix<Real, K, K> vectors;
 };
+/// Returns the spectral decomposition of `a` by Jacobi rotations.
 template <class Real, int K>
 CATENA_HD_APART Spectrum<Real, K> spectrum_of(Symmetric<Real, K> a) {
     using std::sqrt;
-    int constexpr rounds = 10;  // six by six is diagonal to rounding after seven at most
+    // A 6 x 6 matrix is diagonal up to rounding after seven rounds at most.
+    int constexpr rounds = 10;
     Spectrum<Real, K> s;
     s.vectors = Matrix<Real, K, K>::identity();
     for (int round = 0; round < rounds; ++round)
@@ -80,8 +85,10 @@ CATENA_HD_APART Spectrum<Real, K> spectrum_of(Symmetric<Real, K> a) {
     return s;
 }
 
-/// The pseudo-inverse of z's leading `restricted` rows in the metric of the open chain: with D = diag(size), D^-1/2 z D^-1/2 has its
-/// eigenvalues below `lost_digits` taken for 0. Forces x = z^+ b then have the least x^T D x. NaN where z is indefinite beyond that.
+/// Returns the pseudo-inverse of z's leading `restricted` rows in the metric of the open chain.
+/// With D = diag(size), eigenvalues of D^-1/2 z D^-1/2 below `lost_digits` count as 0. Forces x =
+/// z^+ b then have the least x^T D x. The result is NaN if z has an eigenvalue below
+/// -`lost_digits` in this metric.
 template <class Real, int K>
 CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& z, Vector<Real, K> const& size, int restricted) {
     using std::sqrt;
@@ -102,8 +109,8 @@ CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& 
     return inverse;
 }
 
-/// The joint that closes a loop: factors as of any joint, or where it is nearly singular none, and the pseudo-inverse as `inboard`, which
-/// is zero otherwise.
+/// Returns the joint that closes a loop. Its factor is that of any joint; if it is nearly singular,
+/// its factor is zero and `inboard` holds the pseudo-inverse, which is zero otherwise.
 template <class Real, int K>
 CATENA_HD JointMatrix<Real, K> closing_joint(Symmetric<Real, K> const& z, Vector<Real, K> const& size, int restricted) {
     JointMatrix<Real, K> joint{factorize(z, restricted), Matrix<Real, K, K>::zero(), Matrix<Real, K, K>::zero()};
@@ -112,7 +119,7 @@ CATENA_HD JointMatrix<Real, K> closing_joint(Symmetric<Real, K> const& z, Vector
     joint.factor = Symmetric<Real, K>::zero();
     return joint;
 }
-/// Whether the joint was nearly singular, but not indefinite.
+/// True if the joint was nearly singular, but not indefinite.
 template <class Real, int K>
 CATENA_HD bool has_least_norm(JointMatrix<Real, K> const& joint) {
     bool any = false;
@@ -120,7 +127,8 @@ CATENA_HD bool has_least_norm(JointMatrix<Real, K> const& joint) {
     for (int i = 0; i < K; ++i) any = any || joint.inboard(i, i) > Real(0);
     return any;
 }
-/// Its force, which takes away `apart`, the acceleration of its inboard side against its outboard one.
+/// Returns the closing joint's force. It cancels `apart`, the acceleration of the joint's inboard
+/// side relative to its outboard side.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> closing_force(JointMatrix<Real, K> const& joint, Vector<Real, K> const& apart) {
     return solve_upper(joint.factor, solve_lower(joint.factor, apart)) + joint.inboard * apart;

@@ -1,5 +1,5 @@
-// Bodies of a run on revolute joints whose motion is found along the way up (RevoluteLoads): in the
-// run's axes, from what moves before. Host and device.
+// Velocities of bodies in a run on revolute joints (RevoluteLoads), computed along the inward pass,
+// in the run's axes. Host and device.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -7,15 +7,15 @@
 
 namespace catena::dca {
 
-/// What moves, in the run's axes, and what it is there: `difference.a` lacks the share of the
-/// handle inboard of it.
+/// A body and its velocity terms, in the run's axes. `difference.a` still lacks the centripetal
+/// acceleration of the handle inboard of the body.
 template <class Real>
 struct FollowedBody {
     LoadedBodyInRun<Real> in_run;
     Vector<Real, 3> omega, inward2;
 };
-/// Of a body to whose axes `turn` leads back from the run's, from the angular velocity of the one
-/// before. What acts on it from outside is not there yet.
+/// Computes a body's velocity terms from the angular velocity of the body before. `turn` is the
+/// rotation matrix from the body's axes to the run's. External loads are not included yet.
 template <class Real>
 CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
                                              Matrix<Real, 3, 3> const& turn,
@@ -24,7 +24,8 @@ CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
     Vector3 const axis = turn * body.axis, r1 = turn * body.r1, r2 = turn * body.r2;
     Vector3 const angular = body.rate * cross(omega_before, axis),
                   omega = plus_scaled(omega_before, body.rate, axis);
-    Real const square = dot(omega, omega);  // omega x (omega x r) in fewer operations
+    // The expression for omega x (omega x r) needs fewer operations.
+    Real const square = dot(omega, omega);
     auto const inward = [&](Vector3 const& r) {
         return plus_scaled(dot(omega, r) * omega, -square, r);
     };
@@ -39,12 +40,14 @@ CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
             omega,
             inward(r2)};
 }
-/// Of the body come to.
+/// State of the recursion at the current body.
 template <class Real>
 struct FollowedState {
-    Quaternion<Real> turn;          // to the run's axes
-    Vector<Real, 3> omega, inward;  // omega x (omega x r) at its handle 2; the run's axes
+    Quaternion<Real> turn;  // Rotation from the body's axes to the run's.
+    // Angular velocity, and omega x (omega x r) at the body's handle 2, in the run's axes.
+    Vector<Real, 3> omega, inward;
 
+    /// Advances the state to `body` and returns it with `difference` completed.
     CATENA_HD_IN_PLACE LoadedBodyInRun<Real> go_on(FollowedBody<Real> const& body) {
         LoadedBodyInRun<Real> next = body.in_run;
         next.difference.a = inward + next.difference.a;
@@ -54,7 +57,7 @@ struct FollowedState {
     }
 };
 
-/// A run of two bodies or more whose revolute joints' loads are given.
+/// A run of two bodies or more whose joint loads are given as RevoluteLoads.
 template <class Leaf>
 class RunWithLoads {
     using Real = double;
@@ -65,7 +68,7 @@ class RunWithLoads {
     CATENA_HD int count() const { return static_cast<int>(run_.count); }
     CATENA_HD bool has_wrenches() const { return loads_.revolutes.torque.origin; }
     CATENA_HD Vec3 first_omega() const { return loads_.omega.load(run_.body); }
-    /// omega x (omega x r) at the first body's handle 2.
+    /// Returns omega x (omega x r) at the first body's handle 2.
     CATENA_HD Vec3 first_inward() const {
         Vec3 const omega = first_omega();
         return cross(omega, cross(omega, leaf_.frame_at_rest(run_.body).r2));
@@ -74,25 +77,27 @@ class RunWithLoads {
     CATENA_HD BodyOnRevolute<Real> on_revolute(int i) const {
         return leaf_.on_revolute(loads_, run_.body + i, ReadLast{});
     }
-    /// Of the revolute joint inboard of body i, within the run.
+    /// Returns the torque of the joint inboard of body i, which is inside the run.
     CATENA_HD double torque_about(int i) const {
         return joint_torque().origin
                    ? joint_torque().at(run_.body + i, RevoluteLoads::about_revolute)
                    : 0.0;
     }
-    /// From outside, on a body in the run's axes.
+    /// Adds the external loads on body i, in the run's axes.
     CATENA_HD void add_wrench(int i, LoadedBodyInRun<Real>& body) const {
         if (has_wrenches()) add_wrench(i, first_from_ground(), body.torque, body.force);
     }
+    /// Returns the first body with its loads and velocity terms, in its own axes.
     CATENA_HD ArticulatedBody<Real> first() const {
         ArticulatedBody<Real> body = at_rest(0);
         set_moving(0, first_omega(), body);
         push(0, has_wrenches() ? first_from_ground() : Mat3::identity(), body);
         return body;
     }
-    /// `axes` of its revolute joint and `omega` of the body before, in the run's axes. `kept`:
-    /// put_omega(i, its own, in its axes), and put_orientation(what turns to its axes) where there
-    /// are wrenches.
+    /// Returns the last body with its loads and velocity terms, in its own axes. `axes` are those
+    /// of its revolute joint and `omega` is the angular velocity of the body before, both in the
+    /// run's axes. `kept` gets put_omega(i, the body's own angular velocity in its axes). With
+    /// external loads it also gets put_orientation(rotation matrix from W to the body's axes).
     template <class Kept>
     CATENA_HD ArticulatedBody<Real> last(Mat3 const& axes, Vec3 const& omega, Kept&& kept) const {
         int const i = count() - 1;
@@ -109,20 +114,24 @@ class RunWithLoads {
         push(i, from_ground, body);
         return body;
     }
-    /// For the way back. `kept`: omega(i), orientation().
+    /// Returns the kinematics of body i for the outward pass. `kept` supplies omega(i).
     template <class Kept>
     CATENA_HD RevoluteFrame<Real> frame(int i, Kept const& kept) const {
         RevoluteFrame<Real> f = leaf_.frame_at_rest(run_.body + i);
         leaf_.set_moving(loads_, run_.body + i, omega(i, f, kept), f);
         return f;
     }
-    /// What a body leaves for the one before it, where joints' forces are wanted.
+    /// State of the recursion that computes joint forces in the outward pass.
     struct PassedOn {
+        // Force at the joint inboard of the body passed last, along its directions.
         Vector<Real, 5> force;
+        // Inboard axes of that body, and the rotation matrix from W to its axes.
         Mat3 e1 = Mat3::identity(), from_ground = Mat3::identity();
-        double torque = 0;  // about the revolute joint between them, within the run
+        // Torque about the revolute joint between the two bodies, within the run.
+        double torque = 0;
     };
-    /// The force at the joint inboard of body i, from that at the next one: in turn.
+    /// Returns the force at the joint inboard of body i from that at the next joint. Called for the
+    /// bodies from the last to the first. `kept` supplies omega(i) and orientation().
     template <class Kept>
     CATENA_HD Vector<Real, 5> pass_on(int i, RevoluteFrame<Real> const& frame,
                                       BodyAcceleration<Real> const& a, Kept const& kept,
@@ -139,7 +148,8 @@ class RunWithLoads {
                           : transposed_times(turn_of_two(frame), first_from_ground());
         }
         push(i, passed.from_ground, body);
-        // Its own revolute joint's torque is along none of the force's directions.
+        // The torque of the outboard revolute joint is along none of the force's directions, so
+        // that `passed.force` lacks it.
         body.torque = body.torque - passed.torque * body.e2.column(2);
         passed.force = inboard_force(body, a, passed.force);
         passed.e1 = frame.e1;
@@ -149,6 +159,7 @@ class RunWithLoads {
 
   private:
     CATENA_HD ConstView<3> const& joint_torque() const { return loads_.revolutes.joint_torque; }
+    // Returns the rotation matrix from W to the first body's axes.
     CATENA_HD Mat3 first_from_ground() const {
         return transpose(to_matrix(as_quaternion(loads_.revolutes.orientation.load(run_.body))));
     }
@@ -159,12 +170,14 @@ class RunWithLoads {
         leaf_.set_moving(loads_, run_.body + i, omega, body);
         body.torque = body.torque - cross(omega, body.inertia * omega);
     }
+    /// Returns the last body's angular velocity in its own axes, from that of the body before in
+    /// the run's axes.
     CATENA_HD Vec3 omega_beyond(Mat3 const& turn, Vec3 const& omega,
                                 RevoluteFrame<Real> const& last) const {
         return transposed_times(turn, omega) +
                loads_.revolute_rate.at(run_.body + count() - 1, 0) * last.e1.column(2);
     }
-    /// From the second of two bodies to the first one.
+    /// Returns the rotation matrix from the second of two bodies to the first.
     CATENA_HD Mat3 turn_of_two(RevoluteFrame<Real> const& last) const {
         return axes2(0) * transpose(last.e1);
     }
@@ -177,8 +190,8 @@ class RunWithLoads {
         torque = torque + from_ground * loads_.revolutes.torque.load(run_.body + i);
         force = force + from_ground * loads_.revolutes.force.load(run_.body + i);
     }
-    /// What acts on the first body or the last one from outside and by the joint at the run's end,
-    /// on others from outside alone.
+    /// Adds the loads on the first or the last body: external loads and the torque of the joint at
+    /// the run's end. On other bodies, only external loads act.
     CATENA_HD void push(int i, Mat3 const& from_ground, ArticulatedBody<Real>& body) const {
         if (has_wrenches()) add_wrench(i, from_ground, body.torque, body.force);
         if (!joint_torque().origin) return;
@@ -194,7 +207,8 @@ class RunWithLoads {
     Run const& run_;
 };
 
-/// As BodiesOfRun. `all`: the way back asks for every body's frame. `kept`: as RunWithLoads::last.
+/// Supplies the bodies of a run as BodiesOfRun does. `all`: the outward pass needs every body's
+/// kinematics. `kept` has the interface that RunWithLoads::last() needs.
 template <class Leaf, class Kept>
 class FollowedBodies {
   public:
@@ -214,7 +228,7 @@ class FollowedBodies {
         if (all_ || i == run_.count() - 2) kept_.put_omega(i, transposed_times(turn, state.omega));
         return body;
     }
-    /// After before_last().
+    /// Returns the last body. Precondition: before_last() was called.
     CATENA_HD_IN_PLACE ArticulatedBody<double> last(int) {
         return run_.last(axes_, state.omega, kept_);
     }
@@ -228,7 +242,7 @@ class FollowedBodies {
     RunWithLoads<Leaf> const& run_;
     bool all_;
     Kept& kept_;
-    Mat3 axes_;  // of the last revolute joint
+    Mat3 axes_;  // Axes of the last revolute joint, in the run's axes.
 };
 
 }  // namespace catena::dca

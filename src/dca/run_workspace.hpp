@@ -1,5 +1,5 @@
-// Where runs on revolute joints leave what their way back needs: among the nodes of the joints that
-// they do not join.
+// Storage of the data that the outward pass of a run on revolute joints needs. It uses the nodes of
+// the joints inside the run, which are not eliminated one by one.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace catena::dca {
 
-/// What the way down needs of a run on revolute joints, where joining would keep the joints of its
-/// bodies. Precondition: what end(), revolute joint(), body(), omega() and swing() are asked for
-/// was put; axes(), omega(), swing() and orientation(): of a run of three bodies or more.
+/// Data of a run on revolute joints for its outward pass, stored in the nodes of its inner joints.
+/// Precondition: end(), revolute(), body(), omega() and swing() are called only for what was put.
+/// axes(), omega(), swing() and orientation() need a run of three bodies or more.
 template <class Sweeps>
 class RunWorkspace {
     using Revolute = ReleasedRevolute<double>;
@@ -19,12 +19,14 @@ class RunWorkspace {
     using End = RunsEnd<double>;
     using Factor = Symmetric<double, 6>;
     using Column = Vector<double, 6>;
-    // The last revolute joint's and the end's numbers lie together, what else is of the last body
-    // beside the body before: a run of two has none between its ends.
+    // The last body's node holds its revolute joint and the end of the run, one after the other.
+    // The rest of its data are in the node of the body before. A run of two bodies has no such node
+    // and needs no such data.
     static constexpr int of_revolute = sizeof(Revolute) / sizeof(double),
                          of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
     static constexpr int of_end = sizeof(End) / sizeof(double),
                          most = sizeof(typename Sweeps::Node) / sizeof(double);
+    // Velocity bias of a body, FloatingRun::swing.
     using Swing = BodyAcceleration<double>;
     static constexpr int of_swing = sizeof(Swing) / sizeof(double);
     static constexpr int at_axes = of_revolute + of_body, at_swing = at_axes + of_axes,
@@ -36,14 +38,14 @@ class RunWorkspace {
                   offsetof(End, bias) == (at_bias - of_revolute) * sizeof(double));
 
   public:
-    /// What the way back begins with, in a run of three bodies or more: end(), axes() and
+    /// Data with which the outward pass begins, in a run of three bodies or more: end(), axes() and
     /// swing(last - 1).
     struct Tail {
         End end;
         Mat3 axes;
         Swing swing;
     };
-    /// `all`: the way back asks for every body's swing.
+    /// `all`: the outward pass needs the velocity bias of every body.
     CATENA_HD RunWorkspace(Sweeps const& sweeps, Run const& run, bool all)
         : sweeps_(sweeps), run_(run), all_(all) {}
     CATENA_HD void put(int i, Revolute const& revolute) {
@@ -63,7 +65,7 @@ class RunWorkspace {
         store(last(), at_first, end.first);
         store(last(), at_bias, end.bias);
     }
-    // Part by part.
+    // Parts of RunsEnd, for callers that compute it column by column.
     CATENA_HD void put(Factor const& factor) {
         store(last(), of_revolute, factor);
         CATENA_UNROLL
@@ -77,14 +79,14 @@ class RunWorkspace {
     CATENA_HD void put_axes(Mat3 const& axes) {
         if (last() > 1) store(last() - 1, at_axes, axes);
     }
-    /// Of a body that is not the first, in its axes.
+    /// Stores the angular velocity of a body other than the first, in the body's axes.
     CATENA_HD void put_omega(int i, Vec3 const& omega) {
         if (i < last())
             store(i, at_omega, omega);
         else if (last() > 1)
             store(last() - 1, at_last_omega, omega);
     }
-    /// What turns from the ground's axes to the last body's.
+    /// Stores the rotation matrix from W to the last body's axes.
     CATENA_HD void put_orientation(Mat3 const& from_ground) {
         if (last() > 1) store(last() - 1, at_orientation, from_ground);
     }
@@ -95,11 +97,12 @@ class RunWorkspace {
     CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, at_axes); }
     CATENA_HD Vec3 omega(int i) const { return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega); }
     CATENA_HD Mat3 orientation() const { return load<Mat3>(last() - 1, at_orientation); }
-    /// Number n of it.
+    /// Returns number n of Tail.
     CATENA_HD double tail(int n) const {
         static_assert(at_swing == at_axes + of_axes && sizeof(Tail) == (of_end + of_axes + of_swing) * sizeof(double));
         return n < of_end ? number(last(), of_revolute + n) : number(last() - 1, at_axes + n - of_end);
     }
+    /// Returns the first joint of the run with a pivot failure.
     CATENA_HD PivotFailure const& lost() const { return lost_; }
 
   private:

@@ -1,19 +1,19 @@
-// The two operations of the divide-and-conquer algorithm, host and device; Real = double, float, an
-// extended or SIMD type, K = number of directions a handle carries.
+// The two operations of the divide-and-conquer algorithm, assembly and disassembly, host and
+// device. Real = double, float, an extended or a SIMD type; K = number of directions per handle.
 //
 // At joint j the directions are ordered so that the first m(j) are the restricted ones (D of the
-// chapter), the others are free. Projected handles carry K = max m directions, full handles all of
-// them (6; 3 for point beads): the operations are the same, since forces along free directions are
-// known and stand in the biases (src/dca/README.md, "Projected handles").
+// chapter) and the others are free. Projected handles carry K = max m directions, full handles all
+// of them (6; 3 for point beads). The operations are the same, because forces along free directions
+// are known and are part of the biases (src/dca/README.md, "Projected handles").
 #pragma once
 
 #include "math/linear.hpp"
 
 namespace catena::dca {
 
-/// A run of bodies seen from its two handles (chapter, eqs 2.8-2.9), projected on the directions of
-/// the joints there:
-///   a1 = z11 f1 + z12 f2 + b1,   a2 = z12^T f1 + z22 f2 + b2.
+/// Mobility of a run of bodies between its two handles (chapter, eqs 2.8-2.9), projected on the
+/// directions of the joints there:
+///  a1 = z11 f1 + z12 f2 + b1,   a2 = z12^T f1 + z22 f2 + b2.
 template <class Real, int K>
 struct SegmentMatrix {
     Symmetric<Real, K> z11, z22;
@@ -23,6 +23,7 @@ struct SegmentMatrix {
         return {Symmetric<Real, K>::zero(), Symmetric<Real, K>::zero(), Matrix<Real, K, K>::zero()};
     }
 };
+/// Bias accelerations b1 and b2 of the two handles in the equations of SegmentMatrix.
 template <class Real, int K>
 struct SegmentBias {
     Vector<Real, K> b1, b2;
@@ -31,31 +32,32 @@ struct SegmentBias {
     }
 };
 
-/// Row i of both; of z11 and z22 what stands up to the diagonal.
+/// Row i of a segment's matrices and biases. The rows of z11 and z22 end at the diagonal.
 template <class Real, int K>
 struct SegmentRow {
     Vector<Real, K> z11, z22, z12;
     Real b1, b2;
 };
 
-/// The matrices of an eliminated joint. With Z = z22^A + z11^B on the restricted directions and Z =
-/// L S L^T: inboard = L^-1 z21^A, outboard = L^-1 z12^B, factor = L below the diagonal and S^-1 on
-/// it (0 in unrestricted rows).
+/// Matrices of an eliminated joint. Let Z = z22^A + z11^B on the restricted directions and Z = L S
+/// L^T. Then inboard = L^-1 z21^A and outboard = L^-1 z12^B. `factor` is L below the diagonal and
+/// S^-1 on it (0 in unrestricted rows).
 template <class Real, int K>
 struct JointMatrix {
     Symmetric<Real, K> factor;
     Matrix<Real, K, K> inboard, outboard;
 };
 
-/// 1 / x.
+/// Computes 1 / x.
 struct Quotient {
     template <class Real>
     CATENA_HD Real operator()(Real const& x) const {
         return Real(1) / x;
     }
 };
-/// Z = L S L^T on the leading `restricted` rows; the others get S^-1 = 0, so that they take no part
-/// in anything. Precondition: Z is positive definite there.
+/// Returns Z = L S L^T on the leading `restricted` rows, stored as in JointMatrix::factor. The
+/// other rows get S^-1 = 0, so that they do not contribute anywhere. Precondition: Z is positive
+/// definite on the leading rows.
 template <class Real, int K, class Inverse = Quotient>
 CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted,
                                        Inverse const& inverse = {}) {
@@ -80,10 +82,12 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
     return f;
 }
 
-/// How matrices are factorized, and inverses taken, as the leaves and the sweeps want them.
+/// Default factorizer, with exact reciprocals. Leaves and sweeps have the factorizer as a
+/// parameter, so that faster ones that may fail can replace it.
 struct Factorizer {
     static constexpr bool may_fail = false;
-    /// result(inverse), inverse(x) = 1 / x. Another way may ask for it again with another inverse.
+    /// Returns result(inverse), where inverse(x) = 1 / x. Other factorizers may call `result` again
+    /// with another `inverse`.
     template <class Result>
     CATENA_HD auto with_inverse(Result const& result) const {
         return result(Quotient{});
@@ -94,7 +98,7 @@ struct Factorizer {
     }
 };
 
-/// L^-1 b
+/// Returns L^-1 b.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> solve_lower(Symmetric<Real, K> const& f, Vector<Real, K> b) {
     CATENA_UNROLL
@@ -104,7 +108,7 @@ CATENA_HD Vector<Real, K> solve_lower(Symmetric<Real, K> const& f, Vector<Real, 
     return b;
 }
 
-/// L^-1 B, column by column
+/// Returns L^-1 B, column by column.
 template <class Real, int K>
 CATENA_HD Matrix<Real, K, K> solve_lower(Symmetric<Real, K> const& f, Matrix<Real, K, K> b) {
     CATENA_UNROLL
@@ -116,7 +120,7 @@ CATENA_HD Matrix<Real, K, K> solve_lower(Symmetric<Real, K> const& f, Matrix<Rea
     return b;
 }
 
-/// S^-1 y
+/// Returns S^-1 y.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> scaled(Symmetric<Real, K> const& f, Vector<Real, K> y) {
     CATENA_UNROLL
@@ -124,7 +128,7 @@ CATENA_HD Vector<Real, K> scaled(Symmetric<Real, K> const& f, Vector<Real, K> y)
     return y;
 }
 
-/// L^-T S^-1 y
+/// Returns L^-T S^-1 y.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, K> y) {
     y = scaled(f, y);
@@ -135,28 +139,29 @@ CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, 
     return y;
 }
 
-/// z - a.b
+/// Returns z - a.b.
 template <class Real, int K>
 CATENA_HD Real less_products(Real z, Vector<Real, K> const& a, Vector<Real, K> const& b) {
     CATENA_UNROLL
     for (int k = 0; k < K; ++k) z = less_product(a[k], b[k], z);
     return z;
 }
-/// z - m^T S^-1 m
+/// Returns z - m^T S^-1 m.
 template <class Real, int K>
 CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Real, K, K> const& m, Symmetric<Real, K> const& factor) {
     Symmetric<Real, K> s;
     CATENA_UNROLL
-    for (int j = 0; j < K; ++j) {  // column by column: what each needs fits a processor's registers
+    // One column at a time, because the operands of a column fit the registers.
+    for (int j = 0; j < K; ++j) {
         Vector<Real, K> const of_column = scaled(factor, m.column(j));
         CATENA_UNROLL
         for (int i = j; i < K; ++i) s(i, j) = less_products(z(i, j), m.column(i), of_column);
     }
     return s;
 }
-/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (src/dca/README.md, "Assembly and disassembly", with
-/// W = D (D^T Z D)^-1 D^T).
-/// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
+/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions
+/// (src/dca/README.md, "Assembly and disassembly", with W = D (D^T Z D)^-1 D^T). Precondition: z22
+/// of `segment` + z11 of `outboard` is positive definite on these directions.
 template <class Real, int K, class Factorizer = dca::Factorizer>
 CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint,
                       Factorizer const& factors = {}) {
@@ -164,7 +169,8 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     CATENA_UNROLL
-    for (int j = 0; j < K; ++j) {  // as less_square, of both at once
+    // The two products of a column are computed together, otherwise as in less_square().
+    for (int j = 0; j < K; ++j) {
         Vector<Real, K> const of_column = scaled(joint.factor, joint.outboard.column(j));
         CATENA_UNROLL
         for (int i = j; i < K; ++i) segment.z22(i, j) = less_products(outboard.z22(i, j), joint.outboard.column(i), of_column);
@@ -172,7 +178,8 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
     }
     segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
 }
-/// Their biases; `offset` keeps L^-1 (b2 - b1 of `outboard`) for the disassembly (Y of the chapter).
+/// Joins the biases at the same joint. `offset` keeps L^-1 (b2 - b1 of `outboard`) for the
+/// disassembly (Y of the chapter).
 template <class Real, int K>
 CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const& outboard, JointMatrix<Real, K> const& joint,
                       Vector<Real, K>& offset) {
@@ -181,13 +188,14 @@ CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const&
     segment.b1 = segment.b1 - transposed_times(joint.inboard, y);
     segment.b2 = outboard.b2 + transposed_times(joint.outboard, y);
 }
-/// The joined segment, and its biases.
+/// Returns the merged segment's matrices.
 template <class Real, int K>
 CATENA_HD SegmentMatrix<Real, K> assemble(SegmentMatrix<Real, K> inboard, SegmentMatrix<Real, K> const& outboard, int restricted,
                                           JointMatrix<Real, K>& joint) {
     append(inboard, outboard, restricted, joint);
     return inboard;
 }
+/// Returns the merged segment's biases.
 template <class Real, int K>
 CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> inboard, SegmentBias<Real, K> const& outboard,
                                         JointMatrix<Real, K> const& joint, Vector<Real, K>& offset) {
@@ -195,29 +203,31 @@ CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> inboard, SegmentBia
     return inboard;
 }
 
-/// The joint force on the outboard body (chapter, eq 2.12) from those at the joined segment's own two joints: `first` acts on
-/// its first body, `next` on the body that follows its last one (so that f1 = first, f2 = -next).
+/// Returns the joint force on the outboard body (chapter, eq 2.12) from the forces at the merged
+/// segment's own two joints. `first` acts on its first body, `next` on the body that follows its
+/// last one (so that f1 = first, f2 = -next).
 template <class Real, int K>
 CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint, Vector<Real, K> const& offset, Vector<Real, K> const& first,
                                       Vector<Real, K> const& next) {
     return solve_upper(joint.factor, joint.inboard * first + (joint.outboard * next + offset));
 }
 
-/// A joint passed on the way outwards from a known force: its own follows from the next one's, phi = gain phi_next + offset.
+/// Recursion of the joint forces in a run whose first force is known: phi = gain phi_next + offset.
 template <class Real, int K>
 struct Elimination {
     Matrix<Real, K, K> gain;
     Vector<Real, K> offset;
 };
 
-/// A joint's matrices as one side of `append` finds them: outboard = L^-1 z12^B, and the outboard segment's biases.
+/// Matrices of a joint that is eliminated from one side: outboard = L^-1 z12^B, with the outboard
+/// segment's biases.
 template <class Real, int K>
 struct OneSided {
     Symmetric<Real, K> factor;
     Matrix<Real, K, K> outboard;
     SegmentBias<Real, K> bias;
 };
-/// How a joint's force follows from the next one's.
+/// Returns `gain` of a joint's Elimination.
 template <class Real, int K>
 CATENA_HD Matrix<Real, K, K> gain(OneSided<Real, K> const& joint) {
     Matrix<Real, K, K> g;
@@ -225,7 +235,8 @@ CATENA_HD Matrix<Real, K, K> gain(OneSided<Real, K> const& joint) {
     for (int j = 0; j < K; ++j) g.set_column(j, solve_upper(joint.factor, joint.outboard.column(j)));
     return g;
 }
-/// And its offset, once the force on the first body is known: `b2` of the segment so far becomes the joined segment's.
+/// Returns `offset` of a joint's Elimination, given the force on the first body. Updates `b2` from
+/// the segment so far to the merged segment.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> pass_bias(Vector<Real, K>& b2, OneSided<Real, K> const& joint) {
     Vector<Real, K> const offset = solve_lower(joint.factor, b2 - joint.bias.b1);
@@ -238,14 +249,15 @@ CATENA_HD Vector<Real, K> pass_bias(Vector<Real, K>& b2, OneSided<Real, K> const
     }
     return solve_upper(joint.factor, offset);
 }
-/// Both.
+/// Returns the Elimination of a joint and updates `b2` as pass_bias() does.
 template <class Real, int K>
 CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const& joint) {
     Vector<Real, K> const offset = pass_bias(b2, joint);
     return {gain(joint), offset};
 }
-/// One side of `append`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
-/// that force's part in it); they become the joined segment's.
+/// Eliminates a joint from one side, where the force on the first body is known. Only handle 2 of
+/// the segment so far matters: `z22`, and `b2` with that force's contribution. Both are updated to
+/// the merged segment's.
 template <class Real, int K, class Factorizer = dca::Factorizer>
 CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,
                                          SegmentBias<Real, K> const& bias, int restricted, Factorizer const& factors = {}) {

@@ -1,3 +1,4 @@
+// Default implementations of the solver interface, and the error message for pivot failures.
 #include "dca/solver.hpp"
 
 #include <algorithm>
@@ -33,6 +34,8 @@ void add_tree(ChainGroup const& group, Communicator const& communicator, SolverR
 void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     dca::Schedule const& schedule = group.schedule;
     std::int64_t chain, body;
+    // Joints are stored in this order: own bodies and halo, jointed tips, top of shared chains
+    // (Schedule).
     if (joint <= schedule.halo) {
         std::int64_t const global = group.partition.first_of_rank[rank] + joint;
         chain = group.partition.chain_of(global);
@@ -45,6 +48,8 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
         body = schedule.top_body_of_joint[joint - schedule.first_top_joint()];
     }
     bool const tip = body == group.partition.trees[chain].bodies;
+    // The message recommends articulated handles where they exist: open chains in joint coordinates
+    // without implicit springs.
     bool const open =
         !group.beads && !group.linked && group.axes == Axes::joint && !group.has_tips();
     bool const may = open && group.handles != Handles::articulated && group.implicit_joint.empty();

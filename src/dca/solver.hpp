@@ -1,5 +1,6 @@
-// What every backend is: matrices and biases are separate steps, so that the one can run while
-// forces are computed and the other be repeated.
+// Interface of all solver backends. Matrices and biases are separate steps, so that the matrix
+// sweep can overlap with the computation of forces and the bias sweep can be repeated. Quantities
+// are in the units of the scene: nm, ps, amu and kJ/mol unless it says `units: si`.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@
 
 namespace catena {
 
-/// K numbers a body (K known at run time only), laid out as fields.
+/// K numbers per body (K known at run time only), stored as fields: body by body for each number.
 template <class Real>
 struct BasicDirectionsView {
     Real* origin = nullptr;
-    std::int64_t pitch = 0;  // as place_of() has it
+    std::int64_t pitch = 0;  // Stride between the numbers of a body, as place_of() uses it.
     CATENA_HD Real& at(std::int64_t k, int direction) const {
         return origin[direction * to_next_number(pitch) + place_of(k, pitch)];
     }
@@ -40,6 +41,8 @@ struct BasicDirectionsView {
 using DirectionsView = BasicDirectionsView<double>;
 using ConstDirectionsView = BasicDirectionsView<double const>;
 
+/// Storage of K numbers per body for a DirectionsView. Each field is padded to an odd number of
+/// elements.
 class DirectionsField {
   public:
     DirectionsField() = default;
@@ -52,14 +55,16 @@ class DirectionsField {
     LongArray<double> data_;
 };
 
-/// The part of a chain in absolute coordinates on this rank.
+/// The part of one chain in absolute coordinates that this rank owns.
 struct LocalPiece {
-    std::int64_t first = 0;     // local body
-    std::int64_t in_scene = 0;  // its index over the scene
-    Vec3 anchor;                // of a chain that begins at the ground, on a link or a joint there; W
-    /// Local body k's index over the scene, which its noise goes by.
+    std::int64_t first = 0;  // Local index of its first body.
+    std::int64_t in_scene = 0;  // Index of that body in the scene.
+    Vec3 anchor;  // Anchor of a chain that begins at the ground, on a link or a joint there; W.
+    /// Returns the index in the scene of local body k. Its random numbers depend on this index.
     CATENA_HD std::uint64_t body_of(std::int64_t k) const { return static_cast<std::uint64_t>(in_scene + k - first); }
 };
+/// Returns the piece that local body k belongs to. `piece` is an array of `pieces` pieces, ordered
+/// by their first bodies.
 CATENA_HD LocalPiece const& piece_of(LocalPiece const* piece, std::int64_t pieces, std::int64_t k) {
     std::int64_t low = 0, high = pieces;
     while (high - low > 1) {
@@ -72,77 +77,115 @@ CATENA_HD LocalPiece const& piece_of(LocalPiece const* piece, std::int64_t piece
     return piece[low];
 }
 
-/// What the matrices depend on.
+/// Configuration of the bodies, on which the matrices depend. W stands for ground axes, B for body
+/// axes.
 struct ConfigurationView {
-    ConstView<3> direction;      // links: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
-    ConstView<4> rotation;       // bodies: quaternion w x y z: Axes::joint: of B in the meeting frame of its inboard joint; world: in W
-    ConstView<3> tip_direction;  // links: of the link from last body k to the ground; absent where no tip is jointed
-    /// Where the inboard side of joints moves in the inboard body (ChainGroup::moving_meeting): its handle 2 from the centre of mass and
-    /// the meeting frame's axes; B.
+    /// Links: unit direction of link k, from inboard to outboard, W; [0, size]; 0 if there is no
+    /// link.
+    ConstView<3> direction;
+    /// Bodies: quaternion w x y z. With Axes::joint it is the rotation of B in the meeting frame of
+    /// the inboard joint, with Axes::world that in W.
+    ConstView<4> rotation;
+    /// Links: direction of the link from last body k to the ground; absent if no tip is jointed.
+    ConstView<3> tip_direction;
+    /// Outboard handle of bodies whose meeting frame depends on the joint's coordinates
+    /// (ChainGroup::moving_meeting): handle 2 from the centre of mass, and two axes of the meeting
+    /// frame; B.
     ConstView<3> r2;
     ConstView<6> axes2;
-    /// Full handles of bodies without links: compliance of joint k along its three angular directions, the last ones (lower triangle): its
-    /// outboard side yields by that to the joint's force. Absent where no joint does.
+    /// Full handles of bodies without links: compliance of joint k along its three angular
+    /// directions, the last ones (lower triangle). It is P B^-1 P^T of implicit springs and dampers
+    /// (src/dca/README.md, "Joints"). Absent if no joint has a compliance.
     ConstView<6> compliance{};
-    /// Beads, for assemble_and_solve() alone, instead of directions: positions with their halo, W, and the pieces they belong to.
+    /// Beads: positions with their halo, W, and the pieces to which the beads belong. Only
+    /// assemble_and_solve() uses them, instead of directions.
     ConstView<3> position{};
     LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
 };
 
-/// For one that goes_by_revolutes(): of runs of two bodies or more omega is known of first bodies alone, and this stands in the place of torque
-/// and force. A view without origin means zero.
+/// Loads for a solver that goes_by_revolutes(). In runs of two bodies or more, omega is known of
+/// the first bodies only, and these views replace torque and force. A view without origin means
+/// zero.
 struct RevoluteLoads {
     bool given = false;
-    ConstView<4> rotation;  // of bodies on revolute joints: quaternion of B in the body before; those side by side have `frame` instead
-    ConstView<4> frame;     // of the meeting frame there
-    /// What joints do along their free directions, on body k along the axes of its inboard joint, of revolute joints about the last one; [0, size].
+    /// Rotation of bodies on revolute joints: quaternion of B in the axes of the body before.
+    /// Bodies that are processed side by side have `frame` instead.
+    ConstView<4> rotation;
+    /// Rotation of the meeting frame in the axes of the body before, as a quaternion.
+    ConstView<4> frame;
+    /// Torques of joints along their free directions, on body k along the axes of its inboard
+    /// joint; [0, size]. That of a revolute joint is about the last axis.
     ConstView<3> joint_torque;
-    static constexpr int about_revolute = 2;  // component
-    ConstView<3> torque, force;  // from outside, about the centre of mass, W
-    ConstView<4> orientation;    // where these are: of first bodies, quaternion of B in W
+    static constexpr int about_revolute = 2;  // Component of `joint_torque`.
+    ConstView<3> torque, force;  // External torque about the centre of mass and external force, W.
+    /// Rotation of first bodies, if there are external loads: quaternion of B in W.
+    ConstView<4> orientation;
 };
 
-/// What the biases depend on. A view without origin means zero.
+/// Loads and velocities of the bodies, on which the biases depend. A view without origin means
+/// zero.
 struct LoadsView {
-    ConstView<3> torque;       // on each body about its centre of mass, B, joint torques and -omega x J omega included
-    ConstView<3> force;        // on each body: Axes::joint: B; Axes::world and beads: W
-    ConstView<3> omega;        // angular velocity, B: for the centripetal terms at the handles
-    ConstDirectionsView bias;  // subtracted velocity terms of joint k along its directions (chapter, eq 2.5): D^T (A_1^B - A_2^A) = -bias
-    ConstDirectionsView tip_bias;  // the same of the joint between last body k and the ground
-    ConstView<3> velocity{};       // with positions given instead of directions: of beads, with their halo, W; instead of `bias`
-    bool gyroscopic = false;       // `torque` lacks -omega x J omega: the solver adds it
-    /// For assemble_and_solve() that goes_by_revolutes(): rates of the revolute joints, of which it makes their biases. `bias` then is asked for of
-    /// bodies alone that begin a chain or make a run by themselves.
+    /// Torque on each body about its centre of mass, B. Joint torques and -omega x J omega are
+    /// included, except where stated below.
+    ConstView<3> torque;
+    /// Force on each body; in B with Axes::joint, in W with Axes::world and for beads.
+    ConstView<3> force;
+    ConstView<3> omega;  // Angular velocity, B, for the centripetal terms at the handles.
+    /// Subtracted velocity terms of joint k along its directions (chapter, eq 2.5): D^T (A_1^B -
+    /// A_2^A) = -bias.
+    ConstDirectionsView bias;
+    /// Subtracted velocity terms of the joint between last body k and the ground.
+    ConstDirectionsView tip_bias;
+    /// Velocities of beads with their halo, W; given instead of `bias` where positions replace
+    /// directions.
+    ConstView<3> velocity{};
+    bool gyroscopic = false;  // True if `torque` lacks -omega x J omega; the solver then adds it.
+    /// Rates of the revolute joints, for assemble_and_solve() of a solver that goes_by_revolutes().
+    /// The solver computes the joints' velocity terms from them. `bias` is then needed only for
+    /// bodies that begin a chain or form a run of one body.
     ConstView<1> revolute_rate{};
     RevoluteLoads revolutes{};
 };
 
-/// Of links: what the inverse of their matrix T (src/dca/README.md, "Link chains") says beyond solutions.
+/// Results of ChainSolver::invert() for links: entries of the inverse of their matrix T
+/// (src/dca/README.md, "Link chains").
 struct InverseView {
-    View<1> pivot;      // of link k in the tree's order, those of tips among them: their product is det T; 1 where there is no link
-    View<1> tip_pivot;  // of the link from last body k to the ground
-    View<1> beside;     // (T^-1)_k,k+1 of the links on either side of body k; 0 where there are not two
+    /// Pivot of link k in the elimination order of the tree; 1 if there is no link. The product of
+    /// all pivots, those of tips included, is det T.
+    View<1> pivot;
+    View<1> tip_pivot;  // Pivot of the link from last body k to the ground.
+    View<1> beside;  // Entry (T^-1)_k,k+1 of the two links of body k; 0 if it does not have two.
 };
 
+/// Results of a solver. Each view may be absent (without origin) if its values are not requested.
 struct AccelerationsView {
-    View<3> alpha;               // angular, B; may be absent
-    View<3> acceleration;        // of the centre of mass (bead), axes of LoadsView::force; may be absent
-    DirectionsView joint_force;  // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
-    DirectionsView tip_force;    // on the ground at the jointed tip of last body k; may be absent
-    /// Of assemble_and_solve() that goes_by_revolutes(), in the place of most bodies' alpha and acceleration, which then are those of bodies
-    /// that begin a chain, make a run by themselves, come before such a one, or are this rank's last. In runs of two bodies or more
-    /// component 0 is the angular acceleration of body k about its revolute joint, against the body before or, of a run's first body, against the
-    /// ground; component 1, of the joint after such a run, that of the run's last body against the ground about that joint's axis:
-    /// [0, size].
+    View<3> alpha;  // Angular acceleration, B.
+    /// Acceleration of the centre of mass or of the bead, in the axes of LoadsView::force.
+    View<3> acceleration;
+    /// Constraint force on body k along the directions of its inboard joint; [0, size].
+    DirectionsView joint_force;
+    DirectionsView tip_force;  // Constraint force on the ground at the jointed tip of last body k.
+    /// Joint accelerations, for assemble_and_solve() of a solver that goes_by_revolutes(); [0,
+    /// size]. They replace alpha and acceleration of most bodies. These two are then computed only
+    /// for bodies that begin a chain, form a run of one body, precede such a body, or are this
+    /// rank's last.
+    ///
+    /// In runs of two bodies or more, component 0 is the angular acceleration of body k about its
+    /// revolute joint, relative to the body before; for a run's first body, relative to the ground.
+    /// Component 1 belongs to the joint after such a run: angular acceleration of the run's last
+    /// body about that joint's axis, relative to the ground.
     View<2> revolute_acceleration{};
-    /// Whether runs on revolute joints find the accelerations of all their bodies, not only of those named above.
+    /// True if runs on revolute joints compute the accelerations of all their bodies, not only of
+    /// those named above.
     CATENA_HD bool by_all_bodies() const { return !revolute_acceleration.origin || joint_force; }
 };
 
-/// Of a tree whose lowest levels are computed in one place and the others in another one (cuda-levels: GPU and CPU).
+/// Seconds of a solver whose tree is cut: its lowest levels are computed in one place and the
+/// others in another (cuda-levels: GPU and CPU).
 struct SplitSeconds {
-    double lower_assembly = 0, upper_assembly = 0, lower_disassembly = 0, upper_disassembly = 0;  // leaves, top and exchange included
+    /// Leaves, top and exchange between ranks are included.
+    double lower_assembly = 0, upper_assembly = 0, lower_disassembly = 0, upper_disassembly = 0;
     double upload = 0, download = 0;
 
     double lower() const { return lower_assembly + lower_disassembly; }
@@ -162,60 +205,75 @@ struct SplitSeconds {
     }
 };
 
+/// Statistics of a solver, printed in reports.
 struct SolverReport {
     std::string backend, handles;
-    SimdLevel simd = SimdLevel::off;  // of runs that go side by side, where there are any
+    /// SIMD level of runs that are processed side by side, if there are any.
+    SimdLevel simd = SimdLevel::off;
     int directions = 0, threads = 1, ranks = 1;
     std::int64_t run_length = 0, depth = 0, merges = 0;
     std::int64_t memory_bytes = 0;
-    bool direct_exchange = false;  // ranks' GPUs write to each other's memory
-    std::int64_t matrix_sweeps = 0, bias_sweeps = 0, evaluations = 0;  // of the latter each is both, matrices and biases together
+    /// True if the GPUs of ranks write directly to each other's memory.
+    bool direct_exchange = false;
+    /// Numbers of sweeps; an evaluation computes matrices and biases together.
+    std::int64_t matrix_sweeps = 0, bias_sweeps = 0, evaluations = 0;
     double matrix_seconds = 0, bias_seconds = 0, exchange_seconds = 0;
     SplitSeconds split;
 };
 
+/// A solver of the equations of motion of one group of chains, on one backend.
 class ChainSolver {
   public:
     virtual ~ChainSolver() = default;
-    /// Needs no forces. Collective. Throws ComputationError when a joint's matrix is not positive definite, or leaves that to check()
-    /// where it does not wait for what it asked for.
+    /// Assembles the matrices; needs no forces. Collective. Throws ComputationError if a joint's
+    /// matrix is not positive definite. Asynchronous backends report that failure from check().
     virtual void assemble_matrices(ConfigurationView const&) = 0;
-    /// The bias sweep and the disassembly with the matrices and the configuration given last; may be repeated. Collective.
+    /// Computes the bias sweep and the disassembly with the matrices and the configuration given
+    /// last; may be repeated. Collective.
     virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
-    /// Both, where nothing is to be hidden: the matrices are not kept for solve(), and the last bits may be others. Collective.
+    /// Computes both, where no other work could be overlapped. The matrices are not kept for
+    /// solve(), and the last bits may differ. Collective.
     virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         assemble_matrices(configuration);
         solve(loads, out);
     }
-    /// Whether assemble_and_solve() is one sweep, which reads beads by their positions and velocities.
+    /// True if assemble_and_solve() is one fused sweep, which reads beads from their positions and
+    /// velocities.
     virtual bool at_once() const { return false; }
-    /// Whether it takes runs on revolute joints by their inertias, and so can do with less: LoadsView::revolute_rate, RevoluteLoads,
+    /// True if the solver computes runs on revolute joints by articulated-body inertias. It then
+    /// needs less input: LoadsView::revolute_rate, RevoluteLoads,
     /// AccelerationsView::revolute_acceleration.
     virtual bool goes_by_revolutes() const { return false; }
-    /// Whether runs go side by side (deal_out_runs()).
+    /// True if several runs are processed side by side in SIMD lanes (deal_out_runs()).
     virtual bool has_runs_side_by_side() const { return false; }
-    /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
-    /// Collective.
+    /// Returns `repeat` times in seconds. Each is the mean of `chained` consecutive calls of
+    /// assemble_and_solve(), whose views are already in the solver's memory. Collective.
     virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,
                                                  int repeat);
-    /// Throws ComputationError when a joint's matrix has not been positive definite since the last call, on this rank.
+    /// Throws ComputationError if a joint's matrix on this rank has not been positive definite
+    /// since the last call.
     virtual void check() {}
-    /// Until everything asked for so far is done.
+    /// Waits until all submitted work is complete.
     virtual void wait() {}
-    /// From here on the seconds of every sweep are in the report, if need be by waiting for each.
+    /// Switches measurement on or off. With measurement, the report contains the seconds of every
+    /// sweep; asynchronous backends wait after each for that.
     virtual void measure(bool /*on*/) {}
-    /// With the matrices assembled last by assemble_matrices(). Precondition: links, a backend without a GPU.
+    /// Computes entries of T^-1 from the matrices that assemble_matrices() assembled last.
+    /// Precondition: links, a backend without a GPU.
     virtual void invert(InverseView const&);
+    /// Returns the statistics since construction.
     virtual SolverReport report() const = 0;
 };
 
-/// Run length and depth of the group's largest tree, directions and ranks, into a report.
+/// Adds run length and depth of the group's largest tree, directions and ranks to a report.
 void add_tree(ChainGroup const&, Communicator const&, SolverReport&);
 
-/// Throws what is wrong with a joint of the group's schedule on this rank: its matrix is not positive definite.
+/// Throws the ComputationError that names a joint of this rank's schedule whose matrix is not
+/// positive definite.
 [[noreturn]] void refuse_indefinite(ChainGroup const&, int rank, std::int64_t joint);
 
-/// The divide-and-conquer solver over a group's canonical tree. The group, executor and communicator must outlive it.
+/// Returns the divide-and-conquer solver over a group's canonical tree on the host. The group,
+/// executor and communicator must outlive it.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Executor const&, Communicator const&);
 
 }  // namespace catena

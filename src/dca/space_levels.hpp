@@ -1,5 +1,5 @@
-// A part of the tree's levels in any Space, level by level as the chapter has it: one loop (on a
-// GPU: one kernel) a level.
+// Part of the tree's levels in any Space, computed level by level as in the chapter: one loop per
+// level, on a GPU one kernel per level.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace catena::dca {
 
 namespace loops {
 
+/// Inward pass of one item: a run, a merge or a root.
 template <class Sweep>
 struct Climb {
     Sweep sweep;
@@ -19,6 +20,7 @@ struct Climb {
     CATENA_HD void operator()(Merge const& m) const { climb_merge(sweep, m); }
     CATENA_HD void operator()(Root const& root) const { close_root(sweep, root); }
 };
+/// Outward pass of one item: a run or a merge.
 template <class Sweep>
 struct Descend {
     Sweep sweep;
@@ -27,6 +29,7 @@ struct Descend {
         descend_merge(sweep, m, sweep.node(m.joint));
     }
 };
+/// Copies the records at `places` into a contiguous array.
 template <class T, Order order>
 struct Pack {
     RecordsView<T, order> items;
@@ -34,6 +37,7 @@ struct Pack {
     T* packed;
     CATENA_HD void operator()(std::int64_t i) const { packed[i] = items.load(places[i]); }
 };
+/// Copies a contiguous array into the records at `places`.
 template <class T, Order order>
 struct Unpack {
     T const* packed;
@@ -44,23 +48,29 @@ struct Unpack {
 
 }  // namespace loops
 
-/// How views and numbers of the host come to the host's own space: they are there.
+/// Transfers of views and numbers between the host and the host's own space. The data are already
+/// there.
 class HostCrossing {
   public:
     explicit HostCrossing(ChainGroup const&, HostSpace const&) {}
+    /// Returns views in the space with the values of the host's views.
     ConfigurationView take(ConfigurationView const& host) const { return host; }
     LoadsView take(LoadsView const& host) const { return host; }
+    /// Returns views in the space for results; fetch() copies them to the host's views.
     AccelerationsView wanted(AccelerationsView const& host) const { return host; }
     void fetch(AccelerationsView const&) const {}
+    /// Copies to.size() numbers from the space to the host.
     void download(std::vector<double> const& from, std::vector<double>& to) const {
         std::copy_n(from.begin(), to.size(), to.begin());
     }
+    /// Copies all numbers from the host to the space.
     void upload(std::vector<double> const& from, std::vector<double>& to) const {
         std::copy(from.begin(), from.end(), to.begin());
     }
 };
 
-/// `Crossing`: as HostCrossing, of the space.
+/// LevelPart in a Space. `Crossing` transfers data between the host and that space and has the
+/// interface of HostCrossing.
 template <class Leaf, class Space, class Crossing>
 class SpaceLevels final : public LevelPart {
     static constexpr int K = Leaf::K;
@@ -75,6 +85,8 @@ class SpaceLevels final : public LevelPart {
     using Records = typename Space::template Records<T, order>;
 
   public:
+    /// Allocates the arrays for all slots and joints of the schedule, of which the part uses its
+    /// own.
     SpaceLevels(ChainGroup const& group, LevelWork const& work, Space const& space)
         : schedule_(group.schedule),
           work_(work),
@@ -141,7 +153,7 @@ class SpaceLevels final : public LevelPart {
     }
     void fetch() override {
         if (work_.leaves_down) crossing_.fetch(host_out_);
-        // Of the joint after this rank's last body: the top alone knows it.
+        // The force of the joint after this rank's last body is known to the top only.
         if (work_.top && out_.joint_force)
             host_out_.joint_force.template store<K>(schedule_.bodies,
                                                     force_of(sweeps_.forces.load(schedule_.halo)));
@@ -171,32 +183,39 @@ class SpaceLevels final : public LevelPart {
     int threads() const override { return space_.threads(); }
 
   private:
+    // Lists of a part that has no leaves or no roots.
     struct Empty {
         std::vector<Run> runs;
         std::vector<Root> roots;
     };
+    // Slots or joints chosen by choose(), on the host and in the space.
     struct Places {
         explicit Places(std::vector<std::int64_t> const& places_in) : host(places_in), list(host) {}
         std::vector<std::int64_t> host;
         List<std::int64_t> list;
     };
 
+    /// Returns the bias sweep with the current loads and results.
     OfBiases biases() const { return {sweeps_, loads_, out_}; }
+    /// Returns the merges of the levels [first, end) as lists of the space.
     static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels,
                                           std::size_t first, std::size_t end) {
         std::vector<List<Merge>> all;
         for (std::size_t l = first; l < end; ++l) all.emplace_back(levels[l]);
         return all;
     }
+    /// Inward pass over levels of merges.
     template <class Action>
     void climb(std::vector<List<Merge>> const& levels, Action const& action) const {
         for (List<Merge> const& level : levels) space_.over(level, action);
     }
+    /// Outward pass over levels of merges.
     void descend(std::vector<List<Merge>> const& levels) const {
         for (std::size_t l = levels.size(); l-- > 0;)
             space_.over(levels[l], loops::Descend<OfBiases>{biases()});
     }
 
+    /// Calls use(view) with the records of the given kind.
     template <class Use>
     void with(Items items, Use const& use) {
         switch (items) {
@@ -212,7 +231,7 @@ class SpaceLevels final : public LevelPart {
                 return use(forces_.view());
         }
     }
-    /// Memory for the numbers of `count` items on their way.
+    /// Returns memory for the numbers of `count` items during a transfer.
     template <class T>
     T* parcel(std::size_t count) {
         static_assert(sizeof(T) % sizeof(double) == 0);
@@ -220,6 +239,7 @@ class SpaceLevels final : public LevelPart {
         if (parcel_.size() < numbers) parcel_ = Array<double>(numbers);
         return reinterpret_cast<T*>(parcel_.data());
     }
+    /// Copies the chosen records to `numbers` on the host.
     template <class T, Order order>
     void get(RecordsView<T, order> items, Places const& places, std::vector<double>& numbers) {
         numbers.resize(places.host.size() * (sizeof(T) / sizeof(double)));
@@ -229,6 +249,7 @@ class SpaceLevels final : public LevelPart {
             loops::Pack<T, order>{items, places.list.data(), parcel<T>(places.host.size())});
         crossing_.download(parcel_, numbers);
     }
+    /// Copies `numbers` from the host to the chosen records.
     template <class T, Order order>
     void put(RecordsView<T, order> items, Places const& places,
              std::vector<double> const& numbers) {
@@ -240,24 +261,30 @@ class SpaceLevels final : public LevelPart {
         space_.wait();
     }
 
+    // Group's schedule, which must outlive the part, and the part's share of it.
     Schedule const& schedule_;
     LevelWork work_;
     Space space_;
     Crossing crossing_;
     typename Space::Model model_;
     Empty none_;
+    // Lists of the part's runs, merges and roots.
     List<Run> leaves_up_, leaves_down_;
     std::vector<List<Merge>> up_, down_, top_;
     List<Root> roots_, top_roots_;
+    // Records: segments are indexed by slot, the others by joint.
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
+    // Smallest joint with a pivot failure.
     Array<unsigned long long> lost_;
+    // Contiguous buffer for transfers.
     Array<double> parcel_;
     std::vector<std::unique_ptr<Places>> places_;
     Sweeps sweeps_;
+    // Loads and results in the space, and the host's views of the results.
     LoadsView loads_;
     AccelerationsView out_, host_out_;
 };

@@ -1,3 +1,4 @@
+// Distribution of chains to teams of threads (team_tree.hpp).
 #include "dca/team_tree.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@ TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs) {
     auto const runs_of = [](Piece const& piece) {
         return (piece.count + longest_run - 1) / longest_run;
     };
-    std::vector<std::size_t> first{0};  // piece of every team, and their number
+    // Index of the first piece of every team, followed by the number of pieces.
+    std::vector<std::size_t> first{0};
     std::int64_t in_team = 0, most = 0;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         std::int64_t const own = runs_of(pieces[i]);
@@ -23,6 +25,7 @@ TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs) {
     if (!pieces.empty()) first.push_back(pieces.size());
 
     TeamPlan plan;
+    // Threads per team: enough for the team with most runs, rounded up to whole warps.
     plan.threads = static_cast<int>((most * parts_of_run + 31) / 32 * 32);
     plan.place.resize((first.size() - 1) * static_cast<std::size_t>(plan.threads));
     for (std::size_t team = 0; team + 1 < first.size(); ++team) {

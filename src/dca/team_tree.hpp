@@ -1,52 +1,54 @@
-// The tree's sweeps by a team of threads that takes whole chains, one thread for each part of a run
-// (tree.hpp): a thread keeps what belongs to the joints of its part, and the team hands on segments
-// and forces. The same operations as of tree_sweeps.hpp, in the same order wherever one needs
-// another: the same bits.
+// The tree's sweeps by a team of threads for whole chains, one thread per part of a run (tree.hpp).
+// A thread stores the data of its part's joints, and the team exchanges segments and forces. The
+// operations are those of tree_sweeps.hpp. Dependent ones have the same order, so that the results
+// are bitwise identical.
 #pragma once
 
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
 
-/// What one thread of a team takes.
+/// The part of a run that one thread of a team computes.
 struct PartPlace {
-    std::int64_t body = 0;           // local index of its first body
-    std::int32_t count = 0;          // bodies; 0: the thread idles
-    std::int32_t parts = 0;          // of its run
-    std::int32_t run = 0, runs = 1;  // of its chain: its run, and how many there are
-    std::int32_t piece = 0;          // of the group
+    std::int64_t body = 0;           // Local index of its first body.
+    std::int32_t count = 0;          // Number of bodies; 0: the thread is idle.
+    std::int32_t parts = 0;          // Number of parts of its run.
+    std::int32_t run = 0, runs = 1;  // Index of its run in the chain, and number of runs.
+    std::int32_t piece = 0;          // Index of its piece in the group.
 
-    /// Body i, or one that is there in its place.
+    /// Returns the index of body i, or of a valid body if the part has no body i.
     CATENA_HD std::int64_t body_there(int i) const {
         return body + (i < count ? i : count > 0 ? count - 1 : 0);
     }
     CATENA_HD bool starts_chain(int part) const { return count > 0 && part == 0 && run == 0; }
-    /// Whether a part of the same chain follows.
+    /// True if the next part belongs to the same chain.
     CATENA_HD bool goes_on(int part) const {
         return part + 1 < parts || (count > 0 && run + 1 < runs);
     }
 };
 
-/// Whole chains dealt out to teams: thread t of team b takes place[b * threads + t], part t mod
-/// parts_of_run of a run.
+/// Distribution of whole chains to teams: thread t of team b computes place[b * threads + t], which
+/// is part t mod parts_of_run of a run.
 struct TeamPlan {
     int threads = 0;
     std::vector<PartPlace> place;
-    std::vector<std::int32_t> levels;  // of merges, of every team's tallest chain
+    std::vector<std::int32_t> levels;  // Number of merge levels of every team's tallest chain.
     std::int64_t teams() const { return std::ssize(levels); }
 };
-/// Neighbouring chains share a team while they have at most `runs` runs together; a longer one has
-/// a team alone. Precondition: whole pieces, with runs of `longest_run`.
+/// Returns the distribution of chains to teams. Neighbouring chains share a team while they have at
+/// most `runs` runs together; a longer chain has its own team. Precondition: whole pieces, with
+/// runs of `longest_run`.
 TeamPlan plan_teams(std::vector<Piece> const& pieces, std::int64_t runs);
 
-/// One thread's part of the tree. A `Team` has levels(), part() of a run and slot() (of its run
-/// among the team's), sync() for all of its threads, from_inboard(value) and from_outboard(value),
-/// what the neighbouring thread of the same run gave, put(slot, segment), get<Segment>(slot),
-/// put_force(slot, force) and force<K>(slot). All of its threads must come to each call of a
-/// member.
+/// One thread's part of the tree. All threads of a team must reach each call of a member of `Team`,
+/// which has:
+/// - levels(), part() of a run, and slot(), the index of the run among the team's runs;
+/// - sync() for all of its threads;
+/// - from_inboard(value) and from_outboard(value), the neighbouring thread's value in the same run;
+/// - put(slot, segment), get<Segment>(slot), put_force(slot, force) and force<K>(slot).
 ///
-/// Where a part has fewer bodies than part_length, what is computed for the others is not used:
-/// side by side costs less than in turn.
+/// If a part has fewer bodies than part_length, values computed for missing bodies are discarded.
+/// Computing them takes less time than branching.
 template <class Team, int K>
 struct PartTree {
     using Matrices = SegmentMatrix<double, K>;
@@ -55,11 +57,12 @@ struct PartTree {
     using Directions = Vector<double, K>;
     Team const& team;
     PartPlace place;
-    Joint joint[part_length];  // inboard of each body
+    Joint joint[part_length];  // Joints inboard of each body.
     Directions offset[part_length];
 
-    /// leaf(i): the matrices of the part's body i; restricted(i): directions of its inboard joint;
-    /// watch(i, factor): of every joint.
+    /// Inward pass of the matrices. leaf(i) returns the matrices of the part's body i,
+    /// restricted(i) the number of restricted directions of its inboard joint. watch(i, factor) is
+    /// called for every joint.
     CATENA_EITHER_SIDE
     template <class Leaf, class Restricted, class Watch>
     CATENA_HD_IN_PLACE void assemble_matrices(Leaf const& leaf, Restricted const& restricted,
@@ -76,7 +79,8 @@ struct PartTree {
         for (int i = 0; i < part_length; ++i)
             if (i < place.count) watch(i, joint[i].factor);
     }
-    /// bias(i) of the part's body i; accelerate(i, inboard_force, outboard_force) once the forces at its joints are known.
+    /// Bias sweep. bias(i) returns the bias of the part's body i. accelerate(i, inboard_force,
+    /// outboard_force) is called when the forces at its joints are known.
     CATENA_EITHER_SIDE
     template <class Bias, class Accelerate>
     CATENA_HD_IN_PLACE void solve(Bias const& bias, Accelerate const& accelerate) {
@@ -92,14 +96,16 @@ struct PartTree {
     }
 
   private:
+    // True if this thread's first joint is eliminated by a merge of this level.
     CATENA_HD_IN_PLACE bool merges(int level) const {
         return place.count > 0 && team.part() == 0 && place.run != 0 && (place.run & ((2 << level) - 1)) == 1 << level;
     }
-    /// The force at the chain's joint inboard of the team's run `ahead` from this one on; none after its end.
+    /// Returns the force at the inboard joint of the run that is `ahead` runs further in the chain;
+    /// zero beyond the chain's end.
     CATENA_HD_IN_PLACE Directions force_ahead(int ahead) const {
         return place.run + ahead < place.runs ? team.template force<K>(team.slot() + ahead) : Directions::zero();
     }
-    /// `kept`: of every joint, what join(inboard, outboard, i, kept[i]) leaves there.
+    /// Inward pass. join(inboard, outboard, i, kept[i]) stores the data of joint i in `kept`.
     CATENA_EITHER_SIDE
     template <class Segment, class Kept, class Leaf, class Join, class Close>
     CATENA_HD_IN_PLACE void climb(Kept (&kept)[part_length], Leaf const& leaf, Join const& join, Close const& close) {
@@ -158,7 +164,7 @@ struct PartTree {
     }
 };
 
-/// The matrices of a team's chains, by any leaf's body k.
+/// Assembles the matrices of a team's chains and stores their joints, for any leaf with matrix(k).
 template <class Leaf>
 struct MatricesOfChains {
     static constexpr int K = Leaf::K;

@@ -1,21 +1,32 @@
 // One item of every sweep over the canonical tree, host and device: a part of a run, a run, a
-// merge, a root. Who calls them for which items is the driver's business (tree_solver.hpp) and the
-// space's.
+// merge, a root. The driver (tree_solver.hpp) and the space that runs the kernels decide which
+// items to call.
 //
-// A sweep is an object with its sweeps `s` (TreeSweeps, or another of SweepsOf with all its
-// members), Segment (what travels upwards), Part (what read(begin, end) finds of a part's bodies),
-// part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots, close(Root,
-// segment) and, if it `descends`, node(joint), force(node, first, next), down<unroll>(Run, p, Part,
-// first, next) from the states at the ends of part p and ShownNumbers (of what ranks show each
-// other in between, frontier_records.hpp). One that `keeps_nodes` has joined(..., node) and
-// keep(joint, node) as well. One that `goes_short` (cuda/short/short_chain.cuh,
-// cuda/sweeps/group_lanes.cuh) also has bodies that are read one by one (body_at), join_bodies() or
-// join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(),
-// accelerate() or accelerate_turned(), and nobody reads its joints, forces or slots afterwards: not
-// all of them are written then. One that has matrices() and biases() may leave stages with runs to
-// these, one after the other (cuda/sweeps/stage_walk.cuh); one that takes factors has joined(...,
-// factors), close_free(), down(..., passages, factors) and PassagesHere, instead of which there may
-// be others (cuda/sweeps/run_parts.cuh).
+// A sweep is an object with these members:
+// - `s`, its arrays: TreeSweeps, or another SweepsOf<Leaf>::Sweeps with all members of TreeSweeps;
+// - Segment, the record that travels inward; load and store of its slots;
+// - Part, the data of a part's bodies that read(begin, end) returns;
+// - part(Run, p, Part), which returns the segment of a part;
+// - joined(inboard, outboard, JointAt), which merges two segments;
+// - close(Root, segment), which computes the forces at a chain's ends.
+//
+// A sweep that `descends` also has an outward pass:
+// - node(joint) and force(node, first, next);
+// - down<unroll>(Run, p, Part, first, next), from the states at the two ends of part p;
+// - ShownNumbers, the numbers that ranks exchange between the passes (frontier_records.hpp).
+//
+// A sweep that `keeps_nodes` has joined(..., node) and keep(joint, node) as well.
+//
+// A sweep that `goes_short` serves short chains (cuda/short/short_chain.cuh,
+// cuda/sweeps/group_lanes.cuh). Its bodies are read one by one (body_at). It has join_bodies() or
+// join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(), and
+// accelerate() or accelerate_turned(). Its joints, forces and slots are not read afterwards, so
+// that not all of them are written.
+//
+// A sweep with matrices() and biases() may leave stages with runs to these two, one after the other
+// (cuda/sweeps/stage_walk.cuh). A sweep whose members accept `factors` has joined(..., factors),
+// close_free(), down(..., passages, factors) and PassagesHere, which other storage may replace
+// (cuda/sweeps/run_parts.cuh).
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -25,13 +36,13 @@
 
 namespace catena::dca {
 
-/// A joint to be eliminated, and how many directions it restricts.
+/// A joint to be eliminated, with the number of directions that it restricts.
 struct JointAt {
     std::int64_t k = 0;
     int restricted = 0;
 };
 
-/// A joint whose matrix is not positive definite; none at first.
+/// The smallest joint whose matrix is not positive definite; no joint at first.
 struct PivotFailure {
     unsigned long long joint = ~0ULL;
     CATENA_HD void add(std::int64_t k) {
@@ -40,9 +51,11 @@ struct PivotFailure {
     }
     CATENA_HD bool none() const { return joint == ~0ULL; }
 };
-/// Whether it is the inverse of a pivot of a positive definite matrix.
+/// True if `inverse` is the reciprocal of a pivot of a positive definite matrix: positive and
+/// finite.
 CATENA_HD bool is_good(double inverse) { return inverse > 0 && inverse - inverse == 0; }
 
+/// The arrays of all sweeps over one group of chains, and the operations at their joints.
 template <class Leaf_>
 struct TreeSweeps {
     using Leaf = Leaf_;
@@ -52,25 +65,29 @@ struct TreeSweeps {
     using Joint = JointMatrix<double, K>;
     using Directions = Vector<double, K>;
     using Offset = Directions;
-    using State = Directions;  // what the way down knows of a joint: its force
+    using State = Directions;  // State of a joint that the outward pass hands on: its force.
+    /// Numbers of doubles per segment and joint that a GPU stage stores in a block (StageRecords).
     static constexpr StageRecords in_stage = stage_records(K, Leaf::projected),
                                   in_stage_of_whole_runs = stage_records(K, Leaf::projected, true);
 
     Leaf leaf;
-    std::uint8_t const* restricted = nullptr;  // of every joint (ChainGroup::restricted_of_joint)
-    RecordsView<Matrices, Order::plain> matrices;  // by slot
+    // Number of restricted directions of every joint (ChainGroup::restricted_of_joint).
+    std::uint8_t const* restricted = nullptr;
+    RecordsView<Matrices, Order::plain> matrices;  // Indexed by slot.
     RecordsView<Biases, Order::plain> biases;
-    RecordsView<Joint, Order::by_body> joints;  // by joint
+    RecordsView<Joint, Order::by_body> joints;  // Indexed by joint.
     RecordsView<Directions, Order::by_body> offsets, forces;
-    unsigned long long* lost =
-        nullptr;  // the smallest joint whose matrix was not positive definite
+    // Smallest joint whose matrix was not positive definite.
+    unsigned long long* lost = nullptr;
 
+    /// Returns the size of the arrays for a schedule, in bytes.
     static std::int64_t bytes(Schedule const& schedule) {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
                schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + 2 * sizeof(Directions));
     }
     CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
-    /// The smallest joint so far whose matrix is not positive definite, as its pivots say.
+    /// Checks the pivots of `joint` and records it in `found`, if they are bad and no smaller joint
+    /// is recorded.
     CATENA_HD static void watch(JointAt const& joint, Symmetric<double, K> const& factor,
                                 PivotFailure& found) {
         bool good = true;
@@ -79,27 +96,29 @@ struct TreeSweeps {
         auto const bad = static_cast<unsigned long long>(joint.k);
         found.joint = good || bad > found.joint ? found.joint : bad;
     }
-    /// Apart from the watching, so that it does not stand between a loop's reads.
+    /// Reports a pivot failure to `lost`. Checking and reporting are separate, so that the atomic
+    /// operation does not delay the reads of a loop.
     CATENA_HD void note(PivotFailure const& found) const {
         if (!found.none()) lower_to(lost, found.joint);
     }
-    /// Number n of a slot's matrices and, after them, biases.
+    /// Returns number n of a slot's record: its matrices, followed by its biases.
     CATENA_HD double& number_of_segment(std::int64_t slot, int n) const {
         constexpr int of_matrices = sizeof(Matrices) / sizeof(double);
         return n < of_matrices ? matrices.number(slot, n) : biases.number(slot, n - of_matrices);
     }
-    /// What the way down needs of a joint.
+    /// Data of a joint that the outward pass needs.
     struct Node {
         Joint joint;
         Directions offset;
     };
     CATENA_HD Node node(std::int64_t k) const { return {joints.load_last(k), offsets.load_last(k)}; }
-    /// Number n of that.
+    /// Returns number n of a joint's node.
     CATENA_HD double& number_of_node(std::int64_t k, int n) const {
         constexpr int of_joint = sizeof(Joint) / sizeof(double);
         return n < of_joint ? joints.number(k, n) : offsets.number(k, n - of_joint);
     }
-    /// The forces at a chain's ends (chapter, eqs 2.10-2.11), from its bias as it is held. `first`: what fasten() returned.
+    /// Computes the forces at a chain's ends (chapter, eqs 2.10-2.11) from the bias of the chain
+    /// held at its tip. `first` is what fasten() returned.
     CATENA_HD void close(Root const& root, Joint const& first, Biases const& held) const {
         if (root.tip == TipTo::nothing)
             return forces.store(root.first, solve_upper(first.factor, solve_lower(first.factor, -held.b1)));
@@ -110,8 +129,9 @@ struct TreeSweeps {
         Node const tip = node(root.next);
         forces.store(root.next, disassemble(tip.joint, tip.offset, force, Directions::zero()));
     }
-    /// The joint that is closed last, between a chain's first body and the ground or, in a ring, its last body; returns it. `floating`, the
-    /// chain as it floats; `held`, with its tip on the ground.
+    /// Factorizes and returns the joint that is closed last: between a chain's first body and the
+    /// ground, or in a ring between its first and its last body. `floating` belongs to the chain
+    /// with a free tip, `held` to the chain with its tip on the ground.
     CATENA_HD Joint fasten(Root const& root, Matrices const& floating, Matrices const& held) const {
         PivotFailure found;
         JointAt const at_first = at(root.first);
@@ -129,10 +149,11 @@ struct TreeSweeps {
     }
 };
 
-/// Whether loops over a part's bodies are unrolled in any case: with larger handles they fill a GPU's instruction cache.
+/// True if loops over a part's bodies are always unrolled. With larger handles, unrolled code would
+/// overflow a GPU's instruction cache.
 template <int K>
 constexpr bool unrolled = K == 1;
-/// action(i) for a part's bodies i of [begin, end) in turn.
+/// Calls action(i) for the bodies i of a part in [begin, end), in increasing order.
 template <bool unroll, class Action>
 CATENA_HD void each_body(int begin, int end, Action const& action) {
     if constexpr (unroll) {
@@ -144,7 +165,7 @@ CATENA_HD void each_body(int begin, int end, Action const& action) {
         for (int i = begin; i < end; ++i) action(i);
     }
 }
-/// From the last one to the first.
+/// Calls action(i) for the bodies i of a part in [begin, end), in decreasing order.
 template <bool unroll, class Action>
 CATENA_HD void each_body_back(int begin, int end, Action const& action) {
     if constexpr (unroll) {
@@ -157,10 +178,10 @@ CATENA_HD void each_body_back(int begin, int end, Action const& action) {
     }
 }
 
-/// Of a part's bodies that are read one by one.
+/// Empty Part of sweeps that read bodies one by one.
 struct NothingRead {};
 
-/// The matrices of every segment and joint.
+/// The matrix sweep: matrices of every segment and joint.
 template <class Leaf>
 struct MatrixSweep {
     static constexpr bool descends = false, keeps_nodes = false, goes_short = false;
@@ -170,7 +191,9 @@ struct MatrixSweep {
     using Part = NothingRead;
     Sweeps s;
 
+    /// Reads nothing in advance; the bodies are read one by one in part().
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the segment of part p and stores the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         PivotFailure found;
@@ -182,6 +205,7 @@ struct MatrixSweep {
         s.note(found);
         return segment;
     }
+    /// Returns the merged segment and stores its joint.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         PivotFailure found;
         Segment segment = inboard;
@@ -191,6 +215,7 @@ struct MatrixSweep {
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    /// Closes a chain at its root: factorizes the joint that is closed last.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         s.fasten(root, floating, root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating);
     }
@@ -204,7 +229,7 @@ struct MatrixSweep {
     }
 };
 
-/// The biases, joint forces and accelerations, with the matrices assembled last.
+/// The bias sweep: biases, joint forces and accelerations, with the matrices assembled last.
 template <class Leaf>
 struct BiasSweep {
     static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
@@ -219,6 +244,7 @@ struct BiasSweep {
     AccelerationsView out;
 
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    /// Returns the bias of part p and stores the offsets of the joints inside it.
     CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.bias(loads, begin);
@@ -228,6 +254,7 @@ struct BiasSweep {
         });
         return segment;
     }
+    /// Returns the merged bias and stores the joint's offset.
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Segment segment = inboard;
         append(segment, outboard, at.k);
@@ -235,7 +262,8 @@ struct BiasSweep {
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
-    /// Ground is a segment with zeta = 0: its acceleration stands in the biases of the joints to it.
+    /// Closes a chain at its root. The ground is a segment with zeta = 0; its acceleration is
+    /// contained in the biases of the joints to it.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.joints.load(root.first), held);
@@ -244,6 +272,8 @@ struct BiasSweep {
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
+    /// Outward pass of part p from the forces at its two ends: writes joint forces and
+    /// accelerations.
     template <bool /*unroll*/>
     CATENA_HD void down(Run const& run, int p, Part, Directions const& first, Directions next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
@@ -264,11 +294,13 @@ struct BiasSweep {
     }
 };
 
-/// A sweep that takes some runs whole: those that takes(run) says, by climb(run), which returns their segment, and descend(run, first, next).
+/// A sweep that computes some runs as a whole, those for which takes(run) is true. climb(run)
+/// returns their segment, descend(run, first, next) is their outward pass.
 template <class Sweep>
 concept takes_whole_runs = requires { requires Sweep::takes_whole_runs; };
 
-/// A run's parts join one after the other: part(p) of each, in turn, and join(segment, outboard, joint).
+/// Inward pass of a run that joins its parts one after the other: part(p) returns each segment,
+/// join(segment, outboard, joint) merges two.
 template <class Sweep, class Part, class Join>
 CATENA_HD void climb_parts(Sweep const& sweep, Run const& run, Part const& part, Join const& join) {
     typename Sweep::Segment segment;
@@ -279,6 +311,7 @@ CATENA_HD void climb_parts(Sweep const& sweep, Run const& run, Part const& part,
     }
     sweep.store(run.slot, segment);
 }
+/// Inward pass of one run: stores its segment.
 template <class Sweep>
 CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
     if constexpr (takes_whole_runs<Sweep>)
@@ -287,18 +320,22 @@ CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
         sweep, run, [&](int p) { return sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p))); },
         [&](auto const& inboard, auto const& outboard, JointAt const& at) { return sweep.joined(inboard, outboard, at); });
 }
+/// Inward pass of one merge: stores the merged segment.
 template <class Sweep>
 CATENA_HD void climb_merge(Sweep const& sweep, Merge const& m) {
     sweep.store(m.slot, sweep.joined(sweep.load(m.inboard), sweep.load(m.outboard), sweep.s.at(m.joint)));
 }
+/// Outward pass of one merge: stores the state of its joint.
 template <class Sweep>
 CATENA_HD void descend_merge(Sweep const& sweep, Merge const& m, typename Sweep::Node const& node) {
     sweep.s.forces.store(m.joint, sweep.force(node, sweep.s.forces.load(m.first), sweep.s.forces.load(m.next)));
 }
+/// Closes one chain at its root.
 template <class Sweep>
 CATENA_HD void close_root(Sweep const& sweep, Root const& root) {
     sweep.close(root, sweep.load(root.slot));
 }
+/// Outward pass of one run, from the states at its two ends.
 template <class Sweep>
 CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     auto const first = sweep.s.forces.load(run.body);
@@ -312,7 +349,7 @@ CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     }
 }
 
-/// The sweeps of a kind of handles: these, unless it says otherwise.
+/// The sweeps of a kind of leaf. Specializations replace these defaults.
 template <class Leaf>
 struct SweepsOf {
     using Sweeps = TreeSweeps<Leaf>;
@@ -320,11 +357,13 @@ struct SweepsOf {
     using OfBiases = BiasSweep<Leaf>;
 };
 
+/// Returns the force in a joint's state.
 template <int K>
 CATENA_HD Vector<double, K> const& force_of(Vector<double, K> const& force) {
     return force;
 }
-/// The force of the joint after this rank's last body, which the next rank's first body feels.
+/// Writes the force of the joint after this rank's last body. It acts on the next rank's first
+/// body.
 template <class Sweeps>
 struct ForceOfNextRank {
     Sweeps s;

@@ -1,5 +1,5 @@
-// As many bodies as a vector has lanes, one after the other, as a place (dca/lane_access.hpp):
-// their numbers stand next to each other.
+// A place (dca/lane_access.hpp) that stands for consecutive bodies, as many as a vector has lanes.
+// Their numbers are next to each other in the arrays.
 #pragma once
 
 #include "dca/lane_access.hpp"
@@ -7,6 +7,7 @@
 
 namespace catena::dca {
 
+/// The bodies [first, first + lanes). `asks_ahead`: reads and writes also prefetch.
 template <class Real_>
 struct Abreast {
     using Real = Real_;
@@ -16,15 +17,17 @@ struct Abreast {
     friend Abreast operator-(Abreast a, int by) { return {a.first - by, a.asks_ahead}; }
 };
 
-/// Loops go along the bodies in vectors: what lies so far ahead of one is asked for with it.
+/// Prefetch distance of loops over the bodies, in bodies.
 inline constexpr int ahead_of_bodies = 64;
 
+/// Reads one number of the bodies.
 template <class T, int D, class Real>
 Real read(FieldView<T, D> const& view, Abreast<Real> const& bodies, int component) {
     auto const* const place = view.origin + component * view.pitch + bodies.first;
     if (bodies.asks_ahead) prefetch<Real>(place, ahead_of_bodies);
     return Real::load_anywhere(place);
 }
+/// Reads D numbers of the bodies.
 template <class T, int D, class Real>
 Vector<Real, D> read(FieldView<T, D> const& view, Abreast<Real> const& bodies) {
     Vector<Real, D> v;
@@ -32,6 +35,7 @@ Vector<Real, D> read(FieldView<T, D> const& view, Abreast<Real> const& bodies) {
     for (int i = 0; i < D; ++i) v[i] = read(view, bodies, i);
     return v;
 }
+/// Writes D numbers of the bodies.
 template <int D, class Real>
 void write(View<D> const& view, Abreast<Real> const& bodies, Vector<Real, D> const& value) {
     CATENA_UNROLL
@@ -45,7 +49,8 @@ template <int K, class Real>
 void write_directions(DirectionsView const& view, Abreast<Real> const& bodies, Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, bodies, value);
 }
-/// Every body's first numbers of records that are `apart`, `index` of it. Bodies with the same one lie together.
+/// Returns the first N numbers of every body's record; body k has record index[k], and records are
+/// `apart` numbers apart. Bodies with the same record are contiguous.
 template <int apart, int N, class Real>
 Vector<Real, N> pick(double const* records, std::int32_t const* index, Abreast<Real> const& bodies, Vector<Real, N> v) {
     if (index[bodies.first] == index[bodies.first + Real::lanes - 1]) {

@@ -1,3 +1,4 @@
+// Kernels for AVX2, compiled with that instruction set (runs.hpp).
 #include "dca/simd/avx2.hpp"
 
 #include "dca/simd/kernels.hpp"

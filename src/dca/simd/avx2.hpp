@@ -1,4 +1,4 @@
-// Four doubles side by side.
+// Vector of four doubles for AVX2.
 #pragma once
 
 #include <immintrin.h>
@@ -7,16 +7,20 @@
 
 namespace catena::dca::avx2 {
 
+/// Four doubles with lane-wise arithmetic. load() and store() need 32-byte alignment,
+/// load_anywhere() and store_anywhere() none.
 class Real {
   public:
     static constexpr int lanes = 4;
+    // Default construction leaves the lanes uninitialized; construction from `x` sets all lanes to
+    // x.
     Real() = default;
     Real(double x) : v_(_mm256_set1_pd(x)) {}
     static Real load(double const* place) { return Real(_mm256_load_pd(place)); }
     static Real load_anywhere(double const* place) { return Real(_mm256_loadu_pd(place)); }
     void store(double* place) const { _mm256_store_pd(place, v_); }
     void store_anywhere(double* place) const { _mm256_storeu_pd(place, v_); }
-    /// Bit j: lane j is not a positive finite number.
+    /// Returns a mask whose bit j is set if lane j is not a positive finite number.
     unsigned not_positive() const {
         __m256d const zero = _mm256_setzero_pd();
         __m256d const good = _mm256_and_pd(_mm256_cmp_pd(v_, zero, _CMP_GT_OQ),
@@ -35,39 +39,40 @@ class Real {
     }
     friend Real sqrt(Real a) { return Real(_mm256_sqrt_pd(a.v_)); }
     friend Real floor(Real a) { return Real(_mm256_floor_pd(a.v_)); }
+    /// Rounds towards zero.
     friend Real truncated(Real a) {
         return Real(_mm256_round_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC));
     }
-    /// a < b ? yes : no in every lane.
+    /// Returns a < b ? yes : no in every lane.
     friend Real where_less(Real a, Real b, Real yes, Real no) {
         return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_cmp_pd(a.v_, b.v_, _CMP_LT_OQ)));
     }
-    /// `yes` in the lanes whose bits are set.
+    /// Returns `yes` in the lanes whose bits in `which` are set, and `no` in the others.
     static Real choose(unsigned which, Real yes, Real no) {
         __m256i const bits = _mm256_set_epi64x(8, 4, 2, 1);
         __m256i const chosen = _mm256_cmpeq_epi64(
             _mm256_and_si256(_mm256_set1_epi64x(static_cast<long long>(which)), bits), bits);
         return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_castsi256_pd(chosen)));
     }
-    /// Whether one is beyond +-bound.
+    /// True if the absolute value of any lane exceeds `bound`.
     friend bool any_above(Real a, double bound) {
         __m256d const size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v_);
         return _mm256_movemask_pd(_mm256_cmp_pd(size, _mm256_set1_pd(bound), _CMP_GT_OQ)) != 0;
     }
 
-    /// origin[at[j]] in lane j.
+    /// Returns origin[at[j]] in lane j.
     static Real pick(double const* origin, std::int64_t const* at) {
         return Real(_mm256_set_pd(origin[at[3]], origin[at[2]], origin[at[1]], origin[at[0]]));
     }
-    /// Numbers 0 to 3 from origin + at[j] in lane j: vector i, at `to` + i lanes, gets number i of
-    /// every lane.
+    /// Reads numbers 0 to 3 from origin + at[j] for every lane j and transposes them: vector i, at
+    /// `to` + i lanes, gets number i of every lane.
     static void read_four(double const* origin, std::int64_t const* at, double* to) {
         __m256d rows[lanes];
         for (int j = 0; j < lanes; ++j) rows[j] = _mm256_loadu_pd(origin + at[j]);
         transpose(rows);
         for (int i = 0; i < lanes; ++i) _mm256_store_pd(to + i * lanes, rows[i]);
     }
-    /// The other way round.
+    /// Writes four vectors; the inverse of read_four().
     static void write_four(double const* from, double* origin, std::int64_t const* at) {
         __m256d rows[lanes];
         for (int i = 0; i < lanes; ++i) rows[i] = _mm256_load_pd(from + i * lanes);
@@ -77,6 +82,7 @@ class Real {
 
   private:
     explicit Real(__m256d v) : v_(v) {}
+    // Transposes a 4 x 4 matrix in place.
     static void transpose(__m256d (&m)[lanes]) {
         __m256d const a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]);
         __m256d const c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);

@@ -1,3 +1,4 @@
+// Kernels for AVX-512, compiled with that instruction set (runs.hpp).
 #include "dca/simd/avx512.hpp"
 
 #include "dca/simd/kernels.hpp"

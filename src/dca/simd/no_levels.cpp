@@ -1,3 +1,5 @@
+// Replacements for avx2.cpp and avx512.cpp in builds without SIMD sources: no SIMD level is
+// available.
 #include "dca/simd/runs.hpp"
 
 namespace catena {

@@ -1,5 +1,5 @@
-// Records (math/records.hpp) of as many places as a vector has lanes, a number of all of them in
-// each vector.
+// Access to the records (math/records.hpp) of as many places as a vector has lanes. Each vector
+// holds one number of all these places.
 #pragma once
 
 #include "dca/simd/prefetch.hpp"
@@ -7,10 +7,11 @@
 
 namespace catena::dca {
 
-/// Of a record's numbers: unrolled as a whole, so that they need not lie in memory before.
+/// Unrolls a loop over the numbers of a record completely, so that they need not be stored in
+/// memory first.
 #define CATENA_UNROLL_RECORD _Pragma("GCC unroll 128")
 
-/// Vectors one after the other.
+/// Writes the vectors of a record one after the other. `to` must be aligned for vectors.
 template <class Real, class Record>
 void store_vectors(double* to, Record const& record) {
     auto const* const values = reinterpret_cast<Real const*>(&record);
@@ -18,6 +19,7 @@ void store_vectors(double* to, Record const& record) {
     for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n)
         values[n].store(to + n * Real::lanes);
 }
+/// Reads the vectors of a record that store_vectors() wrote.
 template <class Real, class Record>
 void load_vectors(double const* from, Record& record) {
     auto* const values = reinterpret_cast<Real*>(&record);
@@ -26,7 +28,7 @@ void load_vectors(double const* from, Record& record) {
         values[n] = Real::load(from + n * Real::lanes);
 }
 
-/// In the lanes whose bits are set `yes`, of all vectors.
+/// Replaces all vectors of `all` by those of `yes` in the lanes whose bits are set.
 template <class Real, class Record>
 void choose(unsigned lanes, Record const& yes, Record& all) {
     auto const* const from = reinterpret_cast<Real const*>(&yes);
@@ -36,14 +38,15 @@ void choose(unsigned lanes, Record const& yes, Record& all) {
         to[n] = Real::choose(lanes, from[n], to[n]);
 }
 
-/// action(n) for numbers n to n + 3, which together are all of `count`; some twice where they are
-/// not a multiple of four.
+/// Calls action(n) for the numbers n to n + 3, until all `count` numbers are covered. Some are
+/// covered twice if `count` is not a multiple of four.
 template <int count, class Action>
 void by_four(Action const& action) {
     static_assert(count >= 4);
     for (int n = 0; n + 4 <= count; n += 4) action(n);
     if constexpr (count % 4 != 0) action(count - 4);
 }
+/// Writes the records of the lanes: that of lane j to record index[j].
 template <class Real, class Record, class OfOne, Order order>
 void scatter(Record const& record, RecordsView<OfOne, order> to, std::int64_t const* index) {
     constexpr int count = RecordsView<OfOne, order>::numbers, lanes = Real::lanes;
@@ -58,6 +61,7 @@ void scatter(Record const& record, RecordsView<OfOne, order> to, std::int64_t co
         for (int j = 0; j < lanes; ++j)
             for (int n = 0; n < count; ++n) to.origin[at[j] + n] = values[n * lanes + j];
 }
+/// Reads the records of the lanes: record index[j] into lane j.
 template <class Real, class Record, class OfOne, Order order>
 void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& record) {
     constexpr int count = RecordsView<OfOne, order>::numbers, lanes = Real::lanes;
@@ -72,7 +76,7 @@ void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& r
     load_vectors<Real>(values, record);
 }
 
-/// Of as many places as a vector has lanes.
+/// Prefetches record index[j] of every lane j.
 template <class Real, class OfOne, Order order>
 [[gnu::always_inline]] inline void prefetch_records(RecordsView<OfOne, order> from,
                                                     std::int64_t const* index) {

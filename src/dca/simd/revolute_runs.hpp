@@ -1,11 +1,12 @@
-// Runs on revolute joints side by side, one a lane: they go by their inertias (floating_run.hpp).
+// Runs on revolute joints side by side, one per lane, computed by articulated-body inertias
+// (floating_run.hpp).
 #pragma once
 
 #include "dca/simd/runs_in_tile.hpp"
 
 namespace catena::dca {
 
-/// Runs on revolute joints, by their inertias: as Evaluation::climb and descend.
+/// Kernel for runs on revolute joints; computes what FusedSweep::climb and descend do for one run.
 template <class Real, class Leaf>
 class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
@@ -21,6 +22,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
   public:
     explicit RevoluteRunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
 
+    /// Inward pass of the runs in the lanes of one item.
     void climb(std::int64_t item) {
         if (revolutes().given) {
             FollowedBodies bodies(*this, item);
@@ -39,6 +41,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             climb(item, BodiesOfRun<Real, decltype(body)>(body));
         }
     }
+    /// Outward pass of the runs in the lanes of one item.
     void descend(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
         Kept const kept{*this, runs, place_of(item)};
@@ -47,7 +50,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         gather<Real>(work_.sweeps.forces, runs.next, next);
         Vector3 omega;
         PassedOn passed{next, {}, {}, Real(0)};
-        BodyAcceleration<Real> of_late;  // first bodies, in the lanes where others go on after them
+        // Accelerations of the first bodies of shorter runs, kept until column 0 is reached.
+        BodyAcceleration<Real> of_late;
         int part = parts_of_run;
         ask(runs, 0, -1);
         descend_revolutes<Real>(
@@ -98,11 +102,14 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
     }
 
   private:
+    // Storage of the data that the outward pass needs, with the interface that climb_revolutes()
+    // and descend_revolutes() need.
     struct Kept {
         RevoluteRunsSideBySide const& all;
         RunsInLanes const& runs;
         double* place;
 
+        /// Stores joint i and checks its pivot.
         void put(int i, ReleasedRevolute<Real> const& revolute) {
             double* const kept = of_revolute(i);
             int const further =
@@ -112,6 +119,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             store_vectors<Real>(kept, revolute);
             watch(i, revolute.inverse.not_positive());
         }
+        /// Stores joint i and the body outboard of it. The velocity bias is stored only if the
+        /// outward pass reads it.
         void put(int i, ReleasedRevolute<Real> const& revolute, BodyInRun<Real> const& body,
                  BodyAcceleration<Real> const& swing) {
             put(i, revolute);
@@ -119,14 +128,15 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             if (i == count - 2 || all.out_.by_all_bodies())
                 store_vectors<Real>(of_revolute(i) + at_swing, swing);
         }
-        /// Outboard of joint i, in the body's axes.
+        /// Stores the angular velocity of the body outboard of joint i, in the body's axes.
         void put_omega(int i, Vector3 const& omega) {
             store_vectors<Real>(of_revolute(i) + at_omega, omega);
         }
+        /// Stores the axes of the last revolute joint, in the run's axes.
         void put_axes(Matrix3 const& axes) {
             store_vectors<Real>(place + met_numbers * lanes, axes);
         }
-        /// What turns to the last body's axes.
+        /// Stores the rotation matrix from W to the last body's axes.
         void put_orientation(Matrix3 const& from_ground) {
             store_vectors<Real>(place + at_orientation, from_ground);
         }
@@ -136,10 +146,13 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         Matrix3 axes() const { return load<Matrix3>(place + met_numbers * lanes); }
         Matrix3 orientation() const { return load<Matrix3>(place + at_orientation); }
+        /// Stores the end of the run and checks its pivots.
         void put(RunsEnd<Real> const& end) {
             store_vectors<Real>(place, end);
             for (int i = 0; i < 6; ++i) watch(count - 1, end.factor(i, i).not_positive());
         }
+        /// Returns joint i; with prefetching, it also prefetches a joint that follows in the
+        /// outward pass.
         ReleasedRevolute<Real> revolute(int i) const {
             double const* const kept = of_revolute(i);
             if (asks_ahead())
@@ -158,8 +171,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         }
 
       private:
-        // What is asked for is so many revolute joints further, in the order of items: the next
-        // one's end lies between.
+        // Prefetch distance: `ahead` revolute joints, in the order of items. The end of the next
+        // item lies between them.
         static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
         static constexpr int at_omega = (released_numbers + passed_body_numbers) * lanes,
                              at_swing = at_omega + 3 * lanes,
@@ -171,21 +184,25 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             return record;
         }
         bool asks_ahead() const { return all.work_.asks_ahead; }
+        /// Returns the storage of joint i and the body outboard of it.
         double* of_revolute(int i) const {
             return place + end_numbers * lanes + (i - 1) * numbers_of_revolute;
         }
+        /// Records pivot failures. Skipped columns and the first body of a lane's run have no joint
+        /// within the run.
         void watch(int i, unsigned bad) const {
             for (int j = 0; bad != 0 && j < lanes; ++j)
                 if (i <= runs.skipped[j]) bad &= ~(1U << j);
             note_lost<Real>(all.work_.sweeps, runs.column, i, bad);
         }
     };
-    /// As BodiesOfRun, of runs whose revolute joints' loads are given: what moves is found in the
-    /// runs' axes from what moves before.
+    /// Supplies the bodies of the runs as BodiesOfRun does, if joint loads are given
+    /// (RevoluteLoads). Velocities are computed along the run, in its axes.
     class FollowedBodies {
       public:
         FollowedBodies(RevoluteRunsSideBySide& all, std::int64_t item)
             : all_(all), runs_(all.work_.runs[item]), kept_{all, runs_, all.place_of(item)} {}
+        /// Reads the first bodies and starts the recursion of the velocities.
         ArticulatedBody<Real> first() {
             all_.fill(runs_, 0, 1);
             all_.ask(runs_, 0, 1);
@@ -198,6 +215,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             state = {Quaternion<Real>{Real(1), Real(0), Real(0), Real(0)}, omega, body.inward2};
             return body;
         }
+        /// Returns body i in the run's axes with its velocity terms and external loads.
         LoadedBodyInRun<Real> next(int i) {
             if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
             all_.ask(runs_, i, 1);
@@ -210,6 +228,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             if (i >= count - 2 || all_.out_.by_all_bodies()) keep_omega(i);
             return body;
         }
+        /// Returns the last body in its own axes, with its velocity terms and all loads.
         ArticulatedBody<Real> last(int i) {
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
@@ -229,6 +248,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             kept_.put_omega(i, omega);
             return body;
         }
+        /// Returns the outboard handle of the last body but one.
         OutboardHandle<Real> before_last() {
             axes_ = turn_ *
                     axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
@@ -240,7 +260,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
       private:
         static_assert((count - 2) / part_length == (count - 1) / part_length);
         Leaf const& leaf() const { return all_.bodies_.leaf; }
-        /// In the body's axes.
+        /// Stores the angular velocity of the current body in the body's axes.
         void keep_omega(int i) {
             Vector3 omega = transposed_times(turn_, state.omega);
             if (runs_.begins[i] != 0) choose<Real>(runs_.begins[i], first_omega(), omega);
@@ -250,9 +270,12 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         RevoluteRunsSideBySide& all_;
         RunsInLanes const& runs_;
         Kept kept_;
-        Matrix3 turn_, axes_, from_ground_;  // of the body come to; of the last revolute joint;
-                                             // what turns to the run's axes
+        // Rotation matrix from the current body to the run's axes, axes of the last revolute joint
+        // in the run's axes, and rotation matrix from W to the run's axes.
+        Matrix3 turn_, axes_, from_ground_;
     };
+    /// Inward pass for any supplier of bodies. In the lanes of shorter runs, it restarts where
+    /// their first bodies begin.
     template <class Bodies>
     void climb(std::int64_t item, Bodies&& bodies) {
         RunsInLanes const& runs = work_.runs[item];
@@ -274,6 +297,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
     }
+    /// Returns the storage of an item's runs.
     double* place_of(std::int64_t item) const {
         return work_.nodes + item * kept_of_revolute_run * lanes;
     }
@@ -283,24 +307,27 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
     }
     RevoluteLoads const& revolutes() const { return bodies_.loads.revolutes; }
     bool has_wrenches() const { return revolutes().torque.origin; }
+    /// Returns the rotation matrix from W to the first bodies' axes.
     Matrix3 first_from_ground(RunsInLanes const& runs) const {
         return transpose(
             to_matrix(as_quaternion(pick<Real>(work_.loads.revolutes.orientation, runs.body))));
     }
-    /// Of the revolute joint inboard of body i, within the run.
+    /// Returns the torque of the joint inboard of body i, which is inside the run.
     Real torque_about(int i) const {
         return in_tile().revolute_torque.origin
                    ? read(in_tile().revolute_torque, Column<Real>{i % part_length})[0]
                    : Real(0);
     }
+    /// Adds the external loads on the bodies `here`. `from_ground` is the rotation matrix from W to
+    /// the axes of `torque` and `force`.
     void add_wrench(Column<Real> const& here, Matrix3 const& from_ground, Vector3& torque,
                     Vector3& force) const {
         if (!has_wrenches()) return;
         torque = torque + from_ground * read(revolutes().torque, here);
         force = force + from_ground * read(revolutes().force, here);
     }
-    /// What acts on body i from outside and by the joints at the runs' ends, where revolute joints'
-    /// loads are given.
+    /// Adds the loads on body i if joint loads are given: external loads, and the torques of the
+    /// joints at the runs' ends.
     void push(RunsInLanes const& runs, int i, Matrix3 const& from_ground,
               ArticulatedBody<Real>& body) const {
         add_wrench({i % part_length}, from_ground, body.torque, body.force);
@@ -316,12 +343,15 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         body.torque = body.torque - Real::load(next) * body.e2.column(2);
     }
-    /// What the body after it leaves for a body whose joint force is wanted.
+    /// State of the recursion that computes joint forces in the outward pass
+    /// (RunWithLoads::PassedOn).
     struct PassedOn {
         Vector<Real, K> force;
         Matrix3 e1, from_ground;
-        Real torque;  // about the revolute joint between them, within the run
+        Real torque;  // Torque about the revolute joint between the two bodies, within the run.
     };
+    /// Returns the force at the joint inboard of body i from that at the next joint. Called for the
+    /// bodies from the last to the first.
     Vector<Real, K> pass_on(RunsInLanes const& runs, int i, Kept const& kept, Vector3 const& omega,
                             RevoluteFrame<Real> const& frame, BodyAcceleration<Real> const& a,
                             PassedOn& passed) const {
@@ -332,19 +362,21 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
                                                 : transposed_times(passed.e1 * transpose(frame.e2),
                                                                    passed.from_ground);
         push(runs, i, passed.from_ground, body);
-        // Its own revolute joint's torque is along none of the force's directions.
+        // The torque of the outboard revolute joint is along none of the force's directions, so
+        // that `passed.force` lacks it.
         body.torque = body.torque - passed.torque * body.e2.column(2);
         passed.force = inboard_force(body, a, passed.force);
         passed.e1 = frame.e1;
         passed.torque = torque_about(i);
         return passed.force;
     }
+    /// Sets the velocity terms of body i from its angular velocity.
     void set_moving(RunsInLanes const& runs, int i, Vector3 const& omega,
                     RevoluteFrame<Real>& frame) const {
         bodies_.leaf.set_moving(bodies_.loads, Column<Real>{i % part_length}, omega, frame);
         if (i == 0) take_first_biases(runs, frame);
     }
-    /// In lanes whose runs begin a chain.
+    /// Sets the velocity terms of the first joint in lanes whose runs begin a chain.
     void take_first_biases(RunsInLanes const& runs, RevoluteFrame<Real>& body) const {
         if (!bodies_.loads.revolute_rate.origin) return;
         alignas(64) double bias[K * lanes];
@@ -356,8 +388,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
                         work_.loads.bias.origin[n * work_.loads.bias.pitch + runs.body[j]];
         load_vectors<Real>(bias, body.bias);
     }
-    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate, in the lanes
-    /// where it is.
+    /// Writes the wanted results of the runs' last bodies, and begin_at() those of the first ones,
+    /// in the lanes where FusedSweep::accelerate() would write them.
     void end_at(RunsInLanes const& runs, RevoluteFrame<Real> const& frame,
                 BodyAcceleration<Real> const& a) const {
         scatter(component<Real>(work_.out.revolute_acceleration, 1), runs.column, count,
@@ -377,7 +409,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             scatter(component<Real>(work_.out.revolute_acceleration, 0), runs.body, 0,
                     Vector<Real, 1>{{about}});
     }
-    /// Of bodies body[j] + i in the lanes that are wanted(j).
+    /// Writes the accelerations of bodies body[j] + i in the lanes with wanted(j).
     template <class Wanted>
     void scatter_accelerations(std::int64_t const* body, int i, BodyAcceleration<Real> const& a,
                                Wanted const& wanted) const {
@@ -395,7 +427,8 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             }
         }
     }
-    /// The last that is known of body i of the runs.
+    /// Writes the joint acceleration of body i of the runs, the last result for this body. At the
+    /// first body of a part, the part's results leave the tile.
     void turn(RunsInLanes const& runs, int i, Real const& of_revolute) {
         View<2> const& to = out_.revolute_acceleration;
         if (to.origin)

@@ -1,8 +1,10 @@
-// Runs of bodies side by side, one in each lane of a vector, and merges of the tree above them:
-// what the sources of the instruction sets offer. These sources must not share a function with the
-// rest of the program, or the linker may keep the one that not every processor runs: nothing of the
-// standard library but placement new passes this door, and all behind it is a template over their
-// own vectors.
+// Interface of the kernels that process runs of bodies side by side, one in each lane of a vector,
+// and the merges of the tree above them.
+//
+// The sources of the instruction sets must not share a function with the rest of the program: the
+// linker might keep the version that not every processor can execute. They therefore use nothing of
+// the standard library but placement new, and all their code is templates over their own vector
+// types.
 #pragma once
 
 #include "dca/tree_sweeps.hpp"
@@ -12,20 +14,20 @@ namespace catena::dca {
 
 inline constexpr int most_lanes = 8;
 
-/// Runs, one a lane, of `longest_run` columns; in the lanes that are left over the first one again.
-/// A shorter one has the last columns: before its first body's own that body stands again, and what
-/// comes of these is left out.
+/// Runs in the lanes of a vector, each with `longest_run` columns. Free lanes repeat the first run.
+/// A shorter run occupies the last columns. Columns before its first body repeat that body, and
+/// their results are discarded.
 struct RunsInLanes {
     std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
-    std::int64_t
-        column[most_lanes];   // where column 0 would be: that of the first body, less skipped
-    int skipped[most_lanes];  // columns, longest_run - part_length at most
-    std::uint8_t
-        begins[longest_run];  // bit j: lane j's run begins in this column; in column 0 all do
-    std::uint8_t late;        // bit j: lane j's is a shorter one
+    /// Body that column 0 corresponds to: the first body minus the skipped columns.
+    std::int64_t column[most_lanes];
+    int skipped[most_lanes];  // Number of skipped columns, longest_run - part_length at most.
+    /// Bit j: the run in lane j begins in this column; set for all lanes in column 0.
+    std::uint8_t begins[longest_run];
+    std::uint8_t late;  // Bit j: the run in lane j is a shorter one.
 };
-/// Part p of them: a lane's columns are of bodies first[j] on, its first skipped[j] ones aside,
-/// where first[j] stands again.
+/// Part p of runs in lanes. The columns of lane j start with body first[j]; its first skipped[j]
+/// columns repeat that body.
 template <class Real>
 struct PartInLanes {
     static constexpr int lanes = Real::lanes;
@@ -46,8 +48,8 @@ struct PartInLanes {
     }
 };
 
-/// action(view) for all of a group that bodies side by side do not turn over again in every sweep.
-/// A bead has too little of it.
+/// Calls action(view) for all constants of a group that sweeps side by side read in lane order,
+/// without transposing them again. Beads have too few constants for that.
 template <class Leaf, class Action>
 constexpr void each_constant(GroupView& group, Action const& action) {
     if constexpr (!Leaf::beads) {
@@ -66,6 +68,7 @@ constexpr void each_constant(GroupView& group, Action const& action) {
         }
     }
 }
+/// Returns the number of doubles per body that each_constant() visits.
 template <class Leaf>
 consteval int count_constants() {
     GroupView group;
@@ -73,13 +76,15 @@ consteval int count_constants() {
     each_constant<Leaf>(group, [&count]<int D>(ConstView<D> const&) { count += D; });
     return count;
 }
-/// Of its inboard joint's frame against the body before, where bodies go by their revolute joints.
+/// Number of doubles per body for the inboard joint's frame in the axes of the body before, for
+/// leaves that are computed by articulated-body inertias.
 template <class Leaf>
 inline constexpr int frame_constants = Leaf::by_inertia ? 4 : 0;
-/// Numbers a body.
+/// Number of doubles per body in RunWork::constants.
 template <class Leaf>
 inline constexpr int constants_of = count_constants<Leaf>() + frame_constants<Leaf>;
 
+/// Arguments of the kernels for runs.
 template <class Leaf>
 struct RunWork {
     TreeSweeps<Leaf> sweeps;
@@ -88,28 +93,34 @@ struct RunWork {
     LoadsView loads;
     AccelerationsView out;
     RunsInLanes const* runs = nullptr;
-    double const* constants = nullptr;  // [part of an item of `runs`][number][body][lane]
-    double* nodes = nullptr;  // kept_of_run_of<Leaf> vectors for every item, from climb to descend
-    bool keeps_all = false;   // of every body too, or joints between parts alone, the others being
-                              // eliminated again
-    bool asks_ahead = false;  // as asks_ahead()
+    /// Array [part of an item of `runs`][number][body][lane] of each_constant() and joint frames.
+    double const* constants = nullptr;
+    /// Storage of kept_of_run_of<Leaf> vectors per item between inward and outward pass.
+    double* nodes = nullptr;
+    /// True if `nodes` has the data of all bodies. Otherwise it has only the joints between parts,
+    /// and the outward pass eliminates the others again.
+    bool keeps_all = false;
+    bool asks_ahead = false;  // True if the kernels prefetch, see asks_ahead().
 };
-/// Vectors of a joint between segments, and of what a body passes on to the way down.
+/// Number of vectors for a joint between segments.
 template <int K>
 inline constexpr int node_numbers =
     static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
+/// Number of vectors that the outward pass needs for a body.
 template <int K>
 inline constexpr int passed_numbers =
     static_cast<int>(sizeof(OneSided<double, K>) / sizeof(double));
+/// Number of vectors for a run that is joined body by body.
 template <int K>
 constexpr int kept_of_run(bool keeps_all) {
     return (parts_of_run - 1) * node_numbers<K> +
            (keeps_all ? static_cast<int>(longest_run) * passed_numbers<K> : 0);
 }
 
-/// Of a run that goes by its inertias: its revolute joints with the bodies outboard of them, of
-/// which the way back wants some angular velocities; and its end, with the last revolute joint's
-/// axes and the last body's orientation.
+/// Numbers of vectors for a run computed by articulated-body inertias. `revolute_numbers` belongs
+/// to a joint with the body outboard of it, with its angular velocity and its velocity bias.
+/// `end_numbers` belongs to the run's end, with the last revolute joint's axes and the last body's
+/// orientation.
 inline constexpr int released_numbers =
     static_cast<int>(sizeof(ReleasedRevolute<double>) / sizeof(double));
 inline constexpr int passed_body_numbers =
@@ -124,22 +135,25 @@ constexpr int kept_of_run_of(bool keeps_all) {
     return Leaf::by_inertia ? kept_of_revolute_run : kept_of_run<Leaf::K>(keeps_all);
 }
 
-/// Merges of one level of the tree.
+/// Merges of one level of the tree in the lanes of a vector.
 struct MergesInLanes {
     std::int64_t inboard[most_lanes], outboard[most_lanes], slot[most_lanes];
     std::int64_t first[most_lanes], joint[most_lanes], next[most_lanes];
 };
+/// Arguments of the kernels for merges.
 template <class Leaf>
 struct MergeWork {
     TreeSweeps<Leaf> const& sweeps;
     MergesInLanes const* merges;
-    double* nodes;  // node_numbers<K> vectors an item, from climb to descend
+    double* nodes;  // Storage of node_numbers<K> vectors per item between inward and outward pass.
     bool asks_ahead;
 };
 
-/// For items [begin, end) of RunWork::runs. climb: from the bodies to the runs' slots, matrices and
-/// biases at once; descend: from the forces at the runs' ends to the bodies' accelerations.
-/// climb_merges, descend_merges: the same of MergeWork::merges.
+/// Kernels of one vector type for the items [begin, end) of RunWork::runs and MergeWork::merges.
+///
+/// `climb` computes matrices and biases, from the bodies to the runs' slots. `descend` computes the
+/// bodies' accelerations from the forces at the runs' ends. `climb_merges` and `descend_merges` are
+/// the same passes over merges.
 template <class Leaf>
 struct RunKernels {
     void (*climb)(RunWork<Leaf> const&, std::int64_t begin, std::int64_t end);
@@ -148,18 +162,18 @@ struct RunKernels {
     void (*descend_merges)(MergeWork<Leaf> const&, std::int64_t begin, std::int64_t end);
 };
 
-/// Precondition: simd_levels() has them.
+/// Returns the kernels of an instruction set. Precondition: simd_levels() contains it.
 template <class Leaf>
 RunKernels<Leaf> avx2_kernels();
 template <class Leaf>
 RunKernels<Leaf> avx512_kernels();
 
-/// Whether runs of these leaves go side by side: those with handles projected on the joints'
-/// directions.
+/// True if runs of this leaf can be processed side by side: its handles are projected on the
+/// joints' directions.
 template <class Leaf>
 inline constexpr bool goes_side_by_side = Leaf::projected;
 
-/// instantiate(Leaf) for each of them.
+/// Calls instantiate(Leaf) for each leaf whose runs can be processed side by side.
 // clang-format off
 #define CATENA_LEAVES_IN_LANES(instantiate)           \
     instantiate(BeadLeaf<1>)                          \

@@ -1,5 +1,4 @@
-// Runs side by side, whose bodies lie in a tile: what all kernels of an instruction set have in
-// common.
+// Runs side by side whose bodies are in a tile: the base of all kernels.
 #pragma once
 
 #include <utility>
@@ -11,13 +10,14 @@
 
 namespace catena::dca {
 
-/// Bodies side by side as Evaluation takes them: their constants in the order of lanes, the rest in
-/// a tile.
+/// Data of bodies side by side for the leaves: constants are stored in the order of lanes
+/// (RunWork::constants), other data are in a tile.
 template <class Real, class Leaf>
 class BodiesInTile {
     static constexpr int K = Leaf::K;
 
   public:
+    // Registers the views of `work` with the tile.
     template <class Tile>
     BodiesInTile(Tile& tile, RunWork<Leaf> const& work) {
         if constexpr (Leaf::beads) {
@@ -56,11 +56,12 @@ class BodiesInTile {
         }
     }
     ConstView<4> rotation{};
-    // Where revolute joints' loads are given.
+    // Torques of revolute joints, if joint loads are given (RevoluteLoads).
     ConstView<1> revolute_torque{};
-    int on_way_back = 0;  // numbers that accelerations need, of the tile's
+    // Number of doubles per body that the outward pass needs; they are the first ones of the tile.
+    int on_way_back = 0;
 
-    /// Those of a part.
+    /// Returns the leaf of one part with its constants.
     auto with(Constants<Real> constants) const {
         GroupView group = group_;
         each_constant<Leaf>(group, [&constants]<int D>(ConstView<D>& view) {
@@ -81,7 +82,7 @@ class BodiesInTile {
     LoadsView loads_{};
 };
 
-/// Of joints number[j] + further, those whose bit j of `bad` is set.
+/// Records pivot failures of the joints number[j] + further whose bit j of `bad` is set.
 template <class Real, class Leaf>
 void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further,
                unsigned bad) {
@@ -90,10 +91,11 @@ void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int f
             sweeps.note({static_cast<unsigned long long>(number[j] + further)});
 }
 
-/// Runs side by side, whose bodies are in a tile a part at a time, with what is done to them there.
+/// Base of the kernels: reads runs side by side into a tile part by part and writes the results
+/// back.
 template <class Real, class Leaf>
 class RunsInTile {
-    // Beads' neighbours are of the same run for the most part.
+    // Most neighbours of beads are in the same run, so that whole runs are read at once.
     static constexpr bool by_runs = Leaf::beads;
     static_assert(!by_runs || constants_of<Leaf> == 0);
     static constexpr int lanes = Real::lanes;
@@ -106,16 +108,16 @@ class RunsInTile {
         : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
         if (View<2> const& of_revolutes = work.out.revolute_acceleration; of_revolutes.origin) {
             View<1> const first = tile_.out(component<Real>(of_revolutes, 0));
-            out_.revolute_acceleration = {
-                first.origin, first.pitch,
-                first.size};  // the other component goes straight to its place
+            // The other component is written directly to its field.
+            out_.revolute_acceleration = {first.origin, first.pitch, first.size};
         } else {
             out_.acceleration = tile_.out(work.out.acceleration);
             out_.alpha = tile_.out(work.out.alpha);
         }
         out_.joint_force = tile_.template out_directions<Leaf::K>(work.out.joint_force);
     }
-    /// `way`: 1 outwards, -1 back.
+    /// Reads part p of the runs. `way`: 1 in the inward pass (from the first part to the last), -1
+    /// in the outward pass.
     void fill(RunsInLanes const& runs, int p, int way) {
         begin_ = {by_runs ? p * part_length : 0};
         if (!by_runs)
@@ -132,24 +134,25 @@ class RunsInTile {
                         .template next<4>();
         }
     }
+    /// Writes the results of part p.
     void empty(RunsInLanes const& runs, int p) {
         if (!by_runs)
             tile_.empty(PartInLanes<Real>(runs, p));
         else if (p == 0)
             tile_.empty(runs.body);
     }
-    /// With body i, in turn: the next item's bodies usually follow, or come before where the way is
-    /// back.
+    /// Prefetches with body i, which is called for every body in order. The bodies of the next item
+    /// usually follow; in the outward pass they come before.
     [[gnu::always_inline]] void ask(RunsInLanes const& runs, int i, int way) const {
         if (!work_.asks_ahead) return;
-        // A whole run in the tile is read at once, at the next item's beginning: what is asked for
-        // last would come too late.
+        // A whole run is read at once when the next item begins, so that prefetches shortly before
+        // would come too late.
         std::int64_t const ahead = (by_runs ? 2 : 1) * way * bodies_of_item;
         tile_.ask_to_read(runs.body, ahead, i, count(way));
         if (way < 0) tile_.ask_to_write(runs.body, ahead, i);
         if constexpr (constants_of<Leaf> > 0) {
-            // Two parts further. On the way back a run on revolute joints may need those of its
-            // ends alone.
+            // The constants are prefetched two parts ahead. In the outward pass, a run on revolute
+            // joints may need only those of its end parts.
             bool const of_ends = Leaf::by_inertia && way < 0 && !out_.by_all_bodies();
             if (of_ends && (i < part_length || i >= longest_run - part_length)) return;
             constexpr int of_body = constants_of<Leaf> * lanes,
@@ -163,21 +166,23 @@ class RunsInTile {
     RunWork<Leaf> const& work_;
 
   private:
+    /// Returns the constants of part p of the runs.
     double const* constants(RunsInLanes const& runs, int p) const {
         return work_.constants + ((&runs - work_.runs) * parts_of_run + p) *
                                      (constants_of<Leaf> * part_length * lanes);
     }
-    /// Of numbers that the tile reads.
+    /// Returns the number of doubles per body that the pass in direction `way` reads.
     int count(int way) const {
         return way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force ? in_tile_.on_way_back
                                                                         : tile_.count();
     }
+    // Whole runs of beads, otherwise single parts.
     Tile<Real, by_runs ? longest_run : part_length> tile_;
     BodiesInTile<Real, Leaf> in_tile_;
 
   protected:
     Bodies bodies_;
-    Column<Real> begin_;  // of the part in the tile
+    Column<Real> begin_;  // First column of the current part.
     AccelerationsView out_{};
 };
 

@@ -1,8 +1,10 @@
+// Distribution of runs and merges to SIMD lanes (side_by_side.hpp).
 #include "dca/simd/side_by_side.hpp"
 
 namespace catena::dca {
 namespace {
 
+/// True if the run may be processed side by side with others.
 bool is_regular(ChainGroup const& group, Run const& run, RunsTaken const& taken) {
     std::int64_t const last = run.body + run.count - 1;
     if (run.count > longest_run || run.count < (taken.of_parts ? part_length : longest_run) ||
@@ -16,7 +18,8 @@ bool is_regular(ChainGroup const& group, Run const& run, RunsTaken const& taken)
     return true;
 }
 
-/// Of all ranks: these know how long others' chains are, not their joints.
+/// Numbers of runs on all ranks. Ranks know the lengths of other ranks' chains, but not their
+/// joints.
 struct RunsOfGroup {
     std::int64_t whole = 0, shorter = 0;
     explicit RunsOfGroup(ChainGroup const& group) {
@@ -26,9 +29,11 @@ struct RunsOfGroup {
             shorter += tree.runs - whole_ones;
         }
     }
-    /// One or two take less time one after the other than a vector with most of its lanes idle.
+    /// True if vectors save time. One or two runs take less time one after the other than in a
+    /// vector with most lanes idle.
     bool enough() const { return whole + shorter >= few; }
-    /// And so do shorter ones, unless there are lanes for them beside whole runs.
+    /// True if shorter runs save time as well: if there are enough of them, or if the last vector
+    /// of whole runs has free lanes for all.
     bool shorter_ones_pay() const {
         return shorter >= few ||
                (whole % most_lanes > 0 && whole % most_lanes + shorter <= most_lanes);
@@ -38,14 +43,16 @@ struct RunsOfGroup {
     static constexpr std::int64_t few = 3;
 };
 
-/// So many left over of a level take less time one after the other.
+/// Number of merges from which on the last, incomplete vector of a level takes less time than
+/// single merges.
 constexpr std::size_t few_merges = 3;
 
 }  // namespace
 
 bool asks_ahead(ChainGroup const& group) {
-    // Measured with a cache of 32 MiB: 16,384 bodies take a tenth less without, 32,768 half as much
-    // again.
+    // Estimated bytes per body and per bead, and bytes that stay in the caches. Measured with a
+    // cache of 32 MiB: without prefetching, 16,384 bodies take a tenth less time, 32,768 bodies
+    // half as much again.
     constexpr std::int64_t of_body = 1200, of_bead = 300, kept = std::int64_t{24} << 20;
     return group.size * (group.beads ? of_bead : of_body) > kept;
 }
@@ -66,6 +73,7 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, RunsTaken const& 
         }
         RunsInLanes& item = dealt.items.back();
         int const skipped = static_cast<int>(longest_run - run.count);
+        // The first run of an item fills all lanes, so that free lanes repeat it.
         for (int j = lane; j < (lane == 0 ? lanes : lane + 1); ++j) {
             item.body[j] = run.body, item.slot[j] = run.slot, item.next[j] = run.next;
             item.column[j] = run.body - skipped, item.skipped[j] = skipped;
@@ -88,6 +96,8 @@ std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
         LevelDealtOut& dealt = all.emplace_back(LevelDealtOut{{}, {{}}});
         std::vector<Merge> alike;
         for (Merge const& m : level) {
+            // Merges in vectors require that the rest of the program rounds as vectors do.
+            // Otherwise the distribution to ranks could change the results.
             bool const goes =
                 rounds_as_vectors() &&
                 group.restricted_of_joint[static_cast<std::size_t>(m.joint)] == group.directions;

@@ -1,5 +1,5 @@
-// A group's runs and merges that go side by side: which ones, in what order, and the kernels of an
-// instruction set for them.
+// Runs and merges of a group that are processed side by side: their selection, their order, and the
+// kernels of an instruction set for them.
 #pragma once
 
 #include <algorithm>
@@ -17,26 +17,30 @@ struct RunsDealtOut {
     std::vector<RunsInLanes> items;
     std::vector<Run> others;
 };
-/// Whether this rank's bodies are more than caches keep from one sweep to the next.
+/// True if the data of this rank's bodies exceed the caches, so that sweeps should prefetch.
 bool asks_ahead(ChainGroup const&);
 
-/// Which runs may go side by side.
+/// Selection of runs to be processed side by side.
 struct RunsTaken {
-    bool of_parts;  // those too that are shorter than runs are, but not shorter than a part, where
-                    // that pays
-    bool read_neighbours;  // their bodies do: only those that lie within their chain
+    /// True if runs shorter than longest_run, but not shorter than a part, are included where this
+    /// saves time.
+    bool of_parts;
+    /// True if the leaf reads neighbours; only runs inside their chains are then included.
+    bool read_neighbours;
 };
-/// A run goes side by side with others if it is as long as RunsTaken says, all its own joints carry
-/// what handles do and its last body is no jointed tip; and if the group has three runs on all
-/// ranks: so this is a property of the scene, not of who holds the run.
+/// Distributes runs to lanes. A run is processed side by side with others if its length fits
+/// `RunsTaken`, all its inner joints restrict K directions and its last body has no jointed tip.
+/// The group must have three runs on all ranks together. The choice therefore depends on the scene
+/// only, not on which rank holds the run.
 RunsDealtOut deal_out_runs(ChainGroup const&, int lanes, RunsTaken const&);
 
+/// Returns the kernels of an instruction set.
 template <class Leaf>
 RunKernels<Leaf> kernels_of(SimdLevel level) {
     return level == SimdLevel::avx512 ? avx512_kernels<Leaf>() : avx2_kernels<Leaf>();
 }
 
-/// That start where a vector may.
+/// Array of doubles whose beginning is aligned for vectors.
 class AlignedNumbers {
   public:
     AlignedNumbers() = default;
@@ -57,10 +61,11 @@ class AlignedNumbers {
     LongArray<double> storage_;
 };
 
-/// Whether RunWork keeps all: as many numbers as a core's second cache holds, and more.
+/// True if RunWork may keep the data of all bodies: as many doubles as fit into the second-level
+/// cache of a core, and somewhat more.
 constexpr bool may_keep_all(std::int64_t numbers) { return numbers <= 1 << 17; }
 
-/// As RunWork has it, of every body's `numbers` by body(k, place).
+/// Returns RunWork::constants; body(k, place) writes the `numbers` constants of body k.
 template <class Body>
 AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lanes, int numbers,
                                   Body const& body) {
@@ -80,19 +85,21 @@ AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lan
     return all;
 }
 
-/// Merges of one level at joints that carry what handles do, side by side, in the lanes that are
-/// left over the last one again; and the others, as a list of one level.
+/// Merges of one level in whole vectors, and the others as a list of one level. Only joints that
+/// restrict K directions are in vectors. Free lanes of a vector repeat its last merge.
 struct LevelDealtOut {
     std::vector<MergesInLanes> items;
     std::vector<std::vector<Merge>> others;
 };
+/// Distributes the merges of all levels to lanes.
 std::vector<LevelDealtOut> deal_out_levels(ChainGroup const&, int lanes);
 
-/// Runs, and the levels above them, that go side by side; with what is left to others of each.
+/// Runs and merges of a group that are processed side by side, with the storage and the kernels for
+/// them.
 template <class Leaf>
 class SideBySide {
   public:
-    /// `view`: of the group.
+    /// Distributes the runs and merges. `view` is that of the group.
     SideBySide(ChainGroup const& group, GroupView view, SimdLevel level) {
         if (level == SimdLevel::off) return;
         lanes_ = lanes_of(level);
@@ -116,9 +123,12 @@ class SideBySide {
         for (LevelDealtOut const& l : levels_)
             merge_nodes_.emplace_back(std::ssize(l.items) * node_numbers<Leaf::K> * lanes_);
     }
+    /// Returns the number of vectors of runs.
     std::int64_t items() const { return std::ssize(runs_.items); }
+    /// Returns the runs that are processed one by one.
     std::vector<Run> const& other_runs() const { return runs_.others; }
     std::vector<LevelDealtOut> const& levels() const { return levels_; }
+    /// Returns the memory in bytes.
     std::int64_t bytes() const {
         std::int64_t all = nodes_.bytes() + constants_.bytes() +
                            items() * static_cast<std::int64_t>(sizeof(RunsInLanes));
@@ -128,6 +138,7 @@ class SideBySide {
         return all;
     }
 
+    /// Inward pass of the runs; completes `work` for descend().
     template <class Space>
     void climb(Space const& space, RunWork<Leaf>& work) {
         work.runs = runs_.items.data();
@@ -139,16 +150,19 @@ class SideBySide {
             kernels_.climb(work, begin, end);
         });
     }
+    /// Outward pass of the runs.
     template <class Space>
     void descend(Space const& space, RunWork<Leaf> const& work) {
         space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) {
             kernels_.descend(work, begin, end);
         });
     }
+    /// Inward pass of the merges of level `l`.
     template <class Space>
     void climb_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l) {
         over_level(space, sweeps, l, kernels_.climb_merges);
     }
+    /// Outward pass of the merges of level `l`.
     template <class Space>
     void descend_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l) {
         over_level(space, sweeps, l, kernels_.descend_merges);

@@ -1,6 +1,6 @@
-// What bodies of a few runs read and write, turned so that those of several runs lie side by side:
-// a part, or the whole, of as many runs as a vector has lanes. Views of a tile are read at a
-// Column: a place that stands for one body of every run.
+// Local copy of the data of a few runs' bodies, transposed so that those of several runs lie side
+// by side. It holds a part, or the whole, of as many runs as a vector has lanes. Views of a tile
+// are read at a Column, a place that stands for one body of every run.
 #pragma once
 
 #include "dca/lane_access.hpp"
@@ -9,7 +9,7 @@
 
 namespace catena::dca {
 
-/// Body `at` of those in the tile: -1 and the one after the last are the neighbours.
+/// Body `at` of those in the tile. Columns -1 and `length` are the neighbours.
 template <class Real_>
 struct Column {
     using Real = Real_;
@@ -18,6 +18,7 @@ struct Column {
     friend CATENA_HD Column operator-(Column c, int by) { return {c.at - by}; }
 };
 
+/// Reads one body of every run, one vector per number.
 template <class Real, int D>
 CATENA_HD Vector<Real, D> read(ConstView<D> const& view, Column<Real> const& c) {
     Vector<Real, D> v;
@@ -25,16 +26,18 @@ CATENA_HD Vector<Real, D> read(ConstView<D> const& view, Column<Real> const& c) 
     for (int i = 0; i < D; ++i) v[i] = Real::load(view.origin + i * view.pitch + c.at * Real::lanes);
     return v;
 }
+/// Writes one body of every run, one vector per number.
 template <class Real, int D>
 CATENA_HD void write(View<D> const& view, Column<Real> const& c, Vector<Real, D> const& value) {
     CATENA_UNROLL
     for (int i = 0; i < D; ++i) value[i].store(view.origin + i * view.pitch + c.at * Real::lanes);
 }
+/// Returns the view of number i alone.
 template <class Real, int D>
 View<1> component(View<D> const& view, int i) {
     return {view.origin + i * view.pitch, view.pitch, view.size};
 }
-/// To bodies body[j] + further, straight to their field.
+/// Writes to bodies body[j] + further of a field directly, without a tile.
 template <class Real, int D>
 void scatter(View<D> const& view, std::int64_t const* body, int further, Vector<Real, D> const& value) {
     alignas(64) double of_lane[Real::lanes];
@@ -43,7 +46,7 @@ void scatter(View<D> const& view, std::int64_t const* body, int further, Vector<
         for (int j = 0; j < Real::lanes; ++j) view.origin[i * view.pitch + body[j] + further] = of_lane[j];
     }
 }
-/// And from bodies body[j].
+/// Reads bodies body[j] of a field directly, without a tile.
 template <class Real, int D>
 Vector<Real, D> pick(ConstView<D> const& view, std::int64_t const* body) {
     Vector<Real, D> v;
@@ -58,7 +61,8 @@ template <int K, class Real>
 CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& c, Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, c, value);
 }
-/// A run's first body may: RevoluteRunsSideBySide.
+/// Overloads for columns: bodies in a tile neither begin nor end a chain, except first bodies in
+/// RevoluteRunsSideBySide, which handles them itself.
 template <class Real>
 CATENA_HD bool begins_chain(GroupView const&, Column<Real> const&) {
     return false;
@@ -76,7 +80,8 @@ CATENA_HD Vector<Real, 3> outboard_screw(GroupView const& group, Column<Real> co
     return read(group.screw, c + 1);
 }
 
-/// A part's constants as they lie in RunWork::constants: number after number.
+/// Constants of a part in the order of RunWork::constants; next() returns the views one after the
+/// other.
 template <class Real>
 struct Constants {
     double const* place;
@@ -89,13 +94,14 @@ struct Constants {
     }
 };
 
-/// Of `length` bodies of each run.
+/// Copy of `length` bodies of each run.
 template <class Real, int length>
 class Tile {
     static constexpr int lanes = Real::lanes, columns = length + 2, most = 64;
 
   public:
-    /// The same view of the tile; none of none. `neighbours`: columns -1 and `length` too.
+    /// Registers a view to be read and returns the corresponding view of the tile. A view without
+    /// origin gives one without origin. `neighbours`: columns -1 and `length` are read too.
     template <int D>
     ConstView<D> in(ConstView<D> view, bool neighbours = false) {
         if (!view.origin) return {};
@@ -104,6 +110,7 @@ class Tile {
         for (int i = 0; i < D; ++i) source_[count_++] = {view.origin + i * view.pitch, neighbours};
         return here;
     }
+    /// Registers a view to be written and returns the corresponding view of the tile.
     template <int D>
     View<D> out(View<D> view) {
         if (!view.origin) return {};
@@ -113,19 +120,22 @@ class Tile {
         written_ += D;
         return here;
     }
+    /// Registers a view of K directions to be read.
     template <int K>
     ConstDirectionsView in_directions(ConstDirectionsView view) {
         ConstView<K> const here = in(ConstView<K>{view.origin, view.pitch, 0});
         return {here.origin, here.pitch};
     }
+    /// Registers a view of K directions to be written.
     template <int K>
     DirectionsView out_directions(DirectionsView view) {
         View<K> const here = out(View<K>{view.origin, view.pitch, 0});
         return {here.origin, here.pitch};
     }
-    /// How many numbers of a body it reads.
+    /// Returns the number of doubles per body that the tile reads.
     int count() const { return count_; }
-    /// `first`: the bodies in column 0. `count`: numbers, those of views that came first.
+    /// Reads the bodies into the tile. `first` are the bodies in column 0. `count` limits the read
+    /// to the first numbers in the order of registration.
     void fill(std::int64_t const* first, int count) {
         for (int n = 0; n < count; ++n) {
             double const* const from = source_[n].origin;
@@ -137,6 +147,7 @@ class Tile {
         }
     }
     void fill(std::int64_t const* first) { fill(first, count_); }
+    /// Reads part of the runs. In skipped columns of shorter runs, the first body is repeated.
     void fill(PartInLanes<Real> const& part, int count) {
         fill(part.first, count);
         if (!part.short_ones) return;
@@ -146,12 +157,12 @@ class Tile {
                     place(n)[i * lanes + j] = source_[n].origin[part.first[j] + (i < part.skipped[j] ? 0 : i - part.skipped[j])];
     }
     void fill(PartInLanes<Real> const& part) { fill(part, count_); }
-    /// As fill.
+    /// Writes the results in the tile to their fields. `first` are the bodies in column 0.
     void empty(std::int64_t const* first) {
         for (int n = 0; n < written_; ++n)
             for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
     }
-    /// But for skipped columns.
+    /// Writes the results of a part to their fields, except for skipped columns.
     void empty(PartInLanes<Real> const& part) {
         if (!part.short_ones) return empty(part.first);
         for (int n = 0; n < written_; ++n)
@@ -159,12 +170,14 @@ class Tile {
                 for (int i = part.skipped[j]; i < length; ++i)
                     target_[n][part.first[j] + i - part.skipped[j]] = place(most - 1 - n)[i * lanes + j];
     }
-    /// With body i of runs whose first bodies are first[j]: a share of what fill will read, and empty write, of runs that lie `ahead`. Little at
-    /// a time: many at once would wait for each other, and what is computed with them.
+    /// Prefetches a share of what fill() will read and empty() will write for runs that are `ahead`
+    /// bodies further. It is called once for each body i. The shares are small, because many
+    /// prefetches at once would delay each other and the computation.
     [[gnu::always_inline]] void ask(std::int64_t const* first, std::int64_t ahead, int i) const {
         ask_to_read(first, ahead, i);
         ask_to_write(first, ahead, i);
     }
+    /// Prefetches a share of what fill() will read.
     [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i, int count) const {
         for (int n = i % numbers_of_line; n < count; n += numbers_of_line)
             for (int j = 0; j < lanes; ++j) prefetch<Real>(source_[n].origin, line_of(i) + first[j] + ahead);
@@ -172,15 +185,18 @@ class Tile {
     [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i) const {
         ask_to_read(first, ahead, i, count_);
     }
+    /// Prefetches a share of what empty() will write.
     [[gnu::always_inline]] void ask_to_write(std::int64_t const* first, std::int64_t ahead, int i) const {
         for (int n = i % numbers_of_line; n < written_; n += numbers_of_line)
             for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], line_of(i) + first[j] + ahead);
     }
 
   private:
+    // Storage: the numbers to be read are at the beginning, those to be written at the end.
     static constexpr std::int64_t pitch = columns * lanes;
     static constexpr int line_of(int i) { return i / numbers_of_line * numbers_of_line; }
     double* place(int n) { return numbers_ + n * pitch + lanes; }
+    // A number to be read from its field.
     struct Source {
         double const* origin;
         bool neighbours;

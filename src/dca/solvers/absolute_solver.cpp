@@ -1,7 +1,9 @@
+// Host solvers of chains in absolute coordinates: beads, and bodies on links or spherical joints.
 #include "dca/solvers/tree_solver.hpp"
 
 namespace catena::dca {
 
+/// Returns the host solver of beads on links.
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
     if (group.directions == 1)
@@ -11,7 +13,7 @@ std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const& group, Executor 
                                                                 communicator);
 }
 
-/// Bodies in absolute coordinates: on links or on spherical joints.
+/// Returns the host solver of bodies in absolute coordinates, on links or on spherical joints.
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const& group, Executor const& executor,
                                                   Communicator const& communicator) {
     if (group.linked && group.directions == 1)

@@ -1,3 +1,4 @@
+// Parts of the level solver that are computed on the host (level_solver.hpp).
 #include "dca/leaf_choice.hpp"
 #include "dca/space_levels.hpp"
 

@@ -1,8 +1,10 @@
+// Host solvers of chains in joint coordinates, and the selection of the host solver of a group.
 #include "dca/solvers/tree_solver.hpp"
 
 namespace catena {
 namespace dca {
 
+// Host solvers that are compiled in other files of this folder.
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Executor const&,
                                               Communicator const&);
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor const&,
@@ -12,6 +14,8 @@ std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor
 
 namespace {
 
+/// Returns the host solver with K directions per handle. `sliding`: some joint is prismatic or
+/// helical.
 template <int K, bool sliding = false>
 std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor const& executor,
                                                Communicator const& communicator) {
@@ -22,6 +26,7 @@ std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor
 }  // namespace
 }  // namespace dca
 
+/// Selects the host solver by handles, coordinates and number of directions.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
     if (group.handles == Handles::articulated)

@@ -1,5 +1,5 @@
-// The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in
-// segment.hpp, leaf.hpp, articulated.hpp.
+// Driver of the divide-and-conquer solver for any Space: which sweeps run over which trees, and
+// when ranks exchange records. The mathematics is in segment.hpp, leaf.hpp and articulated.hpp.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@
 
 namespace catena::dca {
 
-/// Views that it is given are of its space.
+/// Solver of one group of chains with one kind of leaf in one Space. The views that its members
+/// take must be in the memory of that Space.
 template <class Leaf, class Space>
 class TreeSolver final : public ChainSolver {
     static constexpr int K = Leaf::K;
@@ -25,11 +26,14 @@ class TreeSolver final : public ChainSolver {
     using OfBiases = typename SweepsOf<Leaf>::OfBiases;
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
+    // True if evaluations compute runs on revolute joints by articulated-body inertias.
     static constexpr bool takes_runs_whole = requires { requires Leaf::by_inertia; };
+    // True if runs of this leaf can be processed side by side in the vectors of this Space.
     static constexpr bool has_lanes =
         goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
 
   public:
+    /// Allocates all arrays. The group and the communicator must outlive the solver.
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
           schedule_(group.schedule),
@@ -69,6 +73,8 @@ class TreeSolver final : public ChainSolver {
         }
     }
 
+    /// Matrix sweep: own trees first, then the exchange of shared units, then the top of shared
+    /// chains.
     void assemble_matrices(ConfigurationView const& configuration) override {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
@@ -84,26 +90,32 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
+    /// Bias sweep with the matrices assembled last; may be repeated.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         Stopwatch const watch(*this, report_.bias_seconds);
         up_and_down(tree_, OfBiases{sweeps_, loads, out}, of_biases(), out);
         ++report_.bias_sweeps;
     }
 
+    /// One evaluation: a fused sweep if at_once(), otherwise a matrix sweep and a bias sweep.
     void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads,
                             AccelerationsView const& out) override {
         if constexpr (Leaf::projected)
             if (at_once()) return evaluate(configuration, loads, out);
         ChainSolver::assemble_and_solve(configuration, loads, out);
     }
-    /// The chapter's tree of pairs stays plain, and so do full handles.
+    /// True if evaluations use the fused sweep. The chapter's pairwise tree and full handles keep
+    /// separate sweeps.
     bool at_once() const override {
         return Leaf::projected && group_.partition.trees.front().run_length > 1;
     }
+    /// True if evaluations compute runs by articulated-body inertias and all joints but those of
+    /// chains' first bodies are revolute.
     bool goes_by_revolutes() const override {
         return takes_runs_whole && at_once() && group_.revolute;
     }
     bool has_runs_side_by_side() const override { return aside_.has_value(); }
+    /// Times evaluations; shared units may make them depend on work of the host.
     std::vector<double> time_evaluations(ConfigurationView const& configuration,
                                          LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
@@ -111,6 +123,8 @@ class TreeSolver final : public ChainSolver {
                                    [&] { assemble_and_solve(configuration, loads, out); });
     }
 
+    /// Computes entries of T^-1 from the roots to the leaves (InverseSweep). The leaves must be
+    /// links.
     void invert(InverseView const& out) override {
         if constexpr (Space::answers_at_once && std::is_same_v<Sweeps, TreeSweeps<Leaf>>) {
             if (!inverse_) inverse_.emplace(schedule_);
@@ -125,9 +139,9 @@ class TreeSolver final : public ChainSolver {
             each(schedule_.roots);
             each_level(schedule_.levels);
             each(schedule_.runs);
+            // Returns the pivot of a joint; its inverse is 0 if nothing is restricted there.
             auto const pivot = [this](std::int64_t joint) {
-                double const inverse =
-                    sweeps_.joints.load(joint).factor(0, 0);  // 0 where nothing is restricted
+                double const inverse = sweeps_.joints.load(joint).factor(0, 0);
                 return inverse != 0 ? 1 / inverse : 1.0;
             };
             space_.for_each(group_.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
@@ -139,11 +153,11 @@ class TreeSolver final : public ChainSolver {
         }
     }
 
-    /// Whether chains can be carried through several sweeps block by block, without a word from
-    /// other ranks, and it pays.
+    /// True if whole chains can run through several sweeps block by block, without exchange between
+    /// ranks, and if this is faster.
     bool carries() const { return schedule_.shared.empty() && space_.pays_by_blocks(group_); }
-    /// action(sweeps)(block) for every block of whole chains, which does so many sweeps of each
-    /// kind. Precondition: carries().
+    /// Calls action(sweeps)(block) for every block of whole chains. Each call executes the given
+    /// numbers of matrix and bias sweeps, which are added to the report. Precondition: carries().
     template <class Action>
     void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps,
                Action const& action) {
@@ -154,15 +168,19 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
+    /// Throws if a pivot failure was found, and resets the record of failures.
     void check() override {
         unsigned long long const bad = space_.get(lost_.data());
         if (bad == none_lost) return;
         space_.put(lost_.data(), none_lost);
         refuse_indefinite(group_, communicator_.rank(), static_cast<std::int64_t>(bad));
     }
+    /// Waits until all work of the Space is complete.
     void wait() override { space_.wait(); }
     void measure(bool on) override { measured_ = on; }
 
+    /// Returns the statistics, with the size of the arrays and the run length and depth of the
+    /// tree.
     SolverReport report() const override {
         SolverReport r = report_;
         add_tree(group_, communicator_, r);
@@ -178,9 +196,11 @@ class TreeSolver final : public ChainSolver {
     }
 
   private:
+    // Value of `lost_` without a pivot failure.
     static constexpr unsigned long long none_lost = ~0ULL;
 
-    /// What does not go side by side: runs, one level after the other, and the roots.
+    /// Builds the trees of everything that is not processed side by side: runs, one level after the
+    /// other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
             rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint,
@@ -190,11 +210,13 @@ class TreeSolver final : public ChainSolver {
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
         add(no_runs_, no_levels_, schedule_.roots);
     }
+    /// Returns the blocks of whole chains; they are made on the first call.
     typename Space::Blocks const& blocks() {
         if (!blocks_) blocks_.emplace(group_);
         return *blocks_;
     }
-    /// Whether chains short enough for a team of threads each were left to such.
+    /// Assembles the matrices by teams of threads, one thread per part of a run, if all chains are
+    /// short enough. Returns false if they are not, and does nothing then.
     bool assemble_by_teams() {
         if constexpr (Space::template has_teams<K>)
             if (carries() && group_.partition.trees.front().run_length == longest_run) {
@@ -204,6 +226,7 @@ class TreeSolver final : public ChainSolver {
         return false;
     }
 
+    /// One evaluation by the fused sweep.
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads,
                   AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);
@@ -222,8 +245,8 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
-    /// With runs and merges that go side by side where there are any, and the others of each level
-    /// after them.
+    /// Executes the fused sweep. If some runs and merges are processed side by side, the others of
+    /// each level follow them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration,
                        LoadsView const& loads, AccelerationsView const& out) {
@@ -247,7 +270,8 @@ class TreeSolver final : public ChainSolver {
         up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, of_both(), out);
     }
 
-    /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
+    /// Adds the seconds of a sweep to the report. If the space does not wait for its work, it does
+    /// so only while measurement is on.
     class Stopwatch {
       public:
         Stopwatch(TreeSolver& solver, double& seconds)
@@ -265,8 +289,8 @@ class TreeSolver final : public ChainSolver {
         double start_;
     };
 
-    /// `shown`: of the sweep's records. A solver that is measured says how long ranks exchange
-    /// them.
+    /// Executes the inward and the outward pass with the exchange of the shared units' records
+    /// (`shown`) between them. With measurement on, the seconds of the exchange are reported.
     template <class Sweep, class Shown>
     void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Shown const& shown,
                      AccelerationsView const& out) {
@@ -279,18 +303,21 @@ class TreeSolver final : public ChainSolver {
             space_.climb_and_descend(top_, sweep);
             space_.descend(tree, sweep);
         }
+        // The neighbour rank needs the force of the joint between the two ranks' bodies.
         if (out.joint_force && group_.neighbour_outboard >= 0)
             space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo,
                                                        schedule_.bodies});
     }
 
+    // Numbers of a shared unit's record when matrices and biases are exchanged together.
     using NumbersOfSegments = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
+    // Exchange of shared units and the numbers of the records to be exchanged.
     template <class Numbers>
     struct Shown {
         FrontierExchange<Space>& units;
         Numbers numbers;
     };
-    /// The shared units' records, to all ranks.
+    /// Distributes the records of the shared units to all ranks.
     template <class Numbers>
     void gather(Shown<Numbers> const& shown) {
         auto const start = seconds_now();
@@ -299,14 +326,16 @@ class TreeSolver final : public ChainSolver {
         if (measured_) space_.wait();
         report_.exchange_seconds += seconds_now() - start;
     }
+    /// Returns the exchange of the matrices of shared units.
     Shown<RecordNumbers<typename Sweeps::Matrices>> of_matrices() {
         return {shown_matrices_,
                 {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
     }
+    /// Returns the exchange of the biases of shared units.
     Shown<RecordNumbers<typename Sweeps::Biases>> of_biases() {
         return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
     }
-    /// Precondition: at_once().
+    /// Returns the exchange of matrices and biases together. Precondition: at_once().
     Shown<NumbersOfSegments> of_both() {
         return {*shown_both_,
                 {matrices_.view(), biases_.view(), shown_both_->own_units(), shown_both_->units()}};
@@ -317,25 +346,34 @@ class TreeSolver final : public ChainSolver {
     Space space_;
     Communicator const& communicator_;
     typename Space::Model model_;
+    // Empty lists for trees without runs, merges or roots.
     std::vector<Run> no_runs_;
     std::vector<std::vector<Merge>> no_levels_;
     std::vector<Root> no_roots_;
+    // Tree of the chains' parts on this rank, and the top of shared chains.
     typename Space::Tree tree_, top_;
-    std::optional<typename Space::Tree>
-        whole_runs_;  // that evaluations go by whose runs are taken whole
+    // Tree of evaluations that compute runs on revolute joints by articulated-body inertias.
+    std::optional<typename Space::Tree> whole_runs_;
+    // Segments, indexed by slot.
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
+    // Nodes and states, indexed by joint.
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
     FrontierExchange<Space> shown_matrices_, shown_biases_;
-    std::optional<FrontierExchange<Space>> shown_both_;  // where evaluations are at once
+    // Exchange of the fused sweep, if evaluations use it.
+    std::optional<FrontierExchange<Space>> shown_both_;
+    // Smallest joint with a pivot failure, or none_lost.
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
+    // Made on first use or only if needed: blocks of whole chains, and runs and merges that are
+    // processed side by side.
     std::optional<typename Space::Blocks> blocks_;
     std::optional<SideBySide<Leaf>> aside_;
+    // Trees of everything that is not processed side by side, see lay_out_rest().
     std::vector<typename Space::Tree> rest_;
-    /// Of invert(), where it is asked for.
+    /// Arrays of InverseSweep; allocated when invert() is called.
     struct Inverse {
         explicit Inverse(Schedule const& schedule) : own(schedule.joints), across(schedule.slots) {}
         Records<double, Order::plain> own, across;
