@@ -1,4 +1,4 @@
-// A group's model on a device.
+// Constant properties of a group's bodies and joints on a device.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -7,7 +7,7 @@
 
 namespace catena::cuda {
 
-/// A copy of a host's field that does not change.
+/// Copy of a constant field of the host.
 template <int D>
 class FixedField {
   public:
@@ -21,8 +21,9 @@ class FixedField {
     DeviceField<D> field_;
 };
 
-/// Of bodies that are all alike one tile, and a pitch of 0: its first row is every row of bodies.
-/// The halo then is as any body, not as on the host.
+/// Copy of a constant field that stores a single tile, with pitch 0, if all bodies are alike. Every
+/// row of bodies then maps to the first row of the tile. The halo equals any body in that case,
+/// unlike on the host.
 template <int D>
 class AlikeField {
   public:
@@ -44,6 +45,8 @@ class AlikeField {
     DeviceField<D> field_;
 };
 
+/// Copy of a group's model: masses, inertias, handles, axes and joint types, in the units of the
+/// scene.
 class DeviceModel {
   public:
     explicit DeviceModel(ChainGroup const& group)

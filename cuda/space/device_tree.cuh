@@ -1,4 +1,4 @@
-// Trees of chains on a GPU: which launches their sweeps take, and with how many threads.
+// Trees of chains on a GPU: plans the launches of their sweeps and the numbers of threads.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,10 @@
 
 namespace catena::cuda {
 
-/// HostSpace::Tree says what it promises.
+/// Tree of sweeps; it behaves as HostSpace::Tree specifies.
 class DeviceTree {
+    /// Plans the stages, and copies runs and stages to the GPU. `slots`: number of segments;
+    /// `restricted`: number of restricted directions of every joint.
   public:
     DeviceTree(std::vector<dca::Run> const& runs,
                std::vector<std::vector<dca::Merge>> const& levels,
@@ -48,7 +50,7 @@ class DeviceTree {
                                  most_shared_bytes_);
         };
         short_ = one_chain(dca::part_length);
-        // Where stages take the runs as well, there are fewer launches.
+        // If stages contain the runs as well, fewer launches are needed without groups.
         if (runs_apart_ && !by_groups.groups.empty()) above_groups_ = one_chain(bodies_of_group);
         if (stages_above_groups_ || above_groups_) {
             group_list_ = Buffer<dca::Run>(by_groups.groups);
@@ -56,14 +58,17 @@ class DeviceTree {
         }
     }
 
+    /// Performs the inward pass.
     template <class Sweep>
     void climb(Sweep const& sweep, cudaStream_t stream) const {
         walk(stream).climb(sweep);
     }
+    /// Performs the outward pass.
     template <class Sweep>
     void descend(Sweep const& sweep, cudaStream_t stream) const {
         walk(stream).descend(sweep);
     }
+    /// Performs both passes, in a single launch for a short chain.
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep, cudaStream_t stream) const {
         if (stages_.empty()) return;
@@ -77,7 +82,7 @@ class DeviceTree {
             }
         walk(stream).climb_and_descend(sweep);
     }
-    /// As StageWalk::turn_shared.
+    /// Performs both passes of a tree shared by ranks in one launch; see StageWalk::turn_shared.
     template <class Sweep, class Numbers>
     bool turn_shared(Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
                      DeviceTree const& top, cudaStream_t stream) const {
@@ -85,6 +90,7 @@ class DeviceTree {
     }
 
   private:
+    /// A stage's lists and kept records in the GPU's memory.
     struct Stage {
         Stage(dca::Stage const& stage, dca::StagesTogether const& together, RunsView const& runs,
               dca::StageSizes const& sizes, dca::StageRecords const& records)
@@ -106,11 +112,12 @@ class DeviceTree {
         int threads;
         kernels::DeviceStage view;
     };
+    /// Returns the sizes of stages for the present GPU and stores its shared memory per block.
     static dca::StageSizes sizes_here(dca::StageRecords const& records, int& shared_bytes) {
         shared_bytes = static_cast<int>(most_shared_bytes());
         return dca::stage_sizes(records, shared_bytes, blocks_at_once());
     }
-    /// Of StageWalk.
+    /// Launches that StageWalk requests; see there.
     struct Launches {
         DeviceTree const& tree;
         cudaStream_t stream;
@@ -204,13 +211,17 @@ class DeviceTree {
         }
 
       private:
+        /// Returns the largest shared memory of a block, bytes.
         std::size_t shared_bytes() const {
             return static_cast<std::size_t>(tree.most_shared_bytes_);
-        }  // of a block at most
+        }
+        /// Returns the cluster's grid for the tree above groups; it has no blocks if that is not
+        /// possible.
         template <class Sweep>
         Grid const& grid_above_groups() const {
             return tree.above_groups_.grid<kernels::GroupLanes<Sweep>>(kernels::turn_groups<Sweep>);
         }
+        /// Returns the grid of one stage.
         template <class Sweep>
         static Grid grid_of(Stage const& stage, int planned_threads, int most_threads,
                             Sweep const&) {
@@ -219,7 +230,7 @@ class DeviceTree {
                     sizeof(double) * static_cast<std::size_t>(
                                          kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
         }
-        /// `top`: null where nothing is above.
+        /// Launches both passes of the last stages. `top`: null if there is no stage above.
         template <class Sweep, class Exchange>
         void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
                   Stage const* top) const {
@@ -230,13 +241,15 @@ class DeviceTree {
                    together ? tree.turn_.letters() : kernels::TopLaunchLetters{}, exchange, sweep);
             if (together) ++turns_together;
         }
-        /// While it waits for other ranks, there is room for what they meet in besides
-        /// (arrived_beads.cu).
+        /// True if all blocks of the launch run at once. While the launch waits for other ranks,
+        /// one multiprocessor remains for the kernel in which they meet (arrived_beads.cu).
         template <class Exchange, class Sweep>
         bool runs_at_once(std::size_t first, Sweep const& sweep, Stage const* top) const {
             return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>,
                                                  grid_of_turn(first, sweep, top), top ? 1 : 0);
         }
+        /// Returns the grid of a launch that performs both passes of the last stages, and of `top`
+        /// if not null.
         template <class Sweep>
         Grid grid_of_turn(std::size_t first, Sweep const& sweep, Stage const* top) const {
             Stage const &lower = tree.stages_[first], &upper = tree.stages_.back();
@@ -277,11 +290,11 @@ class DeviceTree {
         return StageWalk<Launches>({*this, stream});
     }
 
-    int most_shared_bytes_ = 0;  // of a block
+    int most_shared_bytes_ = 0;  // shared memory per block, bytes
     Buffer<dca::Run> run_list_;
     RunsView runs_;
     Buffer<dca::Run> group_list_;
-    GroupsView groups_;  // none where no launch goes by them
+    GroupsView groups_;  // empty if no launch uses groups
     bool stages_above_groups_ = false;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
