@@ -65,8 +65,8 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
                has_top = among_ranks && is_upper;
     if constexpr (lets_next_start<Sweep>)
         if (by_letters && !has_top)
-            // With a top, the next launch does not start yet: it would occupy room that other ranks
-            // wait for.
+            // The next launch does not start yet if there is a top: it would occupy room for which
+            // other ranks wait.
             let_next_launch_start();
     // A gathering stage without blocks below has no work: its segments are already in their slots.
     int const begin = has_top && !by_letters && upper.gathers ? 1 : 0, end = has_top ? 2 : 1;
