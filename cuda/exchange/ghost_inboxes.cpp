@@ -40,7 +40,7 @@ bool GhostInboxes::fit(std::span<Halo::Message const> messages) {
 bool GhostInboxes::map_anew(std::int64_t received) {
     unmap(base_, communicator_.rank());
     base_.clear();
-    communicator_.barrier();  // no rank has it mapped any more
+    communicator_.barrier();  // no rank maps it from here on
     // A smaller allocation shares one of the driver's blocks with others, and cannot be mapped by
     // itself.
     std::int64_t constexpr own_block = 1 << 16;

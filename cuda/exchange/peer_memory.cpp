@@ -94,7 +94,7 @@ unsigned long long context_number() {
 }
 
 /// Mapped memory that no object uses at present. A mapping can be used only in the context that
-/// made it, and ends with it; OpenMM's contexts come and go.
+/// made it, and ends with it; OpenMM's contexts are short-lived.
 struct Spare {
     unsigned long long context;
     std::vector<double*> base;

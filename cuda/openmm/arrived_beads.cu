@@ -26,8 +26,8 @@ void each(std::int64_t count, Action const& action, cudaStream_t stream) {
     check(cudaGetLastError(), "start a kernel");
 }
 
-/// Barrier between ranks, one block per rank. After it, everything that ranks wrote before it is
-/// visible, in whichever GPU's memory it lies.
+/// Barrier between ranks, one block per rank. It makes everything visible that ranks wrote before
+/// it to the memory of any GPU.
 __global__ void meet(PeerBoxes boxes) {
     int const rank = static_cast<int>(threadIdx.x);
     if (rank >= boxes.ranks || rank == boxes.rank) return;

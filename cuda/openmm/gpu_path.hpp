@@ -60,18 +60,18 @@ class GpuPath : public DevicePath {
   protected:
     /// Numbers of evaluations, and of pair lists, after which particles are brought into a new
     /// order. OpenMM's own integrators reorder after 250 evaluations, which would cost a twentieth
-    /// of a step of 100,000 beads. Chains move little meanwhile. In a condensate of 7,143 chains
+    /// of a step of 100,000 beads. Chains move little in that time. In a condensate of 7,143 chains
     /// OpenMM's forces take as long before a reordering after 6,600 evaluations as after it (2.11
     /// ms, H200). Without checks of how far beads have moved, particles are reordered more often.
-    /// With such checks they are also reordered after `lists_of_an_order` pair lists, as beads move
-    /// up to some 0.2 nm per list: coordinates far from their periodic cell lose digits in single
-    /// precision.
+    /// With such checks they are also reordered after `lists_of_an_order` pair lists. Beads move at
+    /// most some 0.2 nm per list, and coordinates far from their periodic cell lose digits in
+    /// single precision.
     static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 8000,
                          lists_of_an_order = 400;
 
-    /// Flags that kernels set in pinned memory. `trouble` is the index of an own bead whose
-    /// position or force is not finite, `of_ghosts` that of a ghost; -1: none. `far` is 1 if a bead
-    /// has moved too far for the current lists.
+    /// Flags that kernels set in pinned memory. The flag `trouble` is the index of an own bead
+    /// whose position or force is not finite, `of_ghosts` that of a ghost; -1: none. The
+    /// flag `far` is 1 if a bead has moved too far for the current lists.
     struct Flags {
         std::int64_t trouble = -1, far = 0, of_ghosts = -1;
     };

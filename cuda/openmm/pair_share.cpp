@@ -11,7 +11,7 @@ static_assert(most_peers - 1 <= most_messages);
 
 namespace {
 
-/// True at evaluations 1, 2, 4 and 8, after which the shares follow the sizes of the ranks' lists.
+/// True after 0, 1, 2, 4 and 8 evaluations; the shares then follow the sizes of the ranks' lists.
 /// Shares also follow them whenever particles are reordered.
 bool is_early(std::int64_t evaluations) {
     return evaluations <= 8 && (evaluations & (evaluations - 1)) == 0;

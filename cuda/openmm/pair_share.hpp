@@ -51,8 +51,7 @@ class PairShare {
 
     /// Sends own beads' positions to all other ranks' inboxes.
     void send_positions(float const* position, GhostInboxes const& inboxes, cudaStream_t) const;
-    /// Waits until every rank's stream has come here, so that all positions sent before have
-    /// arrived.
+    /// Barrier between the ranks' streams, after which all positions sent before it have arrived.
     void wait_for_positions(cudaStream_t) const;
     /// Copies arrived positions of other ranks' beads to OpenMM's arrays.
     void take_positions(float* position, GhostInboxes const& inboxes, cudaStream_t) const;

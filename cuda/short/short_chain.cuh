@@ -1,5 +1,5 @@
-// Launch with both passes of one chain that fits into one cluster of blocks, in one launch. A warp merges eight
-// runs; then every block merges the segments of all warps.
+// Launch with both passes of one chain that fits into one cluster of blocks, in one launch. A warp
+// merges eight runs; then every block merges the segments of all warps.
 #pragma once
 
 #include "cuda/short/short_lanes.cuh"

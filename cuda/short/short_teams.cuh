@@ -137,8 +137,8 @@ class ShortTeams {
     __device__ static int place_of_part(int lane) { return of_parts + lane; }
     __device__ bool has_body(int i) const { return is_.is_here(i, is_.first + i); }
 
-    /// Records of a lane's bodies: at first a body's segment, after merges what its joint passes
-    /// on, and at the end the forces.
+    /// Records of a lane's bodies: first a body's segment, after merges the terms that its joint
+    /// passes on, and finally the forces.
     struct Kept {
         Records records;
         Gains gains;
@@ -186,8 +186,8 @@ class ShortTeams {
             for (int n = 0; n < numbers_of<T>; ++n) record[n] = values[n];
         }
     };
-    /// Two segments that a team merges, unless there is no second one. The merged segment takes the
-    /// place of the first, the node that of the second.
+    /// Two segments that a team merges, unless there is no second one. The merged segment
+    /// overwrites the first, the node the second.
     struct Pair {
         double *inboard, *outboard;
         dca::JointAt at;
@@ -323,7 +323,7 @@ class ShortTeams {
     int* at_top_;  // directions that the joints before warps restrict
     Records records_;
     Gains gains_;
-    PackedRecords<Ends> ends_;  // forces at the ends of what lanes merge
+    PackedRecords<Ends> ends_;  // forces at the ends of lanes' parts
     int* restricted_;  // directions that the joints of the warp's bodies restrict
 };
 

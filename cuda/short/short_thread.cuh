@@ -7,13 +7,14 @@
 namespace catena::cuda::kernels {
 
 /// Role of one thread: a lane of a warp that merges the parts of `lanes_of_warp` lanes, or of an
-/// auxiliary warp. Auxiliary warps do what needs no neighbours, for all bodies concurrently.
+/// auxiliary warp. Auxiliary warps compute the terms that need no neighbours, for all bodies
+/// concurrently.
 struct ShortThread {
-    /// Total bodies, lane in the warp, merging warps per block, warps per merging warp that hold
-    /// bodies, number of the merging warp in the block, number among the warps with bodies, and
-    /// number of the merging warp in the chain.
-    int bodies, lane, joining, warps_beside, group, beside,
-        warp;            // `joining` warps of a block join; this one, the block's `group`-th
+    /// Members in order: bodies of the chain; lane in the warp; merging warps per block; warps with
+    /// bodies per merging warp. Then follow three numbers: of the merging warp in the block
+    /// (`group`), of this warp among those with bodies (`beside`), and of the merging warp in the
+    /// chain.
+    int bodies, lane, joining, warps_beside, group, beside, warp;
     std::int64_t first;  // first body of those that the lane merges
 
     /// `apart`: merging warps have no bodies of their own; their `beside` is -1.

@@ -61,7 +61,7 @@ class DeviceSpace {
     static constexpr bool has_blocks = K == 1;
     template <int K>
     static constexpr bool has_teams = has_blocks<K>;
-    /// True if every chain fits in the registers of one block and none has a tip.
+    /// True if every chain fits in the registers of one block and no chain has a jointed tip.
     bool pays_by_blocks(ChainGroup const& group) const {
         return !group.has_tips() &&
                std::all_of(group.pieces.begin(), group.pieces.end(), [](dca::Piece const& piece) {

@@ -129,9 +129,10 @@ class JoinedLanes {
     }
 
   private:
-    /// Inward pass of lanes. Lane l has the segment that starts at body (first + l) * length. Nodes
-    /// are stored at the first lane of the outboard segment. If the unchecked factorizer was not
-    /// sure, the pass is repeated with exact factors and branches.
+    /// Inward pass of lanes. Lane l has the segment that starts at body (first + l) * length. The
+    /// last lane of a pair holds the merged segment; the node is stored at the first lane of the
+    /// outboard segment. If the unchecked factorizer was not sure, the pass is repeated with exact
+    /// factors and branches.
     template <int steps, class Step>
     __device__ void climb(Segment& segment, double* nodes, int first, int length, int restricted, Step const& step) const {
         bool sure = true;

@@ -64,9 +64,9 @@ class MergeTeam {
         double *inboard, *outboard, *joined, *node;
     };
     /// Merges two segments as append() does. All lanes of a warp call it. A team that does
-    /// not work only reads from its places. They are those of a working team of the warp, or others
-    /// that no thread writes meanwhile. The lane of the biases returns the outboard segment's
-    /// biases.
+    /// not work only reads from its places. These are the places of a working team of the warp, or
+    /// places that no thread writes during the call. The lane of the biases returns the outboard
+    /// segment's biases.
     __device__ dca::SegmentBias<double, K> join(Sweep const& sweep, dca::JointAt const& at,
                                                 bool works, Places const& places) const {
         bool sure = at.restricted == K;

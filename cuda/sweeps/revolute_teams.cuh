@@ -1,7 +1,7 @@
 // Passes of runs on revolute joints by several lanes of a warp, for chains with fewer runs than a
 // GPU has threads. Each lane computes what does not depend on other bodies for one body at a time
 // and stores it in shared memory. In the inward pass all lanes have the articulated-body inertia,
-// and each has one or two of the six wrenches (floating_run.hpp); at the end each has a row of the
+// and each has one or two of the six wrenches (floating_run.hpp). At the end each has a row of the
 // segment. Results are bitwise those of one thread's climb_revolutes() and descend_revolutes().
 // tests/support/cuda_on_host.hpp, included first, makes this file compile on the host.
 #pragma once

@@ -297,7 +297,7 @@ std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
     return numbers;
 }
 /// Performs both passes of one block, with exchange() and the one block of the top `above` between
-/// the passes, like turn().
+/// the passes, as turn() does.
 template <bool runs_are_known, class Scan, class Exchange>
 __device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above,
                                   Exchange const& exchange) {

@@ -274,7 +274,8 @@ class BlockOfStage {
     static __host__ __device__ int before_parts(DeviceStage const& stage) {
         return numbers_of_words(stage) + static_cast<int>(Segments::size(stage.layout.items) + Forces::size(stage.forces));
     }
-    // Stages with runs are not turned by sweeps whose merges go by teams (StageWalk).
+    // Sweeps with merges by teams never process stages with runs here; StageWalk splits these
+    // sweeps.
     template <bool alone>
     __device__ void descend_runs(typename Sweep::Part const* part) const {
         if constexpr (!by_teams) {

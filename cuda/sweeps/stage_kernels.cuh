@@ -52,10 +52,11 @@ struct NoExchange {
 };
 /// Kernel of both passes of the last stage, `upper`, which has one block if there is a stage below.
 /// If `lower` has blocks, all blocks of both stages run at once, and the block of `upper` has the
-/// highest number. That block is already polling before the others send their segments. If ranks
-/// share a `top`, then `upper` and `top` have one block each, and all threads of that block call
-/// exchange(). It sends the segments in this rank's slots to the other ranks and fills their slots;
-/// then the block turns the top. Loops make both stages use the same instructions.
+/// highest number. That block starts last and is already polling when the others send their
+/// segments. If ranks share a `top`, then `upper` and `top` have one block each, and all threads of
+/// that block call exchange(). It sends the segments in this rank's slots to the other ranks and
+/// fills their slots; then the block performs both passes of the top. Loops make both stages use
+/// the same instructions.
 template <class Sweep, class Exchange>
 __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     turn(DeviceStage lower, DeviceStage upper, DeviceStage top, TopLaunchLetters letters,
@@ -156,8 +157,7 @@ __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
     if constexpr (comes_ahead<Sweep>) {
         // Bodies can be read only once here; links read them again if the branchless factorizer
         // fails.
-        static_assert(Sweep::K >
-                      1);  // bodies come once, and links look again where quick factors give up
+        static_assert(Sweep::K > 1);
         using Bodies = BodiesInTurn<BodiesOf<Sweep>>;
         Bodies bodies(sweep.bodies, run.body, run.body + run.count, shared_numbers);
         climb_parts_quickly(sweep, run, [&](int) { return typename Bodies::Part{bodies}; });

@@ -17,8 +17,8 @@ namespace catena::cuda {
 /// - blocks(i), takes_runs(i): blocks of stage i, and whether its items are runs.
 /// - climb(i, sweep), descend(i, sweep): inward and outward pass of stage i.
 /// - turn(i, sweep), turn(i, sweep, exchange, top): both passes of stage i and the stage above it,
-///   if any. The call requires can_turn() with the same arguments; the last stage alone can always
-///   be turned.
+///   if any. The call requires can_turn() with the same arguments; for the last stage alone it is
+///   always true.
 /// - climb_runs(sweep), descend_runs(sweep): passes of the runs.
 /// - climb_groups(sweep), descend_groups(sweep): the same with groups of runs (run_groups.hpp).
 ///   They replace the passes of the runs if stages_above_groups().
