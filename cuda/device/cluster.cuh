@@ -70,6 +70,7 @@ class Inbox {
 /// Memory cell for a letter (below). Each half is written and read atomically, the two halves
 /// independently of each other.
 struct alignas(16) LetterBox {
+    /// The two 8-byte halves; one 16-byte instruction writes or reads both.
     struct Halves {
         unsigned long long lower = 0, upper = 0;
     };

@@ -1,4 +1,4 @@
-// Launch with both passes of one chain that fits into one cluster of blocks, in one launch. A warp
+// Single launch with both passes of a chain that fits into one cluster of blocks. A warp
 // merges eight runs; then every block merges the segments of all warps.
 #pragma once
 

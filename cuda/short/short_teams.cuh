@@ -84,9 +84,9 @@ class ShortTeams {
             turning = sweep_.bodies.turning(body, Factorizer{});
         };
         if (!joins) {
+            // The body that is read last stays in the thread's registers.
             CATENA_NO_UNROLL
             for (int i = is_.beside + dca::part_length - is_.warps_beside; i >= 0;
-                 // The body that is read last stays in the thread's registers.
                  i -= is_.warps_beside) {
                 if (!has_body(i)) continue;
                 read(i);

@@ -13,7 +13,7 @@ namespace catena::cuda {
 /// Amounts of GPU memory, bytes.
 struct DeviceMemory {
     std::int64_t bytes = 0;  // permanent: as long as the group exists
-    // additional memory, at most, while a field is copied to or from the GPU
+    /// Largest temporary memory, bytes, while a field is copied to or from the GPU.
     std::int64_t transient = 0;
     int allocations = 0;
     std::int64_t sum() const { return bytes + transient; }

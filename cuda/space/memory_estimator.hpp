@@ -51,6 +51,7 @@ class MemoryEstimator : public HostAccess {
   public:
     static constexpr bool answers_at_once = false;
 
+    /// Array of `count` elements; its size is counted and not kept.
     template <class T>
     class Array {
       public:
@@ -61,6 +62,7 @@ class MemoryEstimator : public HostAccess {
         T* data() const { return nullptr; }
         std::size_t size() const { return 0; }
     };
+    /// Direct exchange between GPUs; there is none.
     struct Direct {
         explicit operator bool() const { return false; }
     };
@@ -176,10 +178,9 @@ class MemoryEstimator : public HostAccess {
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
              std::vector<dca::Root> const& roots, std::int64_t slots,
              std::span<std::uint8_t const> restricted, dca::StageRecords const& records) {
-            constexpr std::int64_t shared_bytes = 227 << 10,
-                                   /// Shared memory per block and blocks at once of an H100; plans
-                                   /// for other GPUs need about as much.
-                at_once = 132;
+            // Shared memory per block and blocks at once of an H100; plans for other GPUs need
+            // about as much.
+            constexpr std::int64_t shared_bytes = 227 << 10, at_once = 132;
             dca::StageSizes const sizes = dca::stage_sizes(records, shared_bytes, at_once);
             dca::StagePlan const plan =
                 dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
@@ -277,6 +278,7 @@ class MemoryEstimator : public HostAccess {
     template <int D, class Set>
     void set(FieldOf<D>&, Set const&) const {}
     static Executor const& on_host() { return this_thread(); }
+    /// Host copy of a field; it needs no GPU memory.
     template <int D>
     struct Mirror {};
     template <int D>

@@ -67,7 +67,7 @@ struct BranchlessInverseLength {
         double const e = __fma_rn(x, -__dmul_rn(y, y), 1.0);
         y = __fma_rn(__fma_rn(e, 0.375, 0.5), __dmul_rn(y, e), y);
         double const root = __dmul_rn(x, y);
-        /// Half of y.
+        // This is half of y.
         double const half = __hiloint2double(static_cast<int>(upper::of(y) - upper::exponent_step),
                                              __double2loint(y));
         double const length = __fma_rn(__fma_rn(root, -root, x), half, root);

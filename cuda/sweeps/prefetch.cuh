@@ -18,8 +18,7 @@ class BodiesInTurn {
     static constexpr int numbers = static_cast<int>(sizeof(Read) / sizeof(double)) - 1;
     static constexpr int of_thread = 2 * numbers | 1;
 
-    /// Readers of leaves (dca/lane_access.hpp): Start starts the copies, Take returns the copied
-    /// numbers.
+    /// Reader of leaves (dca/lane_access.hpp) that starts asynchronous copies and returns zeros.
     struct Start {
         double* to;
         int n = 0;
@@ -41,6 +40,7 @@ class BodiesInTurn {
             return if_any(view, k);
         }
     };
+    /// Reader that returns the copied numbers in the order in which Start copied them.
     struct Take {
         double const* from;
         int n = 0;

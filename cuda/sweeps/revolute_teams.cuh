@@ -111,6 +111,7 @@ class RevoluteTeam {
     template <class Leaf, class Kept>
     __device__ __forceinline__ dca::FollowedState<double> follow(
         dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead, Kept& kept) {
+        /// Axis of a revolute joint in the run's axes, and its rate.
         struct Turning {
             Vec3 axis;
             double rate;
@@ -154,6 +155,7 @@ class RevoluteTeam {
     template <class Kept>
     __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about,
                                               Swing& swing, Ahead const& ahead, Kept& kept) {
+        /// Terms of a body by which the velocity bias is propagated.
         struct Swung {
             Swing difference;
             Vec3 across;

@@ -63,6 +63,7 @@ struct RecordsOfStage {
     using Forces = PackedRecords<typename Sweep::Sweeps::State>;
     static_assert(!Sweep::keeps_nodes || Nodes::stride == Segments::stride);
 };
+/// Layout for sweeps whose merges use teams.
 template <class Sweep>
     requires merges_by_teams<Sweep>
 struct RecordsOfStage<Sweep> {
