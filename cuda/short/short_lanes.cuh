@@ -74,6 +74,7 @@ class ShortLanes {
   private:
     /// True if bodies are small enough to stay in their threads' registers.
     static constexpr bool bodies_stay = !Sweep::one_by_one;
+    /// Largest number of bodies per thread.
     static constexpr int most_bodies = dca::part_length / warps_for_each(most_joining_warps);
     using Passed = typename Sweep::Passed;
     using Factorizer = BranchlessFactorizer<true>;
@@ -116,6 +117,7 @@ class ShortLanes {
         Passed passed_[dca::part_length];
         Passage passages_[dca::part_length];
     };
+    /// Size of a warp's shared memory in doubles.
     static constexpr int of_warp = Lanes::of_warp + InMemory::numbers;
     /// Calls action(round, i, k) for this thread's bodies: body k is number i of the bodies that
     /// its lane merges.

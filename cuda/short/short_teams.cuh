@@ -127,12 +127,14 @@ class ShortTeams {
     /// Sizes of arrays of integers, two of which fit in a double.
     static constexpr std::size_t of_top_words = most_warps_of_chain / 2,
                                  of_bodies_words = of_parts / 2;
+    /// Size of the shared memory of a merging warp in doubles.
     static constexpr std::size_t of_group = Records::size(places) + Gains::size(of_parts) +
                                             PackedRecords<Ends>::size(lanes_of_warp) +
                                             of_bodies_words;
     static constexpr int steps_of_parts = dca::parts_of_run - 1,
                          steps_of_warp =
                              steps_of_parts + levels_above(lanes_of_warp / dca::parts_of_run);
+    /// Place of body i of a lane, and place of a lane's merged part.
     __device__ static int place_of(int lane, int i) { return i * lanes_of_warp + lane; }
     __device__ static int place_of_part(int lane) { return of_parts + lane; }
     __device__ bool has_body(int i) const { return is_.is_here(i, is_.first + i); }
@@ -166,10 +168,12 @@ class ShortTeams {
                 return Team::template record<T>(record);
             }
         }
+        /// Stores the gain of the joint before body i (force at it per force after the body).
         __device__ void put_gain(int i, Square const& gain) const {
             gains.store(place_of(lane, i), gain);
         }
         __device__ Square gain(int i) const { return gains.load(place_of(lane, i)); }
+        /// Stores the offset of the force at the joint before body i.
         __device__ void put_offset(int i, Directions const& offset) const {
             write(of(i) + at_bias, offset);
         }

@@ -9,6 +9,7 @@ namespace catena::cuda {
 /// Device copies of everything that a solver of levels reads and writes.
 class DeviceCrossing {
   public:
+    /// Allocates fields of the size of the group; those that its kind of chain lacks are empty.
     DeviceCrossing(ChainGroup const& group, DeviceSpace const& space)
         : space_(space),
           direction_(group.beads || group.linked ? group.size : 0),
@@ -92,13 +93,18 @@ class DeviceCrossing {
         return host.origin ? device.view() : HostView{};
     }
 
+    /// Space whose stream performs the copies.
     DeviceSpace space_;
+    /// Configuration: directions of links, rotations, and moving handles of universal and screw
+    /// joints.
     DeviceField<3> direction_, tip_direction_;
     DeviceField<4> rotation_;
     DeviceField<3> moving_r2_;
     DeviceField<6> moving_axes2_;
+    /// Loads: torques, forces, angular velocities, and velocity terms of joints and tips.
     DeviceField<3> torque_, force_, omega_;
     DeviceDirections bias_, tip_bias_;
+    /// Results: accelerations of bodies, and forces at joints and tips.
     DeviceField<3> alpha_, acceleration_;
     DeviceDirections joint_force_, tip_force_;
 };

@@ -82,6 +82,7 @@ class DeviceScan {
                    tops.data(),
                    block.data(),
                    level_end.data()} {}
+        /// Lists of items, merges, complete segments, blocks and ends of levels (dca::ScanStage).
         Buffer<std::int32_t> slot;
         Buffer<dca::ScanMerge> merges;
         Buffer<dca::ScanTop> tops;
@@ -108,6 +109,7 @@ class DeviceScan {
         void descend(std::size_t i, Scan const& scan) const {
             launch(kernels::descend_scan<Scan>, i, scan);
         }
+        /// Launches both passes and the action by one cluster; returns false if that is impossible.
         template <class Scan, class Action>
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
             kernels::DeviceScanStage const& stage = tree.stages_.front().view;
@@ -121,6 +123,7 @@ class DeviceScan {
                          scan, count, action);
             return true;
         }
+        /// Launches both passes of the last stage with an exchange and the passes of `top`.
         template <class Scan, class Numbers>
         void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                          Launches const& top) const {
@@ -133,6 +136,7 @@ class DeviceScan {
                          exchange.next(), scan);
             ++scans_shared;
         }
+        /// Launches the same and the action by one cluster; returns false if that is impossible.
         template <class Scan, class Numbers, class Action>
         bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                               Launches const& top, std::int64_t count, Action const& action) const {
@@ -153,6 +157,7 @@ class DeviceScan {
         }
 
       private:
+        /// Returns the bytes of shared memory of a stage's block.
         template <class Scan>
         static std::size_t bytes(kernels::DeviceScanStage const& stage) {
             return sizeof(double) *

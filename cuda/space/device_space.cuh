@@ -37,8 +37,11 @@ class DeviceSpace {
     DeviceSpace(Executor const& on_host, Communicator const& communicator) : DeviceSpace(on_host) {
         peers_ = Peers(communicator);
     }
+    /// Returns the executor of the work that remains on the host.
     Executor const& on_host() const { return *on_host_; }
     cudaStream_t stream() const { return stream_->get(); }
+
+    // Types of data in the GPU's memory; HostSpace describes each of them.
 
     template <class T>
     using Array = Buffer<T>;
@@ -57,8 +60,10 @@ class DeviceSpace {
     using ScanTree = DeviceScan;
     using Tree = DeviceTree;
     using Blocks = DeviceBlocks;
+    /// True if blocks exist for handles with K directions: links and beads on links only.
     template <int K>
     static constexpr bool has_blocks = K == 1;
+    /// True if blocks are teams of threads.
     template <int K>
     static constexpr bool has_teams = has_blocks<K>;
     /// True if every chain fits in the registers of one block and no chain has a jointed tip.
@@ -215,6 +220,7 @@ class DeviceSpace {
     }
     /// Participants of a direct exchange; false if GPUs are not connected.
     using Direct = PeerCall;
+    /// Plans exchanges of `width` numbers per shared frontier unit, and `beside` numbers of bodies.
     Direct connect(dca::Schedule const& schedule, int width, int beside) const {
         return peers_.among_all(schedule, width, beside);
     }
@@ -329,6 +335,7 @@ class DeviceSpace {
         }
         return seconds;
     }
+    /// Waits until all work of the stream is complete.
     void wait() const { stream_->wait(); }
     /// The host's thread that drives the GPU.
     int threads() const { return 1; }
@@ -381,6 +388,7 @@ class DeviceSpace {
     }
     /// Throws ComputationError if the last launch failed.
     static void started() { check(cudaGetLastError(), "start a kernel"); }
+    /// Performs both passes of a sweep or a scan with `exchange`, ordered after other exchanges.
     template <class AnyTree, class Sweep, class Numbers>
     bool turn_shared_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree,
                         AnyTree const& top, Sweep const& sweep) const {
@@ -388,10 +396,12 @@ class DeviceSpace {
                                 stream());
     }
 
+    /// Executor of the work that remains on the host.
     Executor const* on_host_;
     std::shared_ptr<Stream> stream_;
     std::shared_ptr<Buffer<unsigned long long>> answer_;  // memory for the answer of largest()
     std::shared_ptr<PinnedBuffer<double>> letter_;        // memory for the answer of get()
+    /// Direct connections to other ranks' GPUs; none by default.
     Peers peers_;
 };
 

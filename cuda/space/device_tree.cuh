@@ -106,9 +106,12 @@ class DeviceTree {
                    roots.data(),
                    kept.data(),
                    stage.gathers} {}
+        /// Encoded lists of all blocks (tree/stage_encoding.hpp).
         Buffer<dca::StageWord> words;
         Buffer<dca::StageRoot> roots;
+        /// Places that blocks keep between the passes.
         Buffer<double> kept;
+        /// Planned threads per block.
         int threads;
         kernels::DeviceStage view;
     };
@@ -143,15 +146,18 @@ class DeviceTree {
                            sweep),
                    tree.stages_[i].view, sweep);
         }
+        /// True if stage `first` and the one above it run at once, or if it is the last stage.
         template <class Sweep>
         bool can_turn(std::size_t first, Sweep const& sweep) const {
             return first + 1 == stages() ||
                    runs_at_once<kernels::NoExchange>(first, sweep, nullptr);
         }
+        /// Launches both passes of stage `first` and of the one above it.
         template <class Sweep>
         void turn(std::size_t first, Sweep const& sweep) const {
             turn(first, sweep, kernels::NoExchange{}, nullptr);
         }
+        /// True if both passes fit in a launch that also contains an exchange and `top`.
         template <class Sweep, class Numbers>
         bool can_turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const&,
                       Launches const& top) const {
@@ -160,12 +166,14 @@ class DeviceTree {
                 return runs_at_once<kernels::ExchangeByBlock<Numbers>>(first, sweep, &above);
             return grid_of_turn(first, sweep, &above).shared_bytes <= shared_bytes();
         }
+        /// Launches both passes with an exchange and the passes of `top`.
         template <class Sweep, class Numbers>
         void turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
                   Launches const& top) const {
             turn(first, sweep, exchange.next(), &top.tree.stages_.back());
             ++turns_shared;
         }
+        /// Launches the inward pass of the runs, by teams of lanes if there are few runs.
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
@@ -177,6 +185,7 @@ class DeviceTree {
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, shared_bytes());
             launch(kernels::climb_runs<Sweep>, grid, sweep);
         }
+        /// Launches the outward pass of the runs, by teams of lanes if there are few runs.
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
@@ -189,20 +198,24 @@ class DeviceTree {
             launch(kernels::descend_runs<Sweep>, grid, sweep);
         }
         bool stages_above_groups() const { return tree.stages_above_groups_; }
+        /// Launches the inward pass of the runs and of the levels within groups.
         template <class Sweep>
         void climb_groups(Sweep const& sweep) const {
             launch(kernels::climb_groups<Sweep>,
                    kernels::grid_of_climb<Sweep>(tree.runs_.count, shared_bytes()), sweep);
         }
+        /// Launches the outward pass of the levels within groups and of the runs.
         template <class Sweep>
         void descend_groups(Sweep const& sweep) const {
             launch(kernels::descend_groups<Sweep>,
                    kernels::grid_of_descent<Sweep>(tree.runs_.count, shared_bytes()), sweep);
         }
+        /// True if one cluster can hold the tree above the groups.
         template <class Sweep>
         bool can_turn_groups() const {
             return grid_above_groups<Sweep>().blocks > 0;
         }
+        /// Launches both passes of the tree above the groups.
         template <class Sweep>
         void turn_groups(Sweep const& sweep) const {
             tree.above_groups_.launch(grid_above_groups<Sweep>(), stream,
@@ -267,12 +280,14 @@ class DeviceTree {
             grid.all_at_once = true;
             return grid;
         }
+        /// Launches a kernel after permitting its shared memory.
         template <class... Parameters>
         void launch(void (*kernel)(Parameters...), Grid const& grid,
                     std::type_identity_t<Parameters> const&... arguments) const {
             allow_shared(kernel, grid.shared_bytes);
             cuda::launch(grid, stream, kernel, arguments...);
         }
+        /// Launches a kernel over groups of runs and counts the launch.
         template <class Sweep>
         void launch(void (*kernel)(RunsView, GroupsView, Sweep), kernels::RunsGrid const& grid,
                     Sweep const& sweep) const {
@@ -280,6 +295,7 @@ class DeviceTree {
                    tree.groups_, sweep);
             ++launches_by_groups;
         }
+        /// Launches a kernel over runs.
         template <class Sweep>
         void launch(void (*kernel)(RunsView, Sweep), kernels::RunsGrid const& grid,
                     Sweep const& sweep) const {
@@ -291,6 +307,7 @@ class DeviceTree {
     }
 
     int most_shared_bytes_ = 0;  // shared memory per block, bytes
+    /// Runs of the tree: their list and its view.
     Buffer<dca::Run> run_list_;
     RunsView runs_;
     Buffer<dca::Run> group_list_;
@@ -298,7 +315,9 @@ class DeviceTree {
     bool stages_above_groups_ = false;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
+    /// Launch of the last two stages at once; empty if that is not possible.
     TopLaunch turn_;
+    /// Launches of one cluster: for a whole short chain, and for the tree above groups.
     ClusterLaunch short_, above_groups_;
 };
 

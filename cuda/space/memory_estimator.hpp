@@ -36,6 +36,7 @@ class Count {
         static thread_local Count* count = nullptr;
         return count;
     }
+    /// The Count that was present before this one.
     Count* outer_;
     DeviceMemory sum_;
 };
@@ -194,6 +195,7 @@ class MemoryEstimator : public HostAccess {
                            dca::kept_numbers(stage, records));
             }
             if (!together) return;
+            // Letters and counters of the launch that performs both passes of the last two stages.
             constexpr std::int64_t of_letter = 16, of_launches = 4;
             Count::add(of_letter * static_cast<std::int64_t>(together.numbers_up(records)));
             Count::add(of_letter * static_cast<std::int64_t>(together.numbers_down(records)));
@@ -233,6 +235,8 @@ class MemoryEstimator : public HostAccess {
     template <int K>
     static constexpr bool has_teams = has_blocks<K>;
     bool pays_by_blocks(ChainGroup const&) const { return true; }
+    // Loops and sweeps do nothing.
+
     template <class Action>
     void each_block(Blocks const&, Action const&) const {}
     template <class Action>
@@ -251,6 +255,8 @@ class MemoryEstimator : public HostAccess {
     void climb_and_descend(ScanTree const&, Scan const&, List<T> const&, Action const&) const {}
     static bool has_threads_for_bodies(ScanTree const&) { return false; }
     static bool has_threads_to_spare(std::int64_t) { return false; }
+    // Queries return zeros or empty fields, and copies do nothing.
+
     template <class Value>
     double largest(std::int64_t, Value const&) const {
         return 0;
@@ -295,6 +301,7 @@ class MemoryEstimator : public HostAccess {
     int threads() const { return 1; }
 
   private:
+    /// Counts the memory of a list.
     template <class T>
     static void count(std::vector<T> const& items) {
         Count::add(static_cast<std::int64_t>(items.size() * sizeof(T)));

@@ -72,7 +72,7 @@ struct BranchlessInverseLength {
                                              __double2loint(y));
         double const length = __fma_rn(__fma_rn(root, -root, x), half, root);
         bool known = lower < upper::infinite - least;
-        // computed in any case, to avoid a branch
+        // The inverse is computed in any case, to avoid a branch.
         double const found = BranchlessInverse{known}(length);
         return known ? found : not_known();
 #else

@@ -148,7 +148,7 @@ class BlockOfStage {
         });
         // Neighbouring threads take neighbouring items; the remaining threads share the numbers of
         // an item.
-        // independent requests hide the latency of memory
+        // Independent requests hide the latency of memory.
         constexpr int at_once = Segments::numbers > 16 ? 16 : 8;
         auto const all = static_cast<int>(blockDim.x), own = static_cast<int>(threadIdx.x);
         int side_by_side = 32;

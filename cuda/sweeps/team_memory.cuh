@@ -59,7 +59,7 @@ class BodiesOfTeam {
 /// occupies the registers. The first and the last body are left out, so that eight warps fit in
 /// shared memory.
 struct BodyAhead : dca::BodyInRun<double> {
-    // torque about the revolute joint if it is not part of the bodies' torques
+    /// Torque about the revolute joint if it is not part of the bodies' torques.
     double torque_about;
     dca::AddedBody<double> body;
     dca::Wrench<double> load;  // about handle 2
