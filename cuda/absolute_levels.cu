@@ -1,3 +1,5 @@
+// Instantiates the pairwise tree's levels for beads and for bodies whose forces are kept in ground
+// axes.
 #include "cuda/device/gpu.hpp"
 #include "cuda/space/device_levels.cuh"
 

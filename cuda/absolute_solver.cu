@@ -1,3 +1,4 @@
+// Instantiates the tree solver for beads and for bodies whose forces are kept in ground axes.
 #include "cuda/space/device_solver.cuh"
 
 namespace catena::cuda {

@@ -1,3 +1,4 @@
+// Instantiates the pairwise tree's levels for articulated handles.
 #include "cuda/space/device_levels.cuh"
 
 namespace catena::cuda {

@@ -1,3 +1,4 @@
+// Instantiates the tree solver for articulated handles.
 #include "cuda/space/device_solver.cuh"
 #include "dca/leaf_choice.hpp"
 

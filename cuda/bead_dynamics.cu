@@ -1,3 +1,4 @@
+// Instantiates the dynamics of chains of beads on a GPU.
 #include "cuda/dynamics.hpp"
 #include "cuda/space/device_solver.cuh"
 #include "dynamics/bead_dynamics.hpp"

@@ -1,16 +1,20 @@
-// Chains whose state stays on a GPU.
+// Factories of chain dynamics whose state stays on a GPU from step to step.
 #pragma once
 
 #include "dynamics/joint/joint_dynamics.hpp"
 
 namespace catena::cuda {
 
-// As the functions of these names in catena, on the GPU chosen last; the executor is for what the
-// host does besides. Group, executor and communicator must outlive what they make.
+// Makes the dynamics of a group of beads on the GPU chosen last, as catena::make_bead_dynamics()
+// does on the host. The executor runs the work that remains on the host. Group, executor and
+// communicator must outlive the returned object.
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&,
                                                      Executor const&, Communicator const&);
+/// Makes the dynamics of a group of rigid bodies in absolute coordinates, with the same
+/// preconditions.
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&,
                                                       Executor const&, Communicator const&);
+/// Makes the dynamics of a group in joint coordinates, with the same preconditions.
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&,
                                                    Communicator const&);
 

@@ -1,3 +1,4 @@
+// Instantiates the dynamics of chains in joint coordinates on a GPU.
 #include "cuda/dynamics.hpp"
 #include "cuda/space/device_solver.cuh"
 #include "dynamics/joint/joint_dynamics_in.hpp"

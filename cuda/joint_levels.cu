@@ -1,3 +1,4 @@
+// Instantiates the pairwise tree's levels for handles in joint frames.
 #include "cuda/space/device_levels.cuh"
 
 namespace catena::cuda {

@@ -1,3 +1,4 @@
+// Instantiates the tree solver for handles in joint frames with 2 to 6 directions.
 #include "cuda/space/device_solver.cuh"
 
 namespace catena::cuda {

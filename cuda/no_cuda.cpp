@@ -1,3 +1,5 @@
+// Stubs of the GPU interface for builds without CUDA. Functions that need a GPU throw
+// ComputationError.
 #include "cuda/device/clusters.hpp"
 #include "cuda/device/gpu.hpp"
 #include "cuda/dynamics.hpp"

@@ -1,3 +1,4 @@
+// Instantiates the tree solver for chains with prismatic or helical joints (5 or 6 directions).
 #include "cuda/space/device_solver.cuh"
 
 namespace catena::cuda {

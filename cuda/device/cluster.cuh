@@ -1,5 +1,5 @@
-// What threads of a warp, blocks of a cluster (compute capability 9.0) and blocks of a launch give
-// each other.
+// Communication between lanes of a warp, blocks of a cluster (compute capability 9.0) and blocks of
+// one or several launches.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,17 @@
 
 namespace catena::cuda::kernels {
 
-constexpr int most_in_cluster = 8;  // any GPU that has clusters takes so many blocks
+/// Number of blocks per cluster that every GPU with clusters supports.
+constexpr int most_in_cluster = 8;
 
+/// Size of T in doubles.
 template <class T>
 inline constexpr int numbers_of = static_cast<int>(sizeof(T) / sizeof(double));
 template <class T>
+/// T as a vector of doubles, used to copy it number by number.
 using NumbersOf = Vector<double, numbers_of<T>>;
 
-/// What lane `from` of the warp has. All lanes must come here.
+/// Returns the value of lane `from` of the warp. All lanes must call it.
 template <class T>
 __device__ T from_lane(T const& value, int from) {
     auto numbers = __builtin_bit_cast(NumbersOf<T>, value);
@@ -26,18 +29,20 @@ __device__ T from_lane(T const& value, int from) {
 
 #if defined(__CUDACC__)
 
-/// A place in a block's shared memory where other blocks of its cluster leave numbers, and which knows when all of them have come.
+/// Location in a block's shared memory to which other blocks of its cluster write numbers. A memory
+/// barrier (mbarrier) counts the bytes and tells when all have arrived.
 class Inbox {
   public:
     __device__ explicit Inbox(std::uint64_t* arrived) : arrived_(address(arrived)) {}
-    /// By one thread, before any block sends.
+    /// Announces the number of bytes to come. One thread calls it before any block sends.
     __device__ void open(int bytes) const {
 #if __CUDA_ARCH__ >= 900
         asm volatile("mbarrier.init.shared::cta.b64 [%0], 1;\n\tfence.mbarrier_init.release.cluster;" ::"r"(arrived_) : "memory");
         asm volatile("mbarrier.arrive.expect_tx.shared::cta.b64 _, [%0], %1;" ::"r"(arrived_), "r"(bytes) : "memory");
 #endif
     }
-    /// To the same place `at` in a block's memory.
+    /// Writes `value` to the address that corresponds to `at` in the shared memory of block
+    /// `block`.
     __device__ void send(int block, double* at, double value) const {
 #if __CUDA_ARCH__ >= 900
         asm volatile(
@@ -47,6 +52,7 @@ class Inbox {
             : "memory");
 #endif
     }
+    /// Waits until all announced bytes have arrived.
     __device__ void wait() const {
 #if __CUDA_ARCH__ >= 900
         asm volatile(
@@ -61,8 +67,10 @@ class Inbox {
     std::uint32_t arrived_;
 };
 
-/// A place in memory for a letter (below): both halves are there or not, each by itself.
+/// Memory cell for a letter (below). Each half is written and read atomically, the two halves
+/// independently of each other.
 struct alignas(16) LetterBox {
+    /// The two 8-byte halves; one 16-byte instruction writes or reads both.
     struct Halves {
         unsigned long long lower = 0, upper = 0;
     };
@@ -78,7 +86,7 @@ struct alignas(16) LetterBox {
     }
 };
 
-/// One that blocks on other GPUs read and write.
+/// Memory cell that blocks on other GPUs read and write too (system scope instead of GPU scope).
 struct PeerLetterBox : LetterBox {
     __device__ void put(Halves const& halves) {
         asm volatile("st.relaxed.sys.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
@@ -90,7 +98,7 @@ struct PeerLetterBox : LetterBox {
     }
 };
 
-/// In two halves, so that there is work between them.
+/// Cluster barrier in two halves, so that a block can work between arrival and wait.
 __device__ inline void arrive_at_cluster() {
 #if __CUDA_ARCH__ >= 900
     asm volatile("barrier.cluster.arrive.release.aligned;" ::: "memory");
@@ -101,12 +109,14 @@ __device__ inline void wait_for_cluster() {
     asm volatile("barrier.cluster.wait.acquire.aligned;" ::: "memory");
 #endif
 }
-/// Other launches of the stream that say so may start before the last one has ended: what it wrote is there after wait_for_launch().
+/// Allows the next launch of the stream to start before this one has ended. That launch must call
+/// wait_for_launch() before it uses what this one writes.
 __device__ inline void let_next_launch_start() {
 #if __CUDA_ARCH__ >= 900
     asm volatile("griddepcontrol.launch_dependents;" ::: "memory");
 #endif
 }
+/// Waits until the previous launch of the stream has ended and its writes are visible.
 __device__ inline void wait_for_launch() {
 #if __CUDA_ARCH__ >= 900
     asm volatile("griddepcontrol.wait;" ::: "memory");
@@ -115,8 +125,9 @@ __device__ inline void wait_for_launch() {
 
 #endif
 
-/// A number on its way between blocks of a launch, or of launches on several GPUs, which all run at once: each half stands beside the
-/// launch's number, so that who reads it knows whether it has come, and nobody waits at a barrier.
+/// Number that travels between blocks which all run at once, of one launch or of launches on
+/// several GPUs. Each half of the number carries the launch's number in its upper bits. The reader
+/// therefore knows whether the number has arrived, and no barrier is needed.
 struct Letter : LetterBox::Halves {
     __device__ static Letter of(double value, unsigned launch) {
         auto const bits = static_cast<unsigned long long>(__double_as_longlong(value)), beside = static_cast<unsigned long long>(launch) << 32;
@@ -128,20 +139,23 @@ struct Letter : LetterBox::Halves {
   private:
     static constexpr unsigned long long lower_half = 0xffffffff;
 };
-/// What such blocks give each other: number n of record i.
+/// Records that such blocks exchange, in memory as boxes[n * records + i] for number n of record i.
 template <class Box>
 struct LettersIn {
     Box* boxes = nullptr;
     int records = 0;
-    unsigned launch = 0;  // not 0, which letters are of that nobody has written
+    /// Number of the launch, never 0: unwritten letters belong to launch 0.
+    unsigned launch = 0;
 
     __device__ void put(int i, int n, double value) const { boxes[n * records + i].put(Letter::of(value, launch)); }
+    /// Polls until number n of record i has arrived and returns it.
     __device__ double wait_for(int i, int n) const {
         Letter letter;
         while (!letter.is_of(launch)) letter = {boxes[n * records + i].get()};
         return letter.value();
     }
-    /// put(n, its number n) for n from `begin` in steps to `end`, so many of them asked for at once.
+    /// Calls put(n, number n of record i) for n = begin, begin + step, ... below end. It polls
+    /// `at_once` letters concurrently to hide the memory latency.
     template <int at_once, class Put>
     __device__ void take_some(int i, int begin, int end, int step, Put const& put) const {
         for (int first = begin; first < end; first += at_once * step) {
@@ -162,20 +176,23 @@ struct LettersIn {
     }
 };
 using Letters = LettersIn<LetterBox>;
-/// Of a launch that turns: to the block above and from there.
+/// Letters of a launch that performs both passes: segments to the block above, forces from the
+/// block above.
 struct TopLaunchLetters {
     Letters up, down;
-    unsigned* launches = nullptr;  // so far, of every block
+    unsigned* launches = nullptr;  // number of launches so far, one counter per block
 
+    /// Numbers this launch. Every thread that uses the letters calls it.
     __device__ void open() {
         unsigned const last = launches[blockIdx.x], most = 0xffffffff;
         up.launch = down.launch = last < most ? last + 1 : 1;
     }
-    /// By one thread, when its block asks no more.
+    /// Stores the launch's number. One thread calls it when its block reads no more letters.
     __device__ void close() const { launches[blockIdx.x] = up.launch; }
 };
 
-/// What a kernel is given lies in no cache of the processor at first: so it does when it is wanted.
+/// Reads one word of each 64-byte line of a kernel parameter. Parameters are in no cache at the
+/// start of a kernel, so the first use would wait for them.
 template <class T>
 __device__ void touch([[maybe_unused]] T const& parameter) {
 #if defined(__CUDA_ARCH__)
@@ -186,7 +203,7 @@ __device__ void touch([[maybe_unused]] T const& parameter) {
 #endif
 }
 
-/// All blocks of a cluster have come here, and see what the others wrote before.
+/// Cluster barrier: waits for all blocks of the cluster and makes their earlier writes visible.
 __device__ inline void meet_cluster() {
     __syncthreads();
     arrive_at_cluster();

@@ -1,5 +1,6 @@
-// Which blocks the present GPU runs at once: clusters (compute capability 9.0) and whole launches,
-// and what became of them.
+// Limits of the present GPU on blocks that run concurrently: thread-block clusters (compute
+// capability 9.0) and cooperative launches. Counters record how often the fused launches were used;
+// tests read them.
 #pragma once
 
 #include <atomic>
@@ -8,28 +9,35 @@
 
 namespace catena::cuda {
 
-/// Whether the present GPU and the kernels that it runs know them: these may be of a build for
-/// older GPUs. Precondition: there is a GPU, and they run.
+/// True if the present GPU and the kernels that it runs support thread-block clusters. A build for
+/// older architectures may run kernels without them on a newer GPU. Precondition: there is a GPU
+/// and this build's kernels run on it.
 bool knows_clusters();
-/// Of a block's shared memory, at most.
+/// Returns the largest shared memory of one block, bytes, after opting in.
 std::size_t most_shared_bytes();
-/// Multiprocessors, and blocks that one launch surely has at once where they find room on one each;
-/// 0: a launch cannot ask for that, or other programs have blocks there at the same time (MPS).
+/// Returns the number of streaming multiprocessors of the present GPU.
 int multiprocessors();
+/// Returns the number of blocks that one cooperative launch can hold at once if each multiprocessor
+/// has room for one. The result is 0 if the GPU has no cooperative launches or if other programs
+/// share it (MPS).
 int blocks_at_once();
 
-/// Launches so far that took a short chain up and down its tree (cuda/short/short_chain.cuh).
+/// Number of launches so far that took a short chain through both passes
+/// (cuda/short/short_chain.cuh).
 inline std::atomic<std::int64_t> short_launches = 0;
-/// And those whose blocks waited for the block above them (cuda/sweeps/top_launch.cuh).
+/// Number of launches so far whose blocks waited for the block above them
+/// (cuda/sweeps/top_launch.cuh).
 inline std::atomic<std::int64_t> turns_together = 0;
-/// Sweeps' and scans' launches so far in which ranks met between the ways up and down.
+/// Number of launches so far of sweeps and of scans in which ranks exchanged between the inward and
+/// the outward pass.
 inline std::atomic<std::int64_t> turns_shared = 0, scans_shared = 0;
-/// And of these scans those by a thread a body.
+/// Number of those scan launches that used one thread per body.
 inline std::atomic<std::int64_t> shared_scans_by_bodies = 0;
-/// Sweeps' launches so far in which warps joined groups of runs (cuda/sweeps/run_groups.hpp).
+/// Number of sweep launches so far in which warps merged groups of runs
+/// (cuda/sweeps/run_groups.hpp).
 inline std::atomic<std::int64_t> launches_by_groups = 0;
-/// And those of one cluster that took the tree above such groups up and down
-/// (cuda/sweeps/group_lanes.cuh).
+/// Number of launches so far in which one cluster took the tree above such groups through both
+/// passes (cuda/sweeps/group_lanes.cuh).
 inline std::atomic<std::int64_t> groups_turned = 0;
 
 }  // namespace catena::cuda

@@ -1,5 +1,5 @@
-// Copies from memory to a block's shared memory that a thread starts and later waits for (compute
-// capability 8.0; else made at once).
+// Asynchronous copies from global memory to a block's shared memory, started by a thread and
+// awaited later. Below compute capability 8.0 the copy is made at once.
 #pragma once
 
 #include "math/host_device.hpp"
@@ -7,6 +7,7 @@
 #if defined(__CUDACC__)
 namespace catena::cuda::kernels {
 
+/// Starts a copy of one double.
 __device__ inline void start_copy(double* to_shared, double const* from) {
 #if __CUDA_ARCH__ >= 800
     asm volatile("cp.async.ca.shared.global [%0], [%1], 8;" ::"r"(
@@ -17,14 +18,14 @@ __device__ inline void start_copy(double* to_shared, double const* from) {
     *to_shared = *from;
 #endif
 }
-/// Those started since the last call go together.
+/// Closes a group: the copies that this thread started since the last call.
 __device__ inline void close_copies() {
 #if __CUDA_ARCH__ >= 800
     asm volatile("cp.async.commit_group;" ::: "memory");
 #endif
 }
-/// Until only so many of the last ones that went together are still on their way. For the thread
-/// itself, not for others.
+/// Waits until at most `left` of this thread's latest groups are still in flight. Copies of other
+/// threads are not awaited.
 template <int left>
 __device__ void wait_for_copies() {
 #if __CUDA_ARCH__ >= 800

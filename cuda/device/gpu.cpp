@@ -1,3 +1,4 @@
+// Implements the selection of a GPU and the queries of its properties.
 #include <cuda_runtime_api.h>
 
 #include "cuda/device/gpu.hpp"
@@ -24,7 +25,7 @@ std::string look_for_a_gpu() {
     return devices == 0 ? "there is no GPU" : "";
 }
 
-/// Of kernels for another architecture, CUDA says one of these.
+/// True if CUDA reports that the build has no kernels for this architecture.
 bool lacks_kernels(cudaError_t status) {
     return status == cudaErrorNoKernelImageForDevice || status == cudaErrorInvalidKernelImage ||
            status == cudaErrorUnsupportedPtxVersion;
@@ -55,7 +56,7 @@ std::string choose_device(Communicator const& communicator) {
     cudaError_t status = cudaSetDevice(communicator.rank_on_host() % devices());
     if (status == cudaSuccess) status = status_of_kernel_image();
     if (status == cudaSuccess) return "";
-    cudaGetLastError();  // that it stays behind would fail the next call
+    cudaGetLastError();  // otherwise the next call would report this error
     std::string const reason = "no use of " + device_name() + ": " + cudaGetErrorString(status);
     if (!lacks_kernels(status)) return reason;
     cudaDeviceProp const gpu = properties();

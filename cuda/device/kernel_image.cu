@@ -1,3 +1,4 @@
+// Implements the compatibility check and the device limits of clusters.hpp.
 #include "cuda/device/kernel_image.hpp"
 
 #include "cuda/device/clusters.hpp"
@@ -6,6 +7,7 @@
 namespace catena::cuda {
 namespace {
 
+/// Empty kernel whose attributes tell for which architecture the build was compiled.
 __global__ void nothing() {}
 
 }  // namespace

@@ -1,11 +1,11 @@
-// Whether this build's kernels can run on the present GPU.
+// Compatibility check between this build's kernels and the present GPU.
 #pragma once
 
 #include <driver_types.h>
 
 namespace catena::cuda {
 
-/// cudaErrorNoKernelImageForDevice where the build is for other architectures.
+/// Returns cudaErrorNoKernelImageForDevice if this build was compiled for other architectures.
 cudaError_t status_of_kernel_image();
 
 }  // namespace catena::cuda

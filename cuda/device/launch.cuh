@@ -1,4 +1,5 @@
-// Launches of kernels that know how to begin before the last one of their stream has ended.
+// Kernel launches that may start before the previous launch of their stream has ended (programmatic
+// dependent launch).
 #pragma once
 
 #include <cuda_runtime.h>
@@ -11,15 +12,16 @@
 
 namespace catena::cuda {
 
+/// Dimensions and properties of one launch.
 struct Grid {
     unsigned blocks = 0, threads = 0;
     std::size_t shared_bytes = 0;
-    unsigned of_cluster = 0;   // blocks; 0: there are no clusters
-    bool all_at_once = false;  // blocks wait for each other
+    unsigned of_cluster = 0;   // blocks per cluster; 0: no clusters
+    bool all_at_once = false;  // cooperative launch: blocks wait for each other
 };
 
-/// Whether the GPU, its driver and the kernels that it runs know early launches (compute
-/// capability 9.0), and CUDA's graphs keep them.
+/// True if the GPU, its driver and the kernels support early launches (compute capability 9.0) and
+/// CUDA graphs keep them. CUDA and its driver must be 12.3 or newer.
 inline bool early_launches_are_known() {
     constexpr int since = 12030;
     static bool const known = [] {
@@ -30,7 +32,7 @@ inline bool early_launches_are_known() {
     return known;
 }
 
-/// How a grid is launched: what cudaLaunchKernelEx and questions about it are given.
+/// Launch configuration of a grid for cudaLaunchKernelEx and for occupancy queries.
 class EarlyLaunch {
   public:
     EarlyLaunch(Grid const& grid, cudaStream_t stream) {
@@ -60,8 +62,9 @@ class EarlyLaunch {
     EarlyLaunch& operator=(EarlyLaunch const&) = delete;
     cudaLaunchConfig_t const& config() const { return config_; }
 
-    /// Precondition: every thread of the kernel calls wait_for_launch() (cuda/device/cluster.cuh)
-    /// before it reads what other launches write, or writes what they read, and before it ends.
+    /// Launches the kernel. Precondition: every thread of the kernel calls wait_for_launch()
+    /// (cuda/device/cluster.cuh). It does so before it reads what other launches write, before it
+    /// writes what they read, and before it ends.
     template <class... Parameters>
     void operator()(void (*kernel)(Parameters...),
                     std::type_identity_t<Parameters> const&... arguments) const {
@@ -73,13 +76,14 @@ class EarlyLaunch {
     cudaLaunchConfig_t config_{};
 };
 
-/// As EarlyLaunch says.
+/// Launches `kernel` on `stream`, with the precondition of EarlyLaunch::operator().
 template <class... Parameters>
 void launch(Grid const& grid, cudaStream_t stream, void (*kernel)(Parameters...),
             std::type_identity_t<Parameters> const&... arguments) {
     EarlyLaunch(grid, stream)(kernel, arguments...);
 }
 
+/// Permits `kernel` to use `bytes` of dynamic shared memory; above 48 KiB CUDA requires this.
 template <class... Parameters>
 void allow_shared(void (*kernel)(Parameters...), std::size_t bytes) {
     constexpr std::size_t without_asking = 48 << 10;

@@ -1,5 +1,5 @@
-// Owners of what lives on a device. Memory moves with its owner, a stream stays where it is; a
-// failed call throws ComputationError with CUDA's own words.
+// RAII owners of CUDA resources: streams, events, graphs and memory. Buffer and PinnedPages can be
+// moved, the others cannot. A failed call throws ComputationError with CUDA's own message.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -14,12 +14,14 @@
 
 namespace catena::cuda {
 
+/// Throws ComputationError "the GPU failed to `doing`: ..." unless `status` is cudaSuccess.
 inline void check(cudaError_t status, char const* doing) {
     if (status != cudaSuccess)
         throw ComputationError(std::string("the GPU failed to ") + doing + ": " +
                                cudaGetErrorString(status));
 }
 
+/// Non-blocking CUDA stream, independent of the default stream.
 class Stream {
   public:
     Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "make a stream"); }
@@ -35,7 +37,7 @@ class Stream {
     cudaStream_t stream_ = nullptr;
 };
 
-/// A moment in a stream: for the clock, or to order streams, which is quicker without one.
+/// Point in a stream, used to time its work or to order streams. Ordering is faster without timing.
 class Event {
   public:
     enum class For { clock, order };
@@ -50,12 +52,13 @@ class Event {
     Event(Event const&) = delete;
     Event& operator=(Event const&) = delete;
     void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "mark a moment"); }
-    /// The stream goes on when the moment recorded last has come.
+    /// Makes `stream` wait until the point recorded last is reached.
     void hold(cudaStream_t stream) const {
         check(cudaStreamWaitEvent(stream, event_, 0), "order its work");
     }
     void wait() const { check(cudaEventSynchronize(event_), "finish its work"); }
-    /// Precondition: both are over, and for the clock.
+    /// Returns the seconds from `other` to this event. Precondition: both events are complete and
+    /// were created For::clock.
     double seconds_since(Event const& other) const {
         float milliseconds = 0;
         check(cudaEventElapsedTime(&milliseconds, other.event_, event_), "say how long it took");
@@ -66,7 +69,8 @@ class Event {
     cudaEvent_t event_ = nullptr;
 };
 
-/// What an action asks of a stream, recorded to be done again. The action must not wait for it.
+/// Work that an action enqueues in a stream, captured once as a CUDA graph and launched many times.
+/// The action must not wait for the stream.
 class Graph {
   public:
     template <class Action>
@@ -90,7 +94,7 @@ class Graph {
     cudaGraphExec_t graph_ = nullptr;
 };
 
-/// Memory of the host that the device reaches too; not initialised.
+/// Pinned host memory that the device can address too; not initialised.
 template <class T>
 class PinnedBuffer {
   public:
@@ -111,8 +115,9 @@ class PinnedBuffer {
     T* data_ = nullptr;
 };
 
-/// Holds memory of the host in its place, so that copies to and from the device run by themselves.
-/// Small memory, which shares its pages, is left alone.
+/// Registers existing host memory as pinned, so that copies to and from the device run
+/// asynchronously. Memory below 1 MiB is left unregistered, because it shares pages with other
+/// data.
 class PinnedPages {
   public:
     PinnedPages() = default;
@@ -123,7 +128,7 @@ class PinnedPages {
             cudaSuccess)
             memory_ = memory.data();
         else
-            cudaGetLastError();  // copies take longer, that is all
+            cudaGetLastError();  // the copies only take longer
     }
     ~PinnedPages() {
         if (memory_) cudaHostUnregister(memory_);
@@ -138,8 +143,8 @@ class PinnedPages {
     double* memory_ = nullptr;
 };
 
-/// Memory of a device, ready for any stream when the constructor returns: zeros or the host's
-/// values.
+/// Device memory, filled with zeros or with the host's values. Any stream may use it when the
+/// constructor returns.
 template <class T>
 class Buffer {
   public:
@@ -175,7 +180,8 @@ class Buffer {
     std::size_t count_ = 0;
 };
 
-/// Columns of `length` numbers between two pitched arrays.
+/// Enqueues a copy of `columns` columns of `length` numbers between two pitched arrays; pitches in
+/// numbers.
 inline void copy_columns(double* to, std::int64_t to_pitch, double const* from,
                          std::int64_t from_pitch, std::int64_t length, int columns,
                          cudaMemcpyKind kind, cudaStream_t stream) {

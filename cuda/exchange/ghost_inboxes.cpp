@@ -1,3 +1,4 @@
+// Implements GhostInboxes on top of the mapped memory of peer_memory.hpp.
 #include "cuda/exchange/ghost_inboxes.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@ std::unique_ptr<GhostInboxes> GhostInboxes::make(Communicator const& communicato
     return std::unique_ptr<GhostInboxes>(new GhostInboxes(communicator, inboxes));
 }
 
-/// Its own memory may be mapped elsewhere still: it goes with its CUDA context.
+/// Keeps this rank's memory allocated, because other ranks may still have it mapped. It is freed
+/// with its CUDA context.
 GhostInboxes::~GhostInboxes() {
     unmap(base_, communicator_.rank());
     static auto* const kept = new std::vector<Buffer<double>>;
@@ -38,9 +40,10 @@ bool GhostInboxes::fit(std::span<Halo::Message const> messages) {
 bool GhostInboxes::map_anew(std::int64_t received) {
     unmap(base_, communicator_.rank());
     base_.clear();
-    communicator_.barrier();                     // nobody has it mapped
-    std::int64_t constexpr own_block = 1 << 16;  // less shares a block of the driver's with
-                                                 // others', which cannot be mapped by itself
+    communicator_.barrier();  // no rank maps it from here on
+    // A smaller allocation shares one of the driver's blocks with others, and cannot be mapped by
+    // itself.
+    std::int64_t constexpr own_block = 1 << 16;
     capacity_ = std::max<std::int64_t>(received + received / 8, own_block);
     own_ = Buffer<double>();
     own_ = Buffer<double>(static_cast<std::size_t>(inboxes_ * 3 * capacity_));

@@ -1,5 +1,5 @@
-// Where positions of ghosts, and forces on them, arrive on each rank's GPU, written there by the
-// GPUs of the others: they do not pass through the host then.
+// Inboxes for ghost positions and for forces on ghosts in the memory of each rank's GPU. The other
+// ranks' GPUs write to them directly, so that these numbers do not pass through the host.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,25 @@
 
 namespace catena::cuda {
 
-/// Every rank has as many inboxes, one or two, which are filled in turns: what arrived in one of
-/// two is read while the next positions come. Between two fillings of one of them every rank must
-/// have heard of every other that it has read it.
+/// One or two inboxes per rank (the same number on all ranks), which are filled alternately. With
+/// two inboxes, one is read while the next positions arrive in the other. Between two fillings of
+/// one inbox, every rank must know that every other rank has read it.
 class GhostInboxes {
   public:
-    /// Null on all ranks where GPUs do not reach each other. Collective.
+    /// Returns null on all ranks if GPUs cannot write to each other's memory. Collective.
     static std::unique_ptr<GhostInboxes> make(Communicator const&, int inboxes);
     ~GhostInboxes();
     GhostInboxes(GhostInboxes const&) = delete;
     GhostInboxes& operator=(GhostInboxes const&) = delete;
 
-    /// Room for the positions of these messages. False on all ranks where GPUs do not reach each
-    /// other after all. Precondition: nobody writes or reads. Collective.
+    /// Provides room for the positions of these messages and exchanges the offsets at which ranks
+    /// write. Returns false on all ranks if mapping each other's memory fails. Precondition: no
+    /// rank writes or reads an inbox. Collective.
     bool fit(std::span<Halo::Message const> messages);
-    /// From now on the other one is filled and read. On every rank.
+    /// Selects the other inbox for the next filling and reading. Every rank must call it.
     void turn() { turn_ = (turn_ + 1) % inboxes_; }
-    /// Sends `shown`, three numbers a position, one message after the other or one for all, once
-    /// the stream comes here.
+    /// Enqueues copies of `shown`, three numbers per position, to the inboxes of the receivers.
+    /// `shown` holds one message after the other, or a single message for all if `one_for_all`.
     template <class Number>
     void send(std::span<Halo::Message const> messages, Number const* shown, bool one_for_all,
               cudaStream_t stream) const {
@@ -43,12 +44,14 @@ class GhostInboxes {
             if (!one_for_all) shown += 3 * m.sent;
         }
     }
-    /// Where in that rank's inbox what this rank sends goes: numbers of eight bytes or less.
+    /// Returns the address in the inbox of `rank` to which this rank sends. Number has at most
+    /// eight bytes.
     template <class Number>
     Number* box_of(int rank) const {
         static_assert(sizeof(Number) <= sizeof(double));
         return static_cast<Number*>(box(rank)) + 3 * first_[static_cast<std::size_t>(rank)];
     }
+    /// Returns the positions or forces that have arrived in this rank's inbox.
     template <class Number>
     Number const* arrived() const {
         return static_cast<Number const*>(box(communicator_.rank()));
@@ -57,16 +60,19 @@ class GhostInboxes {
   private:
     GhostInboxes(Communicator const& communicator, int inboxes)
         : communicator_(communicator), inboxes_(inboxes) {}
+    /// Allocates inboxes for `received` positions and maps them on all ranks. Collective.
     bool map_anew(std::int64_t received);
-    /// The inbox of a rank that is filled now.
+    /// Returns the inbox of `rank` that is filled now.
     void* box(int rank) const;
 
     Communicator const& communicator_;
     int inboxes_, turn_ = 0;
-    std::int64_t capacity_ = 0;  // positions in each inbox, on every rank alike
+    std::int64_t capacity_ = 0;  // positions per inbox, equal on every rank
     Buffer<double> own_;
-    std::vector<void*> base_;          // of each rank
-    std::vector<std::int64_t> first_;  // of this rank's positions in each rank's inbox
+    /// Base address of each rank's inboxes, as mapped here.
+    std::vector<void*> base_;
+    /// Offset of this rank's positions in each rank's inbox.
+    std::vector<std::int64_t> first_;
 };
 
 }  // namespace catena::cuda

@@ -1,4 +1,4 @@
-// Exchanges between ranks by the memory of each other's GPUs (peer_memory.hpp).
+// Exchanges between ranks by writing to the memory of each other's GPUs (peer_memory.hpp).
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace catena::cuda {
 
-/// Who takes part in an exchange: each of `peer` gets this rank's `sent` numbers, and of its own
-/// `received[p]` are taken, which are numbers first[p], first[p] + 1, ... of all. Both of a pair
-/// call at the same time, if only to receive nothing.
+/// Participants of one exchange. Each rank in `peer` receives this rank's `sent` numbers. This rank
+/// takes `received[p]` numbers from peer p: numbers first[p], first[p] + 1, ... of all numbers.
+/// Both ranks of a pair call at the same time, even if one of them receives nothing.
 struct PeerCall {
     PeerBoxes boxes;
     int peers = 0, sent = 0;
@@ -29,14 +29,14 @@ struct PeerCall {
     }
 };
 
-/// Kernels in which ranks meet go one after the other on a GPU, whatever their streams, in the
-/// order in which the host asks for them, which is the same on all ranks: one that fills a GPU
-/// while it waits leaves no room for another that some other GPU waits for. (Contexts take turns on
-/// a GPU.)
+/// Orders kernels in which ranks exchange: on one GPU they run one after the other, whatever their
+/// streams. The order is that of the host's calls and the same on all ranks. Otherwise a kernel
+/// that fills a GPU while it waits could block another kernel for which another GPU waits.
+/// (Contexts are time-sliced on a GPU.)
 class Meetings {
   public:
-    /// The next one is on this stream, of that context (PeerMemory). Where a stream is captured,
-    /// the last one before was on it as well.
+    /// Makes `stream` of context number `context` (PeerMemory) wait for the previous such kernel.
+    /// While a stream is being captured, the previous kernel must have been on it as well.
     static void next(std::shared_ptr<Stream> const& stream, unsigned long long context) {
         static std::weak_ptr<Stream> last;
         static unsigned long long context_of_last = 0;
@@ -51,20 +51,22 @@ class Meetings {
     }
 };
 
-/// A rank's ways to other ranks' GPUs; none by default.
+/// A rank's direct connections to other ranks' GPUs; none if default-constructed.
 class Peers {
   public:
     Peers() = default;
-    /// Collective.
+    /// Connects to the other ranks, if they can be reached directly. Collective.
     explicit Peers(Communicator const& communicator) : memory_(PeerMemory::connect(communicator)) {
         if (memory_) of_bodies_ = memory_->boxes(most_of_a_body + 1);
     }
     explicit operator bool() const { return memory_ != nullptr; }
-    /// Kernels in which they are used must come right after it. Precondition: there are ways.
+    /// Orders the next kernel of `stream` that uses the connections; that kernel must be enqueued
+    /// right after the call. Precondition: there are connections.
     void meet_next(std::shared_ptr<Stream> const& stream) const {
         Meetings::next(stream, memory_->context());
     }
-    /// A body's numbers to one rank and from one; a negative rank means nobody.
+    /// Describes an exchange that sends a body's numbers to rank `to` and receives one from
+    /// `source`. A negative rank means no rank.
     template <int numbers>
     PeerCall to_and_from(int to, int source) const {
         static_assert(numbers <= most_of_a_body);
@@ -74,8 +76,9 @@ class Peers {
         if (source >= 0 && source != to) call.add(source, 0, numbers);
         return call;
     }
-    /// `width` numbers of every shared unit, to all, and up to `beside` of bodies. All ranks ask
-    /// for the same ones in the same order.
+    /// Describes an exchange of `width` numbers of every shared frontier unit among all ranks.
+    /// There is room for up to `beside` numbers of bodies in addition. All ranks must request the
+    /// same exchanges in the same order.
     PeerCall among_all(dca::Schedule const& schedule, int width, int beside) const {
         PeerCall call;
         if (!memory_ || schedule.shared.empty()) return call;
@@ -102,21 +105,24 @@ class Peers {
 
 namespace kernels {
 
+/// Block size of the exchange kernels.
 constexpr int threads_of_exchange = 512;
 
-/// Of a body on its way into another rank's halo.
+/// Numbers of a body that are sent to another rank's halo, or received from there.
 struct BodyNumbers {
     double const* from;
     double* to;
     __device__ double show(std::int64_t i) const { return from[i * gpu_order::lanes]; }
     __device__ void take(std::int64_t i, double value) const { to[i * gpu_order::lanes] = value; }
 };
-/// Bodies for neighbours that go along with what all get. Those that this rank wants are all of one
-/// rank, `source`, the same for each; a rank that has neighbours sends as many as they do.
+/// Bodies for neighbouring ranks' halos that are sent together with the numbers for all ranks. All
+/// bodies that this rank receives come from one rank, `source`. A rank that has neighbours sends as
+/// many numbers as they send.
 struct BodiesBeside {
     static constexpr int most = 2;
     int count = 0, numbers = 0, source = -1;
-    int end[most] = {};  // of each one's numbers
+    /// End of each body's range among all numbers.
+    int end[most] = {};
     BodyNumbers body[most] = {};
 
     void add(int numbers_of_it, int from, BodyNumbers const& it) {
@@ -133,27 +139,29 @@ struct BodiesBeside {
     }
 };
 
+/// Action that does nothing.
 struct Nothing {
     __device__ void operator()(std::int64_t) const {}
 };
 
-/// By all threads of a block, as many as there are peers or more, which have met before it.
-/// numbers.show(i): number i to be sent; numbers.take(i, value): number i of all. The last letter
-/// of a box comes in any case: who has it knows that its sender has read what came the last time.
+/// Exchanges numbers with all peers. All threads of a block call it after a barrier; the block has
+/// at least `peers` threads. numbers.show(i) returns number i to be sent; numbers.take(i, value)
+/// stores number i of all. The last letter of a box is always sent. Its receiver then knows that
+/// the sender has read the numbers of the previous exchange.
 template <class Numbers>
 __device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers,
                                   BodiesBeside const& beside) {
     PeerBoxes const& boxes = call.boxes;
     int const t = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
     auto const letters = [&](int at, int from, int p) {
-        unsigned long long const launches =
-            0xffffffff;  // as many numbers as letters tell apart, 0 not among them
+        // Letters distinguish this many exchanges; number 0 is not used.
+        unsigned long long const launches = 0xffffffff;
         unsigned long long const times = *boxes.exchanged(call.peer[p]) + 1;
         return LettersIn<PeerLetterBox>{
             reinterpret_cast<PeerLetterBox*>(boxes.box(at, from, times)), 1,
             static_cast<unsigned>(times % launches) + 1};
     };
-    constexpr int at_once = 8;  // memory is far
+    constexpr int at_once = 8;  // independent requests hide the latency of memory
     int const sent = call.sent + beside.numbers, last = boxes.width - 1;
     for (int first = t; first <= sent; first += at_once * threads) {
         double value[at_once];
@@ -183,14 +191,15 @@ __device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers,
     __syncthreads();
     if (t < call.peers) *boxes.exchanged(call.peer[t]) += 1;
 }
-/// One block, after first(0).
+/// Calls first(0) and then exchanges, in one block.
 template <class Numbers, class First>
 __global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, Numbers numbers, BodiesBeside beside, First first) {
     if (threadIdx.x == 0) first(0);
     __syncthreads();
     exchange_by_block(call, numbers, beside);
 }
-/// Of kernels turn(), turn_shared_scan() and turn_shared_scan_then().
+/// Exchange that kernels turn(), turn_shared_scan() and turn_shared_scan_then() perform between the
+/// two passes.
 template <class Numbers>
 struct ExchangeByBlock {
     PeerCall call;
@@ -201,7 +210,8 @@ struct ExchangeByBlock {
 
 }  // namespace kernels
 
-/// For a launch that is yet to come on a stream: next(), just before it, lets that one wait for its turn (Meetings).
+/// Exchange within a launch that is yet to be enqueued on a stream. next() is called just before
+/// that launch and orders it after other exchanges (Meetings).
 template <class Numbers>
 struct ExchangeInTurn {
     Peers const& peers;

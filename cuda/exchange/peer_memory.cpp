@@ -1,3 +1,4 @@
+// Implements the mapping of GPU memory between ranks by CUDA's interprocess handles.
 #include "cuda/exchange/peer_memory.hpp"
 
 #include <dlfcn.h>
@@ -15,13 +16,15 @@
 namespace catena::cuda {
 namespace {
 
+/// True on all ranks if `here` is true on every rank. Collective.
 bool agreed(Communicator const& communicator, bool here) {
     return communicator.sum(here ? 0 : 1) == 0;
 }
 
 bool equal(cudaUUID_t const& a, cudaUUID_t const& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
-/// Whether this GPU can reach those, as far as they can be seen here.
+/// True if this GPU can reach the other ranks' GPUs. GPUs that this process does not see count as
+/// reachable.
 bool reaches(int device, std::vector<cudaUUID_t> const& others) {
     int count = 0;
     check(cudaGetDeviceCount(&count), "say how many there are");
@@ -39,7 +42,8 @@ bool reaches(int device, std::vector<cudaUUID_t> const& others) {
     return true;
 }
 
-/// Of every rank, whatever each of them calls it.
+/// Returns the identifiers of all ranks' GPUs, independent of how each process numbers them.
+/// Collective.
 std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     int device = 0;
     cudaDeviceProp gpu{};
@@ -52,6 +56,7 @@ std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     return all;
 }
 
+/// Returns the largest number of ranks that have the same GPU.
 int most_alike(std::vector<cudaUUID_t> const& all) {
     std::ptrdiff_t most = 0;
     for (cudaUUID_t const& gpu : all)
@@ -61,7 +66,8 @@ int most_alike(std::vector<cudaUUID_t> const& all) {
     return static_cast<int>(most);
 }
 
-/// One host, each rank on a GPU of its own, and none that cannot reach another.
+/// True if all ranks are on one host, each on its own GPU, and every visible GPU of a rank can be
+/// reached.
 bool apart_on_one_host(Communicator const& communicator) {
     if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers)
         return false;
@@ -71,11 +77,12 @@ bool apart_on_one_host(Communicator const& communicator) {
     return most_alike(all) == 1 && reaches(device, all);
 }
 
-constexpr std::int64_t capacity =
-    1 << 21;  // numbers: 16 MiB; the widest segments of all ranks' units take most of it
+// Size of the memory in doubles: 16 MiB. The widest segments of all ranks' shared units use most of
+// it.
+constexpr std::int64_t capacity = 1 << 21;
 
-/// Of the CUDA context that is current: no two have the same, also where one is gone; 0: the driver
-/// does not tell.
+/// Returns the number of the current CUDA context, or 0 if the driver does not tell. Numbers are
+/// unique, also among contexts that have been destroyed.
 unsigned long long context_number() {
     using Ask = int (*)(void* context, unsigned long long* number);
     static auto const ask = [] {
@@ -86,18 +93,19 @@ unsigned long long context_number() {
     return ask && ask(nullptr, &number) == 0 ? number : 0;
 }
 
-/// Mapped memory that nobody uses now. What a context has mapped is of use there alone, and goes
-/// with it: OpenMM's do.
+/// Mapped memory that no object uses at present. A mapping can be used only in the context that
+/// made it, and ends with it; OpenMM's contexts are short-lived.
 struct Spare {
     unsigned long long context;
     std::vector<double*> base;
 };
 std::vector<Spare>& spares() {
-    static auto* const list = new std::vector<Spare>;  // outlives what gives memory back
+    static auto* const list = new std::vector<Spare>;  // outlives the objects that return memory
     return *list;
 }
 
-/// Empty where there is none.
+/// Returns mapped memory of the current context for reuse; empty unless every rank has some.
+/// Collective.
 std::vector<double*> take_spare(Communicator const& communicator) {
     unsigned long long const here = context_number();
     auto const ranks = static_cast<std::size_t>(communicator.size());
@@ -110,7 +118,8 @@ std::vector<double*> take_spare(Communicator const& communicator) {
     return base;
 }
 
-/// Each rank's memory as this rank reaches it; empty where some rank does not reach some other.
+/// Allocates memory on every rank and maps it. Returns each rank's memory as seen here, or nothing
+/// if some rank cannot reach another. Collective.
 std::vector<double*> mapped(Communicator const& communicator) {
     void* own = nullptr;
     check(cudaMalloc(&own, capacity * sizeof(double)), "find memory");
@@ -165,7 +174,7 @@ std::vector<void*> map_each_others(Communicator const& communicator, void* own) 
                 cudaIpcOpenMemHandle(&there, all[r], cudaIpcMemLazyEnablePeerAccess) == cudaSuccess;
         if (opened) base.push_back(there);
     }
-    cudaGetLastError();  // what a failure leaves behind would fail the next call
+    cudaGetLastError();  // otherwise the next call would report this error
     if (agreed(communicator, opened)) return base;
     unmap(base, communicator.rank());
     communicator.barrier();
@@ -182,7 +191,7 @@ std::shared_ptr<PeerMemory> PeerMemory::connect(Communicator const& communicator
     std::vector<double*> base = take_spare(communicator);
     if (base.empty()) base = mapped(communicator);
     if (base.empty()) return nullptr;
-    // What was to happen in it has happened, on all ranks.
+    // All earlier work in the reused memory must have ended on all ranks.
     check(cudaDeviceSynchronize(), "finish its work");
     communicator.barrier();
     double* const own = base[static_cast<std::size_t>(communicator.rank())];

@@ -1,6 +1,6 @@
-// Memory of GPUs that other ranks write to: what a handful of numbers a rank need to be everywhere
-// takes a kernel then, and the host does not wait. For ranks of one host, each on a GPU of its own,
-// that reach each other's memory (NVLink, PCIe).
+// GPU memory to which other ranks write directly. A few numbers that every rank needs then cost one
+// kernel, and the host does not wait. This requires ranks of one host, each with its own GPU, whose
+// GPUs reach each other's memory (NVLink, PCIe).
 #pragma once
 
 #include <cstdint>
@@ -13,51 +13,60 @@
 
 namespace catena::cuda {
 
+/// Largest number of ranks that exchange directly.
 inline constexpr int most_peers = 16;
-inline constexpr int most_of_a_body = 16;  // numbers of a field
+/// Largest number of numbers per body in a field.
+inline constexpr int most_of_a_body = 16;
 
-/// For kernels: where each rank has what pairs of ranks exchange. Rank r keeps for every rank s:
-/// two boxes of `width` letters (cluster.cuh) that s fills in turns, how often s has come to r
-/// without any (meet()), and how often they have exchanged.
+/// Addresses, for kernels, of the memory by which pairs of ranks exchange. Rank r keeps for every
+/// rank s two boxes of `width` letters (cluster.cuh), which s fills alternately. It also keeps two
+/// counters: how often s has arrived at r without letters (meet()), and how often they have
+/// exchanged.
 struct PeerBoxes {
-    double* base[most_peers] = {};  // of each rank
+    /// Base address of each rank's boxes.
+    double* base[most_peers] = {};
     int rank = 0, ranks = 0, width = 0;
 
+    /// Returns the size of one rank's boxes and counters in doubles.
     static std::int64_t numbers(int ranks, int width) {
         return std::int64_t{2} * ranks * (letter * width + 1);
     }
-    /// Of rank `at`, filled by rank `from`.
+    /// Returns the box of rank `at` that rank `from` fills at exchange number `times`.
     CATENA_HD double* box(int at, int from, unsigned long long times) const {
         return base[at] + (2 * from + static_cast<int>(times & 1)) * std::int64_t{letter} * width;
     }
+    /// Returns the counter at rank `to` of the arrivals of rank `from`.
     CATENA_HD unsigned long long* came(int to, int from) const { return counters(to) + from; }
+    /// Returns this rank's counter of exchanges with rank `with`.
     CATENA_HD unsigned long long* exchanged(int with) const {
         return counters(rank) + ranks + with;
     }
 
   private:
-    static constexpr int letter = 2;  // numbers that it has room for
+    static constexpr int letter = 2;  // doubles per letter
     CATENA_HD unsigned long long* counters(int at) const {
         return reinterpret_cast<unsigned long long*>(base[at] +
                                                      std::int64_t{2} * ranks * letter * width);
     }
 };
 
-/// Whether GPUs may write to each other's memory: ranks of one host with a GPU each, and
-/// CATENA_GPU_EXCHANGE is not `host`. Collective.
+/// True if GPUs may write to each other's memory. All ranks must be on one host with a GPU each,
+/// and CATENA_GPU_EXCHANGE must not be `host`. Collective.
 bool gpus_may_write_to_each_other(Communicator const&);
-/// `own`: what cudaMalloc gave on each rank. Each rank's memory as this rank reaches it, its own
-/// among them; empty on all ranks where some rank does not reach some other: CUDA lets one context
-/// of a process alone open what another process has on a GPU. Collective.
+/// Maps each rank's allocation `own`, made by cudaMalloc, into this process. Returns the address of
+/// every rank's memory as seen here, this rank's own included. The result is empty on all ranks if
+/// any rank cannot map another's memory. CUDA lets only one context of a process open what another
+/// process has allocated on a GPU. Collective.
 std::vector<void*> map_each_others(Communicator const&, void* own);
+/// Closes the mappings of the other ranks' memory.
 void unmap(std::vector<void*> const& base, int own_rank);
 
-/// Of a rank, as long as the object is there; what was mapped is kept for the next one, because
-/// memory that others have mapped is not to be freed.
+/// A rank's memory for direct exchanges, and the other ranks' memory as mapped here. Mapped memory
+/// is kept for the next object, because memory that others have mapped must not be freed.
 class PeerMemory {
   public:
-    /// Collective: null on all ranks where some cannot reach another's, where ranks share GPUs,
-    /// where there is one rank, or where CATENA_GPU_EXCHANGE is `host`.
+    /// Returns null on all ranks if some GPU cannot reach another, if ranks share GPUs or if there
+    /// is only one rank. It also returns null if CATENA_GPU_EXCHANGE is `host`. Collective.
     static std::shared_ptr<PeerMemory> connect(Communicator const&);
     ~PeerMemory();
     PeerMemory(PeerMemory const&) = delete;
@@ -65,19 +74,19 @@ class PeerMemory {
 
     int rank() const { return rank_; }
     int ranks() const { return ranks_; }
-    /// No two have the same number; 0: unknown.
+    /// Returns the unique number of the CUDA context of this memory, or 0 if it is unknown.
     unsigned long long context() const { return context_; }
-    /// Places for exchanges of up to `width` numbers a pair: all ranks ask for the same ones in the
-    /// same order.
+    /// Reserves boxes for exchanges of up to `width` numbers per pair of ranks. All ranks must
+    /// request the same boxes in the same order. Throws ComputationError if the memory is used up.
     PeerBoxes boxes(int width);
 
   private:
     PeerMemory(int rank, std::vector<double*> base);
 
     int rank_, ranks_;
-    unsigned long long context_;  // in which it is
-    std::vector<double*> base_;   // of each rank
-    std::int64_t used_ = 0;
+    unsigned long long context_;  // number of the CUDA context that owns the memory
+    std::vector<double*> base_;   // each rank's memory as mapped here
+    std::int64_t used_ = 0;       // numbers already reserved
 };
 
 }  // namespace catena::cuda

@@ -1,3 +1,4 @@
+// Kernels that move positions and forces between OpenMM's arrays and the inboxes of ranks.
 #include <cuda/atomic>
 
 #include "cuda/exchange/peer_exchange.cuh"
@@ -8,12 +9,14 @@
 namespace catena::cuda {
 namespace {
 
-/// Neighbours in messages are taken by neighbouring threads.
+/// Runs action(i) for i in [0, count). Neighbouring threads take neighbouring elements of a
+/// message.
 template <class Action>
 __global__ void in_turn(std::int64_t count, Action action) {
     std::int64_t const i = std::int64_t{blockIdx.x} * blockDim.x + threadIdx.x;
     if (i < count) action(i);
 }
+/// Launches in_turn() for `count` items on `stream`.
 template <class Action>
 void each(std::int64_t count, Action const& action, cudaStream_t stream) {
     if (count == 0) return;
@@ -23,7 +26,8 @@ void each(std::int64_t count, Action const& action, cudaStream_t stream) {
     check(cudaGetLastError(), "start a kernel");
 }
 
-/// One block: all that ranks wrote before, into whosever memory, is there after it.
+/// Barrier between ranks, one block per rank. It makes everything visible that ranks wrote before
+/// it to the memory of any GPU.
 __global__ void meet(PeerBoxes boxes) {
     int const rank = static_cast<int>(threadIdx.x);
     if (rank >= boxes.ranks || rank == boxes.rank) return;

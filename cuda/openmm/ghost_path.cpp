@@ -1,7 +1,7 @@
-// Beads and OpenMM's particles on the GPU of a rank among several. Beads that others have as ghosts
-// are gathered on the GPU, are written into the memory of theirs, or pass through pinned memory of
-// the host and messages, and are put into OpenMM's arrays there. While they travel, the chains' own
-// work goes on.
+// Coupling of beads with OpenMM's particles on the GPU of one rank among several. Beads that are
+// ghosts of other ranks are gathered on the GPU. They are written to the memory of the other ranks'
+// GPUs, or pass through pinned memory of the host and messages, and are put into OpenMM's arrays
+// there. The chains' own work continues during the transfer.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -19,6 +19,7 @@
 namespace catena::cuda {
 namespace {
 
+/// Coupling for one rank among several, by ghosts or by shared pairs.
 class GhostPath final : public GpuPath {
   public:
     GhostPath(OpenMM::Context& home, DevicePathPlan plan)
@@ -27,13 +28,15 @@ class GhostPath final : public GpuPath {
         of_an_order_ = evaluations_of_an_order;
         pairs_ = std::make_unique<PairShare>(halo_);
     }
-    ~GhostPath() override { make_current(); }  // what it owns lives there
+    // The members' memory belongs to OpenMM's CUDA context.
+    ~GhostPath() override { make_current(); }
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         start(beads, timed);
         own_are_put_ = of_this_order_ > 0;
         if (own_are_put_)
-            put_own(beads);  // now: OpenMM is not to wait for what the streams are given next
+            // Own positions are written now: OpenMM does not wait for later work of the streams.
+            put_own(beads);
         goes_directly_ = can_go_directly();
         if (goes_directly_)
             exchange_directly();
@@ -47,7 +50,8 @@ class GhostPath final : public GpuPath {
         if (plan_.overlap) exchange_and_compute(beads);
     }
     void refuse_trouble() override { halo_.refuse_trouble(take_trouble()); }
-    /// Where kernels exchange positions, as long as these take, not the host's question meanwhile.
+    /// If kernels exchange the positions, the exchange interval is the time that the kernels take.
+    /// The host's query during that time does not count.
     Clock clock() override {
         Clock clock = GpuPath::clock();
         if (goes_directly_) clock.exchange = {at(is_shown_), at(is_taken_)};
@@ -55,21 +59,23 @@ class GhostPath final : public GpuPath {
     }
 
   private:
-    /// Where lists are made anew ghosts come from elsewhere.
+    /// Number of evaluations per order if ghost lists are used. Rebuilding these lists may change
+    /// the particles, which also leads to a new order.
     static constexpr int evaluations_of_ghosts = 250;
 
     Halo::Lists const& lists() const { return halo_.lists(); }
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
     std::span<Vec3> in() const { return {(*in_).data(), lists().particle.size()}; }
 
-    /// From OpenMM's arrays into those of others, as particles stand there; with a new order the
-    /// host must know where all beads are.
+    /// True if positions can be copied directly from OpenMM's arrays to other ranks' arrays, in the
+    /// order of the particles. After a reordering the host must know where all beads are, so that
+    /// the direct way is not used.
     bool can_go_directly() const {
         return pairs_ && inboxes_ && of_this_order_ > 0 && particles_.position &&
                !halo_.is_audited();
     }
 
-    /// While the host asks how far beads are.
+    /// Enqueues the direct exchange of positions, while the host checks how far beads have moved.
     void exchange_directly() {
         is_shown_.record(stream_);
         inboxes_->turn();
@@ -80,8 +86,9 @@ class GhostPath final : public GpuPath {
         is_taken_.record(stream_);
     }
 
-    /// What the streams do here comes after OpenMM's last forces, for which they waited, and so
-    /// after the ghosts that these waited for: the buffers of the messages before are free again.
+    /// Enqueues the gathering and sending of own beads that are ghosts elsewhere. The streams
+    /// waited for OpenMM's last forces and so for the ghosts that these needed. The buffers of the
+    /// previous messages are therefore free again.
     void show(std::span<DeviceBeads* const> beads) {
         cudaStream_t const last = stream_of(*beads.back());
         std::int64_t next = 0;
@@ -103,13 +110,16 @@ class GhostPath final : public GpuPath {
         is_sent_.record(last);
     }
 
+    /// Waits for the positions, rebuilds lists if necessary, distributes ghosts and starts OpenMM's
+    /// computation.
     void exchange_and_compute(std::span<DeviceBeads* const> beads) {
         if (has_lists_)
             is_shown_.wait();
         else
             look_at_start();
         exchange_.begin = seconds_now();
-        // The GPU may have been behind: its clock is the host's where both are known to be.
+        // The GPU may have lagged: its clock is matched to the host's at a point that both have
+        // reached.
         if (has_lists_ && timed_)
             begun_ = exchange_.begin - is_shown_.seconds_since(events_->begun);
         bool const far = std::exchange(flags_->data()->far, 0) != 0;
@@ -117,9 +127,9 @@ class GhostPath final : public GpuPath {
             make_lists(beads);
             show(beads);
             is_shown_.wait();
-            if (inboxes_)
-                halo_.communicator()
-                    .barrier();  // as are_used_up() is one: what all have shown has arrived
+            // are_used_up() is a barrier in the same way: all positions sent before it have
+            // arrived.
+            if (inboxes_) halo_.communicator().barrier();
             goes_directly_ = false;
         }
         if (inboxes_)
@@ -130,10 +140,11 @@ class GhostPath final : public GpuPath {
         exchange_.end = seconds_now();
         if (pairs_) choose_pairs();
         compute(beads);
-        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // as LonePath does
+        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // see LonePath
     }
 
-    /// What has arrived goes where it belongs.
+    /// Puts arrived ghosts, and own beads if necessary, into OpenMM's arrays; reorders particles if
+    /// due.
     void place_all(std::span<DeviceBeads* const> beads) {
         if (inboxes_ && (halo_.is_audited() || of_this_order_ == 0 || !ghosts_are_placed_))
             look_into_inbox();
@@ -150,8 +161,8 @@ class GhostPath final : public GpuPath {
         put_ghosts();
     }
 
-    /// Neighbours in OpenMM's arrays are neighbours in messages, too: the GPU reads and writes them
-    /// together.
+    /// Sorts messages by place in OpenMM's arrays, so that the GPU reads and writes neighbouring
+    /// numbers together.
     void send_in_order(std::vector<Vec3> const& own) {
         auto const place_of = [&](std::int64_t k) {
             return place_[static_cast<std::size_t>(plan_.particle[static_cast<std::size_t>(k)])];
@@ -178,6 +189,7 @@ class GhostPath final : public GpuPath {
         if (pairs_) pairs_->complete(particles_, stream_);
     }
 
+    /// Chooses this rank's pairs and records if their list is rebuilt.
     void choose_pairs() {
         bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
         if (halo_.is_audited()) audit_list(anew);
@@ -186,8 +198,9 @@ class GhostPath final : public GpuPath {
         note_list(anew);
     }
 
-    /// On the host, in double precision: the GPU compares what OpenMM's arrays have of these
-    /// positions, maybe in single.
+    /// Checks on the host, in double precision, that no bead has moved farther than the kept list
+    /// allows. The GPU compares the positions in OpenMM's arrays, which may be in single precision.
+    /// Throws SharedError on all ranks if a list was kept for too long.
     void audit_list(bool anew) {
         std::vector<Vec3> x = positions();
         bool holds = true;
@@ -203,7 +216,8 @@ class GhostPath final : public GpuPath {
         if (anew) listed_at_ = std::move(x);
     }
 
-    /// The same on every rank, to the bit: ranks that share out pairs must find them in one order.
+    /// Returns the mean position of all beads, nm. It is bitwise identical on every rank, because
+    /// ranks that share pairs must compute the same order.
     Vec3 middle_of_all(std::vector<Vec3> const& own) const {
         std::vector<Vec3> all(own.size() + in().size());
         for (std::size_t i = 0; i < own.size(); ++i)
@@ -213,7 +227,8 @@ class GhostPath final : public GpuPath {
         return mean(all);
     }
 
-    /// What was sent must not arrive in memory that is no more, where all ranks end.
+    /// True if the lists must be rebuilt. Collective. If all ranks stop with an error, it first
+    /// waits until no message is under way to memory that will be freed.
     bool are_used_up(bool far) {
         try {
             return halo_.are_used_up(far, take_trouble());
@@ -224,7 +239,7 @@ class GhostPath final : public GpuPath {
         }
     }
 
-    /// For the host.
+    /// Copies the inbox to the host.
     void look_into_inbox() {
         if (in().empty()) return;
         check(cudaMemcpyAsync(in().data(), inboxes_->arrived<double>(), in().size_bytes(),
@@ -233,18 +248,20 @@ class GhostPath final : public GpuPath {
         check(cudaStreamSynchronize(stream_), "take ghosts");
     }
 
+    /// Checks on the host, at the first evaluation, that all positions are finite.
     void look_at_start() {
         std::vector<Vec3> const x = positions();
         for (std::size_t i = 0; i < x.size(); ++i)
             if (!std::isfinite(norm(x[i]))) flags_->data()->trouble = static_cast<std::int64_t>(i);
     }
 
-    /// The Context may be another one afterwards.
+    /// Rebuilds the ghost lists; the Context may be another one afterwards. Collective.
     void make_lists(std::span<DeviceBeads* const> beads) {
         std::vector<Vec3> const x = positions();
         for (DeviceBeads* group : beads)
             check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
-        bool const lasts = pairs_ && openmm_;  // which knows its share
+        // The Context remains because it knows its share of pairs.
+        bool const lasts = pairs_ && openmm_;
         if (!lasts) compute_with(nullptr);
         halo_.make_lists(x);
         if (!lasts) compute_with(on_device(halo_.context()));
@@ -262,7 +279,7 @@ class GhostPath final : public GpuPath {
         in_.of(lists().particle.size());
     }
 
-    /// Of each own bead, the places where it is shown.
+    /// Uploads, for each own bead, the places in messages to which it is written.
     void list_sent(std::vector<Vec3> const& x) {
         ShownTable const table = shown_table(lists().sent, x.size());
         upload(first_.of(table.first.size()), table.first.data(), table.first.size());
@@ -279,7 +296,8 @@ class GhostPath final : public GpuPath {
         shown_.trouble = &flags_->data()->trouble;
     }
 
-    /// Where ghosts go from now on, and who stands aside.
+    /// Sets the places of ghosts in OpenMM's arrays, and puts particles that stand for no bead
+    /// aside.
     void place_ghosts() {
         std::vector<DeviceBead> beads;
         for (std::size_t i = 0; i < in().size(); ++i)
@@ -298,19 +316,22 @@ class GhostPath final : public GpuPath {
         check(cudaStreamSynchronize(stream_), "take lists");
     }
 
+    /// Returns the description of ghosts from number `first` on, for put().
     ArrivedBeads ghosts_from(std::size_t first) const {
         ArrivedBeads arrived{particles_, (*arrived_).data() + 3 * first};
         arrived.particles.bead = (*ghost_).data() + first;
-        arrived.particles.trouble = &flags_->data()->of_ghosts;  // their ranks tell
-        arrived.particles.far = nullptr;                         // and know how far they are
+        // reported by the ranks that own them
+        arrived.particles.trouble = &flags_->data()->of_ghosts;
+        arrived.particles.far = nullptr;  // checked by these ranks, too
         return arrived;
     }
 
     void put_ghosts() {
         if (in().empty()) return;
         ArrivedBeads arrived = ghosts_from(0);
-        bool const in_sequence =
-            !pairs_ || of_this_order_ > 0;  // those that arrived; the host has them in the new one
+        // Arrived numbers have the present order, unless particles were just reordered; the host
+        // then has them in the new one.
+        bool const in_sequence = !pairs_ || of_this_order_ > 0;
         if (inboxes_ && in_sequence)
             arrived.position = inboxes_->arrived<double>();
         else
@@ -324,14 +345,14 @@ class GhostPath final : public GpuPath {
     bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false,
          goes_directly_ = false;
     std::unique_ptr<GhostInboxes> inboxes_;  // null: positions pass through the host
-    std::unique_ptr<PairShare> pairs_;       // null: OpenMM computes all that acts on own beads
+    std::unique_ptr<PairShare> pairs_;       // null: OpenMM computes all forces on own beads
     ShownBeads shown_;
     Event is_shown_{Event::For::clock}, is_sent_{Event::For::order}, is_taken_{Event::For::clock};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;
     Room<Buffer<double>> shown_from_, show_, arrived_;
     Room<Buffer<DeviceBead>> ghost_;
     Room<PinnedBuffer<Vec3>> out_, in_;
-    std::vector<Vec3> listed_at_;  // own beads, where it is audited
+    std::vector<Vec3> listed_at_;  // positions of own beads at the last list, for audits
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Implements the coupling with OpenMM that is common to all ranks, and the one for a single rank.
 #include "cuda/openmm/gpu_path.hpp"
 
 #include <cmath>
@@ -16,7 +17,7 @@ Vec3 mean(std::span<Vec3 const> x) {
 
 namespace {
 
-/// Of the only rank.
+/// Coupling for a run with a single rank.
 class LonePath final : public GpuPath {
   public:
     LonePath(OpenMM::Context& context, DevicePathPlan plan)
@@ -25,10 +26,12 @@ class LonePath final : public GpuPath {
         may_ask_ = plan_.keeps_list && why_pairs_cannot_be_shared().empty();
         if (may_ask_) openmm_->share(-1, 0, 1);
     }
-    ~LonePath() override { make_current(); }  // what it owns lives there
+    // The members' memory belongs to OpenMM's CUDA context.
+    ~LonePath() override { make_current(); }
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
-        refuse_trouble();  // of the evaluation before, which is over where its step is
+        // concerns the previous evaluation, which has ended together with its step
+        refuse_trouble();
         if (of_this_order_ == 0) order_anew(beads);
         start(beads, timed);
         put_own(beads);
@@ -49,16 +52,17 @@ class LonePath final : public GpuPath {
     }
 
   private:
-    /// Of thousands of particles OpenMM keeps a list of pairs, and sorts blocks of them at every
-    /// evaluation before it looks whether one has moved far. Here that is found while they are
-    /// moved, and the host asks while the chains go on.
+    /// For thousands of particles OpenMM keeps a pair list. Before it checks if any particle has
+    /// moved far, it sorts blocks of particles, at every evaluation. Here the check is made while
+    /// positions are written, and the host reads its result while the chains continue.
     void choose_list_and_compute(std::span<DeviceBeads* const> beads) {
         if (asks_) {
             placed_.record(stream_);
             exchange_.begin = seconds_now();
             placed_.wait();
             exchange_.end = seconds_now();
-            // The GPU may have been behind: its clock is the host's where both are known to be.
+            // The GPU may have lagged: its clock is matched to the host's at a point that both have
+            // reached.
             if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
             bool const far = std::exchange(flags_->data()->far, 0) != 0;
             bool const anew = far || of_this_order_ == 0 || !std::exchange(has_list_, true);
@@ -66,9 +70,8 @@ class LonePath final : public GpuPath {
             note_list(anew);
         }
         compute(beads);
-        if (asks_)
-            openmm_
-                ->keep_list();  // until it is made anew; for energies that are asked for now, too
+        // The list is kept until it is rebuilt, also for energies that are requested meanwhile.
+        if (asks_) openmm_->keep_list();
         if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
         if (asks_) of_an_order_ = evaluations_of_a_listed_order;
     }
@@ -91,7 +94,7 @@ class LonePath final : public GpuPath {
 
 GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
     : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations) {
-    // What lives in OpenMM's context is made there.
+    // Memory, events and arrays that OpenMM's CUDA context owns are allocated while it is current.
     if (!home_->make_current())
         throw ComputationError("OpenMM's CUDA context cannot be made current");
     flags_ = std::make_unique<PinnedBuffer<Flags>>(1);
@@ -103,7 +106,8 @@ GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
     if (plan_.box) particles_.box = *plan_.box;
 }
 
-GpuPath::~GpuPath() { home_->make_current(); }  // what it owns lives there
+// The members' memory belongs to OpenMM's CUDA context.
+GpuPath::~GpuPath() { home_->make_current(); }
 
 void GpuPath::compute_with(std::unique_ptr<OpenMmOnDevice> openmm) {
     openmm_ = std::move(openmm);

@@ -1,4 +1,5 @@
-// Beads and OpenMM's particles on one GPU. What one rank and several do alike.
+// Coupling of beads with OpenMM's particles on one GPU: the part that is common to one rank and
+// several ranks.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +14,13 @@
 
 namespace catena::cuda {
 
-/// Of a Context that outlives it.
+/// Opens OpenMM's arrays of a Context, which must outlive the result.
 std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context&);
 
+/// Returns the mean of the positions `x`.
 Vec3 mean(std::span<Vec3 const> x);
 
-/// Memory that grows where more is needed.
+/// Memory that is reallocated with 1/8 more than requested if a request exceeds it.
 template <class Owner>
 class Room {
   public:
@@ -37,13 +39,15 @@ class Room {
     std::size_t capacity_ = 0;
 };
 
-/// Ghosts that arrived go where they belong.
+/// Enqueues the copy of `count` arrived ghosts to their places in OpenMM's arrays.
 void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
 
+/// Base class of the coupling: order of particles, positions to OpenMM, forces from OpenMM, timing.
 class GpuPath : public DevicePath {
   public:
-    /// `home`: a Context that outlives this; what the chains and this keep on the GPU is kept in
-    /// its CUcontext. `evaluations`: particles are brought into a new order after so many.
+    /// `home`: a Context that outlives this object; the chains' and this object's GPU memory is
+    /// allocated in its CUcontext. `evaluations`: number of evaluations after which particles are
+    /// reordered.
     GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations);
     ~GpuPath() override;
 
@@ -54,19 +58,24 @@ class GpuPath : public DevicePath {
     PairLists pair_lists() const override { return pair_lists_; }
 
   protected:
-    /// OpenMM's own integrators bring particles into a new order after 250, which would be a
-    /// twentieth of a step of 100,000 beads. Chains move little meanwhile: of a condensate of 7,143
-    /// OpenMM's forces take as long before an order that comes after 6,600 evaluations as after it
-    /// (2.11 ms, H200). Where nobody asks how far beads are, they come into an order more often;
-    /// where somebody does, also once that many lists of pairs have been made, since each bead has
-    /// gone some 0.2 nm at most for each: coordinates far from their cell lose digits in single
-    /// precision.
+    /// Numbers of evaluations, and of pair lists, after which particles are brought into a new
+    /// order. OpenMM's own integrators reorder after 250 evaluations, which would cost a twentieth
+    /// of a step of 100,000 beads. Chains move little in that time. In a condensate of 7,143 chains
+    /// OpenMM's forces take as long before a reordering after 6,600 evaluations as after it (2.11
+    /// ms, H200). Without checks of how far beads have moved, particles are reordered more often.
+    /// With such checks they are also reordered after `lists_of_an_order` pair lists. Beads move at
+    /// most some 0.2 nm per list, and coordinates far from their periodic cell lose digits in
+    /// single precision.
     static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 8000,
                          lists_of_an_order = 400;
 
+    /// Flags that kernels set in pinned memory. The flag `trouble` is the index of an own bead
+    /// whose position or force is not finite, `of_ghosts` that of a ghost; -1: none. The
+    /// flag `far` is 1 if a bead has moved too far for the current lists.
     struct Flags {
         std::int64_t trouble = -1, far = 0, of_ghosts = -1;
     };
+    /// Events that time an evaluation and that order the streams of chains and OpenMM.
     struct Events {
         Event begun{Event::For::clock}, chains_begin{Event::For::clock},
             chains_end{Event::For::clock}, openmm_begin{Event::For::clock},
@@ -78,33 +87,41 @@ class GpuPath : public DevicePath {
         return static_cast<cudaStream_t>(group.stream());
     }
 
-    /// The Context that computes; null: none.
+    /// Sets the Context that computes forces; null: none.
     void compute_with(std::unique_ptr<OpenMmOnDevice> openmm);
-    /// Of an evaluation: the clock goes from here on.
+    /// Starts an evaluation, and its clock if `timed`.
     void start(std::span<DeviceBeads* const> beads, bool timed);
-    /// Own bead that is in trouble, by its number; -1: none. Forgets it.
+    /// Returns the number of an own bead whose position or force is not finite, or -1, and resets
+    /// the flag.
     std::int64_t take_trouble();
+    /// Particles of the Context that are not own beads, with their positions in nm.
     struct Others {
         std::span<int const> particle;
         std::span<Vec3 const> position;
     };
-    /// Gives OpenMM's particles a new order. `x`: of own beads, `others`: of the Context's other
-    /// particles; `middle`: goes to the origin where all may be moved by one vector.
+    /// Brings OpenMM's particles into a new order, by position. `x`: positions of own beads, nm;
+    /// `others`: the Context's other particles. `middle` becomes the origin if all particles may be
+    /// moved by one vector.
     void order(std::vector<Vec3> const& x, std::span<Others const> others, Vec3 const& middle);
+    /// Returns the place in OpenMM's arrays and the periodic cell of a particle at `x`.
     DeviceBead bead_of(int particle, Vec3 const& x) const {
         return bead_at(place_[static_cast<std::size_t>(particle)], x, plan_.box);
     }
-    /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its
+    /// Writes own beads' positions to OpenMM's arrays and makes OpenMM's stream wait for them.
+    /// OpenMM has read the previous positions by then, because the chains' streams waited for its
     /// forces.
     void put_own(std::span<DeviceBeads* const> beads);
+    /// Enqueues OpenMM's computation of forces and counts the evaluation.
     void compute(std::span<DeviceBeads* const> beads);
-    /// Of an evaluation that is timed.
+    /// Returns the time of an event of a timed evaluation, seconds of std::chrono::steady_clock.
     double at(Event const& event) const { return begun_ + event.seconds_since(events_->begun); }
-    /// Before compute(): whether OpenMM's list of pairs is made anew. Where it is, particles that
-    /// move far from here are noted from now on.
+    /// Records before compute() if OpenMM's pair list is rebuilt (`anew`). If so, particles that
+    /// move far from their present positions are detected from now on.
     void note_list(bool anew);
-    /// Of compute(), once OpenMM has been given its work: what its forces lack yet.
+    /// Completes the forces within compute(), after OpenMM's work was enqueued; by default they are
+    /// complete.
     virtual void complete_forces() {}
+    /// Enqueues a copy of `count` elements from the host to `to`.
     template <class T>
     void upload(Buffer<T> const& to, T const* from, std::size_t count) {
         if (count > 0)
@@ -115,23 +132,24 @@ class GpuPath : public DevicePath {
 
     DevicePathPlan plan_;
     std::unique_ptr<OpenMmOnDevice> home_, openmm_;
-    cudaStream_t stream_ = nullptr;  // OpenMM's
+    cudaStream_t stream_ = nullptr;  // OpenMM's stream
     std::unique_ptr<PinnedBuffer<Flags>> flags_;
     std::unique_ptr<Events> events_;
     std::unique_ptr<Buffer<DeviceBead>> own_;
-    Room<Buffer<double>> listed_;  // positions of the last list of pairs
+    Room<Buffer<double>> listed_;  // positions at which the last pair list was built
     DeviceParticles particles_;
-    std::vector<std::int32_t> place_;  // of each particle
-    std::vector<DeviceBeads*> beads_;  // of the last evaluation
-    int of_an_order_, of_this_order_ = 0,
-                      lists_of_this_order_ = 0;  // evaluations, and lists of pairs made
+    std::vector<std::int32_t> place_;  // place of each particle in OpenMM's arrays
+    std::vector<DeviceBeads*> beads_;  // groups of beads of the last evaluation
+    /// Evaluations per order, evaluations since the last reordering, and pair lists built since
+    /// then.
+    int of_an_order_, of_this_order_ = 0, lists_of_this_order_ = 0;
     bool timed_ = false;
-    double begun_ = 0;
-    Interval exchange_;  // clock()'s
+    double begun_ = 0;   // time at which the evaluation began, s
+    Interval exchange_;  // interval of the exchange, for clock()
     PairLists pair_lists_;
 };
 
-/// Of several ranks.
+/// Makes the coupling of one rank among several.
 std::unique_ptr<DevicePath> make_halo_path(OpenMM::Context& home, DevicePathPlan plan);
 
 }  // namespace catena::cuda

@@ -1,4 +1,5 @@
-// The module that knows OpenMM's CUDA platform: where it is, and what is made with it.
+// Locates and loads the module that knows OpenMM's CUDA platform, and opens OpenMM's arrays with
+// it.
 #include <dlfcn.h>
 
 #include <filesystem>
@@ -12,8 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside the program or library that holds this function and where both are installed together,
-/// where the build is to be installed, and where it leaves the module.
+/// Returns the folders searched for the module. They are the folder of the program or library that
+/// holds this function, the library folder installed next to it, the installation folder of this
+/// build, and its build folder.
 std::vector<fs::path> module_folders() {
     std::vector<fs::path> folders;
     Dl_info here{};
@@ -27,6 +29,7 @@ std::vector<fs::path> module_folders() {
     return folders;
 }
 
+/// The loaded module, or the reason why there is none.
 struct Module {
     ModuleEntry entry = nullptr;
     std::string why_not;

@@ -1,3 +1,5 @@
+// Module that gives access to OpenMM's CUDA platform; it is compiled into a shared library of its
+// own.
 #include "cuda/openmm/openmm_on_device.hpp"
 
 #include <OpenMM.h>
@@ -11,7 +13,8 @@
 #include "force/openmm_impl.hpp"
 
 namespace OpenMM {
-/// In the library, not in its headers: another version may lack it.
+/// Symbol of OpenMM's library that its headers do not declare. It is weak because another version
+/// may lack it.
 class CudaKernelSources {
   public:
     __attribute__((weak)) static std::string const nonbonded;
@@ -21,14 +24,16 @@ class CudaKernelSources {
 namespace catena::cuda {
 namespace {
 
-/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list,
-/// those that a context computes, which OpenMM defines by the contexts of one process; and the
-/// reach by which a block of particles may be wrapped about its middle, which does not allow for
-/// what they have moved since their blocks were looked at, as they are whenever OpenMM makes or
-/// keeps a list by itself.
+/// Words in the source of OpenMM's pair kernel that share() replaces. Tiles with exclusions are in
+/// no list; the first two words are the range of them that a context computes. OpenMM derives that
+/// range from the number of contexts in the process. The third word is the distance within which a
+/// block of particles may be wrapped about its centre. It does not allow for motion since the
+/// blocks' bounds were computed. OpenMM itself computes these bounds whenever it makes or keeps a
+/// list; keep_list() skips that.
 constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE",
                      *wrapped = "MAX_CUTOFF";
 
+/// True if this version's kernel has the words that share() replaces.
 bool shares_pairs() {
     if (&OpenMM::CudaKernelSources::nonbonded == nullptr) return false;
     std::string const& source = OpenMM::CudaKernelSources::nonbonded;
@@ -36,6 +41,7 @@ bool shares_pairs() {
     return has(first_tile) && has(last_tile) && has(wrapped);
 }
 
+/// Returns `text` with every `word` replaced by `value`.
 std::string with(std::string text, std::string const& word, std::string const& value) {
     for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += value.size())
         text.replace(at, word.size(), value);
@@ -51,6 +57,7 @@ void* address(OpenMM::CudaArray& array) {
     return array.isInitialized() ? reinterpret_cast<void*>(array.getDevicePointer()) : nullptr;
 }
 
+/// Access to one Context; see OpenMmOnDevice.
 class OnDevice final : public OpenMmOnDevice {
   public:
     explicit OnDevice(OpenMM::Context& context)
@@ -78,7 +85,7 @@ class OnDevice final : public OpenMmOnDevice {
         for (std::size_t i = 0; i < particles.size(); ++i)
             particles[i] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
         gpu_.forceReorder();
-        context_.setPositions(particles);  // and reorders
+        context_.setPositions(particles);  // this also reorders
         return gpu_.getAtomIndex();
     }
     void compute() override { impl_.calcForcesAndEnergy(true, false, groups_); }
@@ -94,7 +101,8 @@ class OnDevice final : public OpenMmOnDevice {
             wrapped, padded));
     }
     void make_list(double begin, double end) override { pairs().setAtomBlockRange(begin, end); }
-    /// Without blocks OpenMM finds nothing to prepare, and goes on to compute what is in the list.
+    /// An empty range of blocks makes OpenMM skip the preparation and compute the pairs of the
+    /// present list.
     void keep_list() override { pairs().setAtomBlockRange(0, 0); }
     double list_lasts() override {
         double const reach = pairs().getMaxCutoffDistance();
@@ -112,7 +120,7 @@ class OnDevice final : public OpenMmOnDevice {
   private:
     OpenMM::CudaNonbondedUtilities& pairs() { return gpu_.getNonbondedUtilities(); }
 
-    int groups_ = -1;  // all
+    int groups_ = -1;  // all groups
     OpenMM::Context& context_;
     OpenMM::ContextImpl& impl_;
     OpenMM::CudaContext& gpu_;

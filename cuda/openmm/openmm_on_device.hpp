@@ -1,6 +1,6 @@
-// What the module that knows OpenMM's CUDA platform gives to the library. The module is a shared
-// library of its own, loaded where there is a driver: libOpenMMCUDA.so, which it needs, asks for
-// one.
+// Interface between the library and the module that knows OpenMM's CUDA platform. The module is a
+// shared library of its own and is loaded only if there is a driver. It links libOpenMMCUDA.so,
+// which cannot be loaded without a driver.
 #pragma once
 
 #include <cstdint>
@@ -12,53 +12,58 @@ class Context;
 
 namespace catena::cuda {
 
-/// Addresses on the GPU (neighbours/device_beads.hpp says what is there). They last as long as the
-/// Context.
+/// Addresses of OpenMM's arrays on the GPU, valid as long as the Context. Their layout is described
+/// in neighbours/device_beads.hpp.
 struct OpenMmArrays {
+    /// Positions, and the rounding error of each position in mixed precision (otherwise null).
     void *position = nullptr, *correction = nullptr;
     bool double_precision = false;
+    /// Forces, fixed point with 2^-32 kJ/mol/nm: x of every place, then y, then z.
     void* force = nullptr;
+    /// Number of places, padded to whole blocks.
     std::int64_t places = 0;
-    void* stream = nullptr;  // that OpenMM computes on
+    void* stream = nullptr;  // stream on which OpenMM computes
 };
 
+/// OpenMM's CUDA platform for one Context.
 class OpenMmOnDevice {
   public:
     virtual ~OpenMmOnDevice() = default;
-    /// OpenMM's CUcontext becomes the thread's, or false; the destructor gives the thread back the
-    /// one it had.
+    /// Makes OpenMM's CUcontext current in this thread; returns false if that fails. The destructor
+    /// restores the context that was current before.
     virtual bool make_current() noexcept = 0;
+    /// Returns the current addresses.
     virtual OpenMmArrays arrays() = 0;
-    /// Lets OpenMM bring particles that are near each other together: the particle that stands at
-    /// each place from now on. `positions`: x, y, z of each particle.
+    /// Lets OpenMM reorder its particles so that neighbours in space are neighbours in its arrays.
+    /// `positions`: x, y, z of each particle, nm. Returns the particle at each place.
     virtual std::vector<int> const& order(std::vector<double> const& positions) = 0;
-    /// Forces at the positions of its arrays. Returns once its neighbour list stands, maybe before
-    /// the forces do.
+    /// Computes forces at the positions in OpenMM's arrays. The call returns when the neighbour
+    /// list is complete, possibly before the forces are.
     virtual void compute() = 0;
 
-    /// From now on compute() finds the forces of these groups (bits) alone, and among pairs those
-    /// of part `part` of `parts`; -1, 0 and 1: all. Before the first compute(), as keep_list()
-    /// wants it. Precondition: the module says that it is to be had.
+    /// Restricts compute() to the forces of `groups` (a bit mask), and among pairs to part `part`
+    /// of `parts`. Values -1, 0 and 1 mean everything. The call must precede the first compute();
+    /// keep_list() requires it. Precondition: the module supports it (ModuleSharesPairs).
     virtual void share(int groups, int part, int parts) = 0;
-    /// The next compute() makes its neighbour list anew: of pairs whose first block of 32 places is
-    /// from `begin` to `end` > `begin` of the row of all, whose ends are 0 and 1. Whoever computes
-    /// the others needs the same order and does so at the same evaluation.
+    /// Makes the next compute() rebuild its neighbour list. The list holds pairs whose first block
+    /// of 32 places lies from `begin` to `end` > `begin`, as fractions of all blocks. Ranks that
+    /// compute the other pairs need the same order and must rebuild at the same evaluation.
     virtual void make_list(double begin, double end) = 0;
-    /// From now on compute(), and whatever else OpenMM computes of its Context, takes the list that
-    /// there is, and does not look for what has moved. Until make_list().
+    /// Keeps the present list until make_list(): compute() and other computations of the Context
+    /// use it. OpenMM then does not check how far particles have moved.
     virtual void keep_list() = 0;
-    /// How far particles may move until their list is to be made anew, nm.
+    /// Returns the distance, nm, that particles may move before their list must be rebuilt.
     virtual double list_lasts() = 0;
-    /// How many tiles of 32 by 32 pairs the list has, pairs by themselves as their part of one; 0
-    /// of all pairs: OpenMM keeps none of so few particles, and keep_list() must not be called.
-    /// Waits for it.
+    /// Returns the number of tiles of 32 by 32 pairs in the list; single pairs count as fractions
+    /// of a tile. The result is 0 if OpenMM keeps no list, because particles are few; keep_list()
+    /// must not be called then. The call waits for the list.
     virtual double tiles() = 0;
 };
 
 inline constexpr char const* module_file = "libcatena_openmm_cuda.so";
 inline constexpr char const* module_entry = "catena_openmm_on_device";
 inline constexpr char const* module_shares_pairs = "catena_openmm_shares_pairs";
-using ModuleEntry = OpenMmOnDevice* (*)(OpenMM::Context&);  // the caller owns what it returns
-using ModuleSharesPairs = bool (*)();  // whether OpenMmOnDevice::share() is to be had
+using ModuleEntry = OpenMmOnDevice* (*)(OpenMM::Context&);  // the caller owns the result
+using ModuleSharesPairs = bool (*)();                       // true if share() is available
 
 }  // namespace catena::cuda

@@ -1,3 +1,4 @@
+// Implements the sharing of pairs among ranks and the exchange of forces.
 #include "cuda/openmm/pair_share.hpp"
 
 #include <algorithm>
@@ -10,8 +11,8 @@ static_assert(most_peers - 1 <= most_messages);
 
 namespace {
 
-/// After how many evaluations cuts follow what the ranks' lists hold, beside those at which
-/// particles come into a new order.
+/// True after 0, 1, 2, 4 and 8 evaluations; the shares then follow the sizes of the ranks' lists.
+/// Shares also follow them whenever particles are reordered.
 bool is_early(std::int64_t evaluations) {
     return evaluations <= 8 && (evaluations & (evaluations - 1)) == 0;
 }
@@ -32,14 +33,15 @@ bool PairShare::fit(bool direct) {
     if (memory_ && boxes_.ranks == 0) boxes_ = memory_->boxes(0);
     if (!memory_ || (inboxes_ && !inboxes_->fit(messages_))) inboxes_.reset();
     if (inboxes_) {
-        // Zeros are not sent: most beads of other ranks are far from the pairs of this one.
+        // Zeros are not sent, because most beads of other ranks are far from the pairs of this
+        // rank. The inbox therefore starts with zeros.
         auto const bytes = static_cast<std::size_t>(received()) * 3 * sizeof(std::int64_t);
         if (bytes > 0)
             check(cudaMemsetAsync(inboxes_->box_of<std::int64_t>(communicator.rank()), 0, bytes,
                                   nullptr),
                   "clear memory");
         check(cudaStreamSynchronize(nullptr), "clear memory");
-        communicator.barrier();  // nobody sends before
+        communicator.barrier();  // no rank may send before
         return true;
     }
     sent_ = Buffer<std::int64_t>(static_cast<std::size_t>(3 * sent()));

@@ -1,5 +1,5 @@
-// A rank's share of the pairs of beads that all ranks know (force/pair_decomposition.hpp), and its
-// way to the whole forces on its own beads.
+// Force decomposition: a rank's share of the pairs of beads that all ranks know
+// (force/pair_decomposition.hpp). Exchanges then sum the forces on its own beads.
 #pragma once
 
 #include <cstdint>
@@ -14,61 +14,73 @@
 
 namespace catena::cuda {
 
-/// Each for so many beads.
+/// Enqueues the sending of positions of `count` own beads to the other ranks' inboxes.
 void send(std::int64_t count, SentPositions const&, cudaStream_t);
+/// Enqueues the copy of `count` arrived positions to OpenMM's arrays.
 void take(std::int64_t count, ArrivedPositions const&, cudaStream_t);
+/// Enqueues the sending of forces on other ranks' beads.
 template <class Number>
 void send(SentForces<Number> const&, cudaStream_t);
+/// Enqueues the addition of forces that other ranks computed on `count` own beads.
 template <class Number>
 void add(std::int64_t count, ReturnedForces<Number> const&, cudaStream_t);
-/// Once the stream comes here it waits until every rank's has.
+/// Enqueues a barrier between the streams of all ranks.
 void meet(PeerBoxes const&, cudaStream_t);
 
+/// Shares the pairs among ranks and exchanges positions and forces.
 class PairShare {
   public:
-    /// Of a Halo that shares pairs, as everything that lives in OpenMM's CUDA context is made
-    /// there.
+    /// `halo`: a Halo that shares pairs. OpenMM's CUDA context must be current when the object is
+    /// made.
     explicit PairShare(Halo& halo) : halo_(halo) {}
-    /// Whenever lists of positions are made, before they are of use. `direct`: GPUs write to each
-    /// other's memory. Whether they do so here. Collective.
+    /// Prepares the buffers; to be called whenever lists of positions are made, before their use.
+    /// `direct`: GPUs write to each other's memory. Returns true if they do so here too.
+    /// Collective.
     bool fit(bool direct);
-    /// Before each evaluation: which pairs are this rank's. `new_order`: of OpenMM's particles.
-    /// Whether their list is made anew; if not, the caller has kept the one before. Collective.
+    /// Chooses this rank's pairs; to be called before each evaluation. `new_order`: OpenMM's
+    /// particles were reordered. Returns true if the pair list is rebuilt; otherwise the caller has
+    /// kept the previous one. Collective.
     bool choose(OpenMmOnDevice&, bool new_order);
-    /// Whether some rank's OpenMM keeps a list of pairs, as far as is known.
+    /// True if OpenMM keeps a pair list on some rank, as far as is known.
     bool has_list() const { return has_list_; }
-    /// Where beads stand in OpenMM's arrays from now on, own ones in the sequence in which they are
-    /// sent, others in that in which they are received.
+    /// Sets the places of beads in OpenMM's arrays. Own beads are listed in the order in which they
+    /// are sent, others in the order in which they are received.
     void place(std::span<std::int32_t const> own, std::span<std::int32_t const> others);
-    // Where GPUs write to each other's memory, each once the stream comes to it; `position`:
-    // DeviceParticles's.
-    /// Own beads' positions go to all other ranks' inboxes.
+    // The next three enqueue work for ranks whose GPUs write to each other's memory; `position` is
+    // DeviceParticles::position.
+
+    /// Sends own beads' positions to all other ranks' inboxes.
     void send_positions(float const* position, GhostInboxes const& inboxes, cudaStream_t) const;
-    /// Every rank's stream has come here: what they were given before has arrived.
+    /// Barrier between the ranks' streams, after which all positions sent before it have arrived.
     void wait_for_positions(cudaStream_t) const;
+    /// Copies arrived positions of other ranks' beads to OpenMM's arrays.
     void take_positions(float* position, GhostInboxes const& inboxes, cudaStream_t) const;
-    /// Once OpenMM has been given its work: forces on other ranks' beads go to these, and what
-    /// comes from there is added. Forces of the evaluation before must have been used on every
-    /// rank. Collective where GPUs do not write to each other's memory.
+    /// Sends forces on other ranks' beads to these ranks and adds those that arrive from there. It
+    /// is called after OpenMM's work was enqueued. Every rank must have used the forces of the
+    /// previous evaluation. Collective unless GPUs write to each other's memory.
     void complete(DeviceParticles const&, cudaStream_t);
 
   private:
+    /// Number of own beads.
     std::int64_t own() const { return static_cast<std::int64_t>(halo_.lists().sent.size()); }
-    std::int64_t sent() const {
-        return static_cast<std::int64_t>(halo_.lists().particle.size());
-    }  // forces, on beads of others
+    /// Number of forces sent, which act on other ranks' beads.
+    std::int64_t sent() const { return static_cast<std::int64_t>(halo_.lists().particle.size()); }
+    /// Number of forces received: one per own bead and other rank.
     std::int64_t received() const { return own() * static_cast<std::int64_t>(messages_.size()); }
-    /// From GPU to GPU.
+    /// Exchanges forces from GPU to GPU.
     template <class Number>
     void exchange(DeviceParticles const&, cudaStream_t) const;
+    /// Exchanges forces through the hosts' memory.
     void exchange_by_host(DeviceParticles const&, cudaStream_t);
+    /// Adds the arrived forces to those on own beads.
     template <class Number>
     void add_arrived(Number* arrived, DeviceParticles const&, cudaStream_t) const;
+    /// Carries forces through pinned memory and messages between hosts. Collective.
     void carry_by_host(cudaStream_t);
 
     Halo& halo_;
-    std::vector<Halo::Message> messages_;  // with forces: those of positions, the other way
-    std::vector<double> cuts_;             // of the row of blocks, between ranks
+    std::vector<Halo::Message> messages_;  // messages of forces: those of positions, reversed
+    std::vector<double> cuts_;  // boundaries of the ranks' shares in the row of blocks, fractions
     std::int64_t evaluations_ = 0;
     bool has_list_ = false;
     std::unique_ptr<GhostInboxes> inboxes_;  // null: forces pass through the host

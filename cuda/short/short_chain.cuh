@@ -1,5 +1,5 @@
-// One chain that fits into one cluster of blocks, up and down its tree in one launch: a warp joins
-// eight runs, and what all warps hold is joined once more in every block.
+// Single launch with both passes of a chain that fits into one cluster of blocks. A warp
+// merges eight runs; then every block merges the segments of all warps.
 #pragma once
 
 #include "cuda/short/short_lanes.cuh"
@@ -7,10 +7,12 @@
 
 namespace catena::cuda::kernels {
 
+/// Implementation of a warp by the number of directions of the handles.
 template <class Sweep>
 using ShortWarp = std::conditional_t<Sweep::K == 1, ShortLanes<Sweep>, ShortTeams<Sweep>>;
 
-/// The next early launch may start before this one has ended; what it reads and writes waits.
+/// Kernel of both passes of a short chain. The next launch may start before this one has ended, but
+/// waits before it accesses memory.
 template <class Sweep>
 __global__ void __launch_bounds__(ShortWarp<Sweep>::most_threads)
     turn_short(OneChain chain, Sweep sweep) {

@@ -1,5 +1,5 @@
-// A short chain whose handles carry one direction: a lane joins its part's bodies, then lanes join
-// what they hold.
+// Short chain whose handles carry one direction: a lane merges the bodies of its part, then lanes
+// merge their segments.
 #pragma once
 
 #include <type_traits>
@@ -9,7 +9,7 @@
 
 namespace catena::cuda::kernels {
 
-/// Of one warp, in its block's shared memory.
+/// Work of one warp, in its block's shared memory.
 template <class Sweep>
 class ShortLanes {
     using Segment = typename Sweep::Segment;
@@ -19,12 +19,13 @@ class ShortLanes {
 
   public:
     static constexpr int most_threads = 2 * most_joining_warps * lanes_of_warp;
-    /// Warps for each that joins, itself included: few enough that all threads have as many
-    /// registers as they may.
+    /// Number of warps per merging warp, itself included. The number is small enough that each
+    /// thread has the maximal number of registers.
     static constexpr int warps_for_each(int joining) {
         return joining <= 2 ? dca::part_length : dca::part_length / 2;
     }
-    /// Numbers of a block of so many warps that join, and of a launch of so many.
+    /// Size of a block's shared memory in doubles: `joining` merging warps per block, `warps` in
+    /// the launch.
     static constexpr std::size_t numbers(int joining, int warps) {
         return static_cast<std::size_t>(Lanes::of_block(warps)) +
                static_cast<std::size_t>(joining) * of_warp;
@@ -35,13 +36,15 @@ class ShortLanes {
           own_(memory + Lanes::of_block(chain.warps) + is_.group * of_warp),
           lanes_(chain, sweep, is_.lane, is_.warp, memory, own_) {}
 
-    /// While the launch before may still go on: nothing is read here that a launch writes.
+    /// Prepares the launch while the previous one may still run. It reads nothing that a launch
+    /// writes.
     __device__ void open() {
         lanes_.open(is_.beside == 0);
         count_ = is_.bodies_of(is_.lane);
         CATENA_UNROLL
         for (int i = 0; i < dca::part_length; ++i) restricted_[i] = i < count_ && is_.beside == 0 ? sweep_.s.restricted[is_.first + i] : 0;
     }
+    /// Performs both passes and computes the accelerations of the thread's bodies.
     __device__ void turn() const {
         InMemory const memory(own_ + Lanes::of_warp + is_.lane);
         [[maybe_unused]] typename Sweep::Body own[bodies_stay ? most_bodies : 1];
@@ -69,13 +72,14 @@ class ShortLanes {
     }
 
   private:
-    /// Whether bodies are so small that they stay with their threads.
+    /// True if bodies are small enough to stay in their threads' registers.
     static constexpr bool bodies_stay = !Sweep::one_by_one;
+    /// Largest number of bodies per thread.
     static constexpr int most_bodies = dca::part_length / warps_for_each(most_joining_warps);
     using Passed = typename Sweep::Passed;
     using Factorizer = BranchlessFactorizer<true>;
     using Passage = typename Sweep::Passage;
-    /// Of a lane's bodies, in turn in the same place.
+    /// Records of a lane's bodies in shared memory; different types share the same place.
     class InMemory {
       public:
         static constexpr int of_body = OfLanes::size<Segment>, numbers = dca::part_length * of_body;
@@ -93,7 +97,7 @@ class ShortLanes {
       private:
         double* memory_;
     };
-    /// And what the way up leaves for the way down, in registers.
+    /// Storage that also keeps in registers what the inward pass leaves for the outward pass.
     class Kept : public InMemory {
       public:
         using InMemory::InMemory, InMemory::put;
@@ -113,8 +117,10 @@ class ShortLanes {
         Passed passed_[dca::part_length];
         Passage passages_[dca::part_length];
     };
+    /// Size of a warp's shared memory in doubles.
     static constexpr int of_warp = Lanes::of_warp + InMemory::numbers;
-    /// action(round, i, k) for this thread's bodies: body k is the i-th of what its lane joins.
+    /// Calls action(round, i, k) for this thread's bodies: body k is number i of the bodies that
+    /// its lane merges.
     template <class Action>
     __device__ void each_body(Action const& action) const {
         each_step<most_bodies>([&](int round) {
@@ -122,7 +128,7 @@ class ShortLanes {
             if (std::int64_t const k = is_.first + i; is_.is_here(i, k)) action(round, i, k);
         });
     }
-    /// What the warps do that join: up and down again.
+    /// Performs both passes by the merging warps.
     __device__ void join() const {
         Kept kept(own_ + Lanes::of_warp + is_.lane);
         auto const restricted = [&](int i) { return restricted_[i]; };
@@ -139,8 +145,8 @@ class ShortLanes {
     ShortThread is_;
     double* own_;
     Lanes lanes_;
-    int count_ = 0;                      // bodies of the lane
-    int restricted_[dca::part_length];  // directions that their joints restrict
+    int count_ = 0;  // bodies of the lane
+    int restricted_[dca::part_length];  // number of directions that their joints restrict
 };
 
 }  // namespace catena::cuda::kernels

@@ -1,6 +1,6 @@
-// A short chain whose handles carry several directions: four or eight lanes join two segments in
-// shared memory (merge_teams.cuh). Every block is given the segments of all warps, and one of its
-// warps joins those as well, so that nobody waits twice.
+// Short chain whose handles carry several directions: teams of four or eight lanes merge segments
+// in shared memory (merge_teams.cuh). Every block receives the segments of all warps, and one of
+// its warps merges those as well, so that it waits only once.
 #pragma once
 
 #include <type_traits>
@@ -10,7 +10,7 @@
 
 namespace catena::cuda::kernels {
 
-/// Of one warp, in its block's shared memory.
+/// Work of one warp, in its block's shared memory.
 template <class Sweep>
 class ShortTeams {
     using Segment = typename Sweep::Segment;
@@ -20,22 +20,26 @@ class ShortTeams {
     using Records = typename Team::Segments;
     static constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
     static constexpr int teams_of_warp = lanes_of_warp / Team::lanes;
-    /// Places of what a lane joins: its i-th body's, and after all bodies' what it holds.
+    /// Places in shared memory: one per body of each lane (body i of all lanes together), then one
+    /// per lane for its part.
     static constexpr int of_parts = dca::part_length * lanes_of_warp,
                          places = of_parts + lanes_of_warp;
-    static constexpr int idle = 0;  // one that nobody writes while warps join
+    static constexpr int idle = 0;  // a place that no thread writes while warps merge
+    /// Forces at a segment's first joint and at the joint after it.
     struct Ends {
         State first, next;
     };
 
   public:
-    /// Warps for each that joins, itself included: every other thread has a body, or two.
+    /// Number of warps per merging warp, itself included; each of the other threads has one or two
+    /// bodies.
     static constexpr int warps_for_each(int joining) {
         return 1 + (joining <= 2 ? dca::part_length : dca::part_length / 2);
     }
     static constexpr int most_threads =
         most_joining_warps * (1 + dca::part_length / 2) * lanes_of_warp;
-    /// Numbers of a block of so many warps that join, and of a launch of so many.
+    /// Size of a block's shared memory in doubles: `joining` merging warps per block, `warps` in
+    /// the launch.
     static constexpr std::size_t numbers(int joining, int warps) {
         return 2 + Records::size(warps) + of_top_words +
                static_cast<std::size_t>(joining) * of_group;
@@ -55,7 +59,8 @@ class ShortTeams {
           restricted_(
               reinterpret_cast<int*>(ends_.origin + PackedRecords<Ends>::size(lanes_of_warp))) {}
 
-    /// While the launch before may still go on: nothing is read here that a launch writes.
+    /// Prepares the launch while the previous one may still run. It reads nothing that a launch
+    /// writes.
     __device__ void open() {
         if (threadIdx.x == 0 && !is_alone(chain_))
             inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
@@ -68,6 +73,7 @@ class ShortTeams {
              warp += static_cast<int>(blockDim.x))
             at_top_[warp] = sweep_.s.restricted[warp * bodies_of_warp];
     }
+    /// Performs both passes and computes the accelerations of the thread's bodies.
     __device__ void turn() const {
         Kept const kept{records_, gains_, is_.lane};
         bool const joins = is_.beside < 0;
@@ -78,9 +84,10 @@ class ShortTeams {
             turning = sweep_.bodies.turning(body, Factorizer{});
         };
         if (!joins) {
+            // The body that is read last stays in the thread's registers.
             CATENA_NO_UNROLL
             for (int i = is_.beside + dca::part_length - is_.warps_beside; i >= 0;
-                 i -= is_.warps_beside) {  // the first stays with its thread
+                 i -= is_.warps_beside) {
                 if (!has_body(i)) continue;
                 read(i);
                 kept.put(i, sweep_.bodies.segment(body, turning));
@@ -117,27 +124,29 @@ class ShortTeams {
     using Biases = dca::SegmentBias<double, Sweep::K>;
     using Turning = typename BodiesOf<Sweep>::Turning;
     using Gains = PackedRecords<Square>;
-    /// Whole numbers, two a double.
+    /// Sizes of arrays of integers, two of which fit in a double.
     static constexpr std::size_t of_top_words = most_warps_of_chain / 2,
                                  of_bodies_words = of_parts / 2;
+    /// Size of the shared memory of a merging warp in doubles.
     static constexpr std::size_t of_group = Records::size(places) + Gains::size(of_parts) +
                                             PackedRecords<Ends>::size(lanes_of_warp) +
                                             of_bodies_words;
     static constexpr int steps_of_parts = dca::parts_of_run - 1,
                          steps_of_warp =
                              steps_of_parts + levels_above(lanes_of_warp / dca::parts_of_run);
+    /// Place of body i of a lane, and place of a lane's merged part.
     __device__ static int place_of(int lane, int i) { return i * lanes_of_warp + lane; }
     __device__ static int place_of_part(int lane) { return of_parts + lane; }
     __device__ bool has_body(int i) const { return is_.is_here(i, is_.first + i); }
 
-    /// What a lane's bodies keep: a segment, of those that have been joined what they pass on, and
-    /// the forces in the end.
+    /// Records of a lane's bodies: first a body's segment, after merges the terms that its joint
+    /// passes on, and finally the forces.
     struct Kept {
         Records records;
         Gains gains;
         int lane;
-        static constexpr int at_bias =
-            Team::at_inboard;  // a joint's own inboard matrix is not wanted on the way down
+        // The biases overwrite the joint's inboard matrix, which the outward pass does not need.
+        static constexpr int at_bias = Team::at_inboard;
         static_assert(numbers_of<Biases> <= numbers_of<Square>);
 
         template <class T>
@@ -159,10 +168,12 @@ class ShortTeams {
                 return Team::template record<T>(record);
             }
         }
+        /// Stores the gain of the joint before body i (force at it per force after the body).
         __device__ void put_gain(int i, Square const& gain) const {
             gains.store(place_of(lane, i), gain);
         }
         __device__ Square gain(int i) const { return gains.load(place_of(lane, i)); }
+        /// Stores the offset of the force at the joint before body i.
         __device__ void put_offset(int i, Directions const& offset) const {
             write(of(i) + at_bias, offset);
         }
@@ -179,13 +190,14 @@ class ShortTeams {
             for (int n = 0; n < numbers_of<T>; ++n) record[n] = values[n];
         }
     };
-    /// Two segments that a team joins, unless there is no second one: the joined one takes the place of the first, the node that of the other.
+    /// Two segments that a team merges, unless there is no second one. The merged segment
+    /// overwrites the first, the node the second.
     struct Pair {
         double *inboard, *outboard;
         dca::JointAt at;
         bool works;
     };
-    /// Every part's bodies, by the teams of all warps that have bodies.
+    /// Merges every part's bodies by the teams of all warps that hold bodies.
     __device__ void join_bodies() const {
         Team const team;
         CATENA_NO_UNROLL
@@ -209,7 +221,8 @@ class ShortTeams {
             }
         }
     }
-    /// In step `step` of the warp's, the i-th: parts of runs one after the other, then pairs.
+    /// Returns merge number i in step `step` of the warp: parts of runs one after the other, then
+    /// pairs.
     __device__ Pair of_lanes(int step, int i) const {
         int const level = step - steps_of_parts, apart = level < 0 ? step + 1 : dca::parts_of_run << level;
         int const inboard = level < 0 ? dca::parts_of_run * i : 2 * apart * i, outboard = inboard + apart;
@@ -218,7 +231,7 @@ class ShortTeams {
         return {records_.record(works ? place_of_part(inboard) : idle), records_.record(works ? place_of_part(outboard) : idle),
                 {is_.first_of(there), restricted_[place_of(there, 0)]}, works};
     }
-    /// Of all warps, pairs.
+    /// Returns merge number i of pairs of warps at a level of the top.
     __device__ Pair of_warps(int level, int i) const {
         int const inboard = i << (level + 1), outboard = inboard + (1 << level);
         bool const works = outboard < chain_.warps;
@@ -226,7 +239,8 @@ class ShortTeams {
         double* const nowhere = records_.record(idle);
         return {works ? top_.record(inboard) : nowhere, works ? top_.record(outboard) : nowhere, {there * bodies_of_warp, at_top_[there]}, works};
     }
-    /// pair(step, i) for i of [0, count(step)) by the warp's teams, step by step: each is looked for while the last ones join.
+    /// Merges pair(step, i) for i of [0, count(step)) by the warp's teams, step by step. Each pair
+    /// is looked up while the previous ones are merged.
     template <class Count, class Of>
     __device__ void join_steps(int steps, Count const& count, Of const& pair) const {
         int step = 0, i = own_;
@@ -241,12 +255,14 @@ class ShortTeams {
             __syncwarp();
         }
     }
+    /// Number of levels of the tree of warps.
     __device__ int levels_of_top() const {
         int levels = 0;
         while (1 << levels < chain_.warps) ++levels;
         return levels;
     }
-    /// What the warps do that join: each its own, and the block's first one what all of them hold.
+    /// Inward pass by the merging warps: each merges its own parts, and the block's first one
+    /// merges the segments of all warps.
     __device__ void climb() const {
         join_steps(
             steps_of_warp,
@@ -260,13 +276,15 @@ class ShortTeams {
             levels_of_top(), [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
             [&](int level, int i) { return of_warps(level, i); });
     }
-    /// And down: from the first joint to the warp, by its teams to runs and their parts, by every lane to its bodies.
+    /// Outward pass by the merging warps. It computes the forces at the first joint, at the warp,
+    /// at its runs and parts by teams, and at bodies by each lane.
     __device__ void go_down() const {
         Team const team;
         Ends ends{sweep_.first_force({0, at_top_[0]}, top_.load(0), Factorizer{}), State::zero()};
         CATENA_NO_UNROLL
         for (int level = levels_of_top() - 1; level >= 0; --level) go_down(team, ends, top_, 0, is_.warp, 1 << level, chain_.warps);
-        int const lanes = (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;  // that have bodies
+        // Number of lanes that have bodies.
+        int const lanes = (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;
         CATENA_NO_UNROLL
         for (int lane = own_ * dca::parts_of_run; lane < lanes_of_warp; lane += teams_of_warp * dca::parts_of_run) {
             Ends of_run = ends;
@@ -290,7 +308,8 @@ class ShortTeams {
             sweep_.forces_by_gains(count, kept, own.first, own.next,
                                    [&](int i, State const& inboard, State const& outboard) { kept.put(i, Ends{inboard, outboard}); });
     }
-    /// Of a pair that `own` is of, of things of which there are `count`, to its half of it.
+    /// Descends from the ends of a pair of `distance` items each to the ends of the half that
+    /// contains item `own`. `count`: number of items.
     __device__ static void go_down(Team const& team, Ends& ends, Records const& records, int place, int own, int distance, int count) {
         int const middle = (own & ~(2 * distance - 1)) + distance;
         bool const exists = middle < count;
@@ -302,14 +321,14 @@ class ShortTeams {
     OneChain const& chain_;
     Sweep const& sweep_;
     ShortThread is_;
-    int own_;  // team of the warp
+    int own_;  // team in the warp
     Inbox inbox_;
     Records top_;
     int* at_top_;  // directions that the joints before warps restrict
     Records records_;
     Gains gains_;
-    PackedRecords<Ends> ends_;  // of what lanes join
-    int* restricted_;  // and those of the warp's bodies
+    PackedRecords<Ends> ends_;  // forces at the ends of lanes' parts
+    int* restricted_;  // directions that the joints of the warp's bodies restrict
 };
 
 }  // namespace catena::cuda::kernels

@@ -1,5 +1,5 @@
-// Whole chains that a block of threads carries through a step in registers, in one launch: the Team
-// of dca/team_tree.hpp on a GPU.
+// Teams of threads that carry whole chains through a step in registers, in one launch. A block of
+// threads implements the Team of dca/team_tree.hpp on a GPU.
 #pragma once
 
 #include <algorithm>
@@ -9,22 +9,28 @@
 
 namespace catena::cuda {
 
+/// Assignment of chains to teams, in the GPU's memory.
 struct DeviceTeams {
+    /// Part of a run for every thread.
     dca::PartPlace const* place = nullptr;
-    std::int32_t const* levels = nullptr;  // of every block
+    /// Number of merge levels of every block.
+    std::int32_t const* levels = nullptr;
 };
 
 namespace kernels {
 
-constexpr int most_threads_of_team = 256;  // so many find registers for their beads
+/// Largest block whose threads have enough registers for their beads.
+constexpr int most_threads_of_team = 256;
 
-/// In a block's shared memory: a segment and a force a run, and two places a thread.
+/// Team of one block. Its shared memory holds a segment and a force per run, and two positions per
+/// thread.
 template <int K>
 class DeviceTeam {
     using Largest = dca::SegmentMatrix<double, K>;
     static constexpr int ends = 6;
 
   public:
+    /// Returns the bytes of shared memory of a block.
     static constexpr std::size_t shared_bytes(int of_threads) {
         auto const slots = static_cast<std::size_t>(of_threads / dca::parts_of_run);
         return sizeof(Largest) * slots +
@@ -32,22 +38,28 @@ class DeviceTeam {
     }
     __device__ explicit DeviceTeam(DeviceTeams const& teams)
         : teams_(teams), levels_(teams.levels[blockIdx.x]) {}
+    /// Returns the part of a run that this thread works on.
     __device__ dca::PartPlace place() const { return teams_.place[thread()]; }
+    /// Returns the number of that part within its run.
     __device__ int part() const { return static_cast<int>(threadIdx.x) % dca::parts_of_run; }
+    /// Returns the place of the thread's run among the block's runs.
     __device__ int slot() const { return static_cast<int>(threadIdx.x) / dca::parts_of_run; }
     __device__ int levels() const { return levels_; }
     __device__ void sync() const { __syncthreads(); }
 
+    /// Returns the value of the neighbouring thread of the same run, inboard.
     template <class T>
     __device__ T from_inboard(T const& value) const {
         return exchanged(
             value, [](double v) { return __shfl_up_sync(0xffffffffu, v, 1, dca::parts_of_run); });
     }
+    /// Returns the value of the neighbouring thread of the same run, outboard.
     template <class T>
     __device__ T from_outboard(T const& value) const {
         return exchanged(
             value, [](double v) { return __shfl_down_sync(0xffffffffu, v, 1, dca::parts_of_run); });
     }
+    /// Stores a run's segment in shared memory.
     template <class Segment>
     __device__ void put(int slot, Segment const& segment) const {
         store(shared_numbers, slots(), slot, segment);
@@ -63,9 +75,11 @@ class DeviceTeam {
     __device__ Vector<double, K> force(int slot) const {
         return load<Vector<double, K>>(forces(), slots(), slot);
     }
+    /// Returns the value of the previous thread of the block. All threads call it.
     __device__ Vec3 from_before(Vec3 const& value) const {
         return passed(last_places(), value, threadIdx.x == 0 ? 0 : -1);
     }
+    /// Returns the value of the next thread of the block. All threads call it.
     __device__ Vec3 from_after(Vec3 const& value) const {
         return passed(first_places(), value, threadIdx.x + 1 == blockDim.x ? 0 : 1);
     }
@@ -80,7 +94,7 @@ class DeviceTeam {
         for (double& v : numbers.data) v = exchange(v);
         return __builtin_bit_cast(T, numbers);
     }
-    /// Number after number, so that neighbours do not meet in a bank.
+    /// Stores number by number with a pitch, so that neighbouring threads access different banks.
     template <class T>
     __device__ static void store(double* origin, int pitch, int at, T const& value) {
         auto const numbers = __builtin_bit_cast(Numbers<T>, value);
@@ -94,6 +108,7 @@ class DeviceTeam {
         for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n) numbers[n] = origin[n * pitch + at];
         return __builtin_bit_cast(T, numbers);
     }
+    /// Exchanges a vector with the thread at offset `from` through shared memory.
     __device__ Vec3 passed(double* places, Vec3 const& value, int from) const {
         auto const pitch = static_cast<int>(blockDim.x), own = static_cast<int>(threadIdx.x);
         store(places, pitch, own, value);
@@ -108,6 +123,7 @@ class DeviceTeam {
     int levels_;
 };
 
+/// Calls action(team) in every block.
 template <class Action>
 __global__ void __launch_bounds__(most_threads_of_team) each_team(DeviceTeams teams, Action action) {
     action(DeviceTeam<Action::K>(teams));
@@ -115,6 +131,7 @@ __global__ void __launch_bounds__(most_threads_of_team) each_team(DeviceTeams te
 
 }  // namespace kernels
 
+/// Plan of the teams of a group, with its lists on the GPU.
 class DeviceBlocks {
   public:
     static constexpr std::int64_t most_runs = kernels::most_threads_of_team / dca::parts_of_run;
@@ -132,7 +149,8 @@ class DeviceBlocks {
     DeviceTeams teams() const { return {place_.data(), levels_.data()}; }
 
   private:
-    /// One wave of blocks where that is enough: as many registers as they need let no second one be on a multiprocessor.
+    /// Returns the number of runs per block: one wave of blocks if that suffices. The registers of
+    /// a block allow only one block per multiprocessor.
     static std::int64_t runs_of_block(ChainGroup const& group) {
         int device = 0, multiprocessors = 0;
         check(cudaGetDevice(&device), "say which it is");

@@ -1,4 +1,4 @@
-// Views and numbers of the host on their way to a device and back.
+// Transfer of views and numbers between the host and a device, for levels that run on the GPU.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -6,9 +6,10 @@
 
 namespace catena::cuda {
 
-/// Keeps a device's copy of whatever a solver reads and writes.
+/// Device copies of everything that a solver of levels reads and writes.
 class DeviceCrossing {
   public:
+    /// Allocates fields of the size of the group; those that its kind of chain lacks are empty.
     DeviceCrossing(ChainGroup const& group, DeviceSpace const& space)
         : space_(space),
           direction_(group.beads || group.linked ? group.size : 0),
@@ -26,6 +27,7 @@ class DeviceCrossing {
           joint_force_(group.size + 1, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {}
 
+    /// Enqueues the copy of the configuration and returns the device's views.
     ConfigurationView take(ConfigurationView const& c) const {
         ConfigurationView device;
         device.direction = up(c.direction, direction_);
@@ -35,6 +37,7 @@ class DeviceCrossing {
         device.axes2 = up(c.axes2, moving_axes2_);
         return device;
     }
+    /// Enqueues the copy of the loads and returns the device's views.
     LoadsView take(LoadsView const& l) const {
         LoadsView device;
         device.torque = up(l.torque, torque_);
@@ -45,12 +48,12 @@ class DeviceCrossing {
         device.gyroscopic = l.gyroscopic;
         return device;
     }
-    /// The device's places for what the host wants.
+    /// Returns the device's views of the results that the host requests.
     AccelerationsView wanted(AccelerationsView const& host) const {
         return {place(host.alpha, alpha_), place(host.acceleration, acceleration_),
                 place(host.joint_force, joint_force_), place(host.tip_force, tip_force_)};
     }
-    /// What was computed there, into the host's views; done when it returns.
+    /// Copies the results to the host's views; complete when the call returns.
     void fetch(AccelerationsView const& host) const {
         alpha_.download(host.alpha, space_.stream());
         acceleration_.download(host.acceleration, space_.stream());
@@ -59,12 +62,14 @@ class DeviceCrossing {
         space_.wait();
     }
 
+    /// Copies numbers to the host; complete when the call returns.
     void download(Buffer<double> const& from, std::vector<double>& to) const {
         check(cudaMemcpyAsync(to.data(), from.data(), to.size() * sizeof(double),
                               cudaMemcpyDeviceToHost, space_.stream()),
               "give back items");
         space_.wait();
     }
+    /// Enqueues a copy of numbers from the host.
     void upload(std::vector<double> const& from, Buffer<double> const& to) const {
         check(cudaMemcpyAsync(to.data(), from.data(), from.size() * sizeof(double),
                               cudaMemcpyHostToDevice, space_.stream()),
@@ -72,6 +77,7 @@ class DeviceCrossing {
     }
 
   private:
+    /// Enqueues the copy of one field; returns an empty view if the host has none.
     template <int D>
     ConstView<D> up(ConstView<D> const& host, DeviceField<D> const& device) const {
         device.upload(host, space_.stream());
@@ -81,18 +87,24 @@ class DeviceCrossing {
         device.upload(host, space_.stream());
         return host ? ConstDirectionsView(device.view()) : ConstDirectionsView{};
     }
+    /// Returns the device's view if the host requests the result.
     template <class HostView, class Device>
     static HostView place(HostView const& host, Device const& device) {
         return host.origin ? device.view() : HostView{};
     }
 
+    /// Space whose stream performs the copies.
     DeviceSpace space_;
+    /// Configuration: directions of links, rotations, and moving handles of universal and screw
+    /// joints.
     DeviceField<3> direction_, tip_direction_;
     DeviceField<4> rotation_;
     DeviceField<3> moving_r2_;
     DeviceField<6> moving_axes2_;
+    /// Loads: torques, forces, angular velocities, and velocity terms of joints and tips.
     DeviceField<3> torque_, force_, omega_;
     DeviceDirections bias_, tip_bias_;
+    /// Results: accelerations of bodies, and forces at joints and tips.
     DeviceField<3> alpha_, acceleration_;
     DeviceDirections joint_force_, tip_force_;
 };

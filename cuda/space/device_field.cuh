@@ -1,5 +1,5 @@
-// Fields on a GPU: BasicField and DirectionsField of the host, in the order of gpu_order. The
-// host's order is made and undone on the device.
+// Fields on a GPU: counterparts of the host's BasicField and DirectionsField, in the order
+// gpu_order. Kernels on the device convert between the host's order and this one.
 #pragma once
 
 #include "cuda/device/owners.hpp"
@@ -9,7 +9,9 @@ namespace catena::cuda {
 
 namespace kernels {
 
-/// Bodies begin to end - 1; `host` and `device`: where body 0 of the first column stands.
+/// Copies the columns of bodies `begin` to `end` - 1 from the host's order to gpu_order, one grid
+/// row per column. `host` and `device` are the addresses of body 0 in the first column; pitches are
+/// in numbers.
 static __global__ void to_gpu_order(double const* host, std::int64_t host_pitch, double* device,
                                     std::int64_t pitch, std::int64_t begin, std::int64_t end) {
     std::int64_t const k = begin + static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
@@ -17,6 +19,7 @@ static __global__ void to_gpu_order(double const* host, std::int64_t host_pitch,
         device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes] =
             host[blockIdx.y * host_pitch + k];
 }
+/// Copies columns in the opposite direction.
 static __global__ void to_host_order(double const* device, std::int64_t pitch, double* host,
                                      std::int64_t host_pitch, std::int64_t begin,
                                      std::int64_t end) {
@@ -28,7 +31,7 @@ static __global__ void to_host_order(double const* device, std::int64_t pitch, d
 
 }  // namespace kernels
 
-/// Memory on a stream, for as long as the object is there.
+/// Temporary memory allocated and freed in the order of a stream; `numbers` doubles.
 class Scratch {
   public:
     Scratch(std::int64_t numbers, cudaStream_t stream) : stream_(stream) {
@@ -47,7 +50,7 @@ class Scratch {
     cudaStream_t stream_;
 };
 
-/// Columns of numbers, one for each of the bodies `first_body` to `first_body + count - 1`.
+/// Columns of doubles for bodies `first_body` to `first_body + count - 1`, in gpu_order.
 class DeviceColumns {
   public:
     DeviceColumns() = default;
@@ -57,13 +60,12 @@ class DeviceColumns {
           columns_(columns),
           data_(static_cast<std::size_t>(
               count > 0 ? pitch() + gpu_order::padded(first_body + count) * columns : 0)) {}
-    double* origin() const {
-        return data_.data() ? data_.data() + pitch() : nullptr;
-    }  // the halo's row comes before
+    /// Address of body 0 in the first column; null without memory. The row of the halo precedes it.
+    double* origin() const { return data_.data() ? data_.data() + pitch() : nullptr; }
     std::int64_t pitch() const { return gpu_order::pitch(columns_); }
     int columns() const { return columns_; }
 
-    /// `host`: the number of body 0 in the first column.
+    /// Enqueues the copy from the host. `host` is the address of body 0 in the first column.
     void upload(double const* host, std::int64_t host_pitch, cudaStream_t stream) const {
         if (!host || !origin()) return;
         Scratch const plain(count_ * columns_, stream);
@@ -73,6 +75,7 @@ class DeviceColumns {
             plain.data() - first_, count_, origin(), pitch(), first_, first_ + count_);
         check(cudaGetLastError(), "start a kernel");
     }
+    /// Enqueues the copy to the host.
     void download(double* host, std::int64_t host_pitch, cudaStream_t stream) const {
         if (!host || !origin()) return;
         Scratch const plain(count_ * columns_, stream);
@@ -94,7 +97,7 @@ class DeviceColumns {
     Buffer<double> data_;
 };
 
-/// D numbers for each of `size` bodies and one halo body on either side.
+/// Field of D numbers for each of `size` bodies and for one halo body on either side.
 template <int D>
 class DeviceField {
   public:
@@ -105,7 +108,7 @@ class DeviceField {
         return columns_.origin() ? View<D>{columns_.origin(), columns_.pitch(), size_} : View<D>{};
     }
     std::int64_t size() const { return size_; }
-    /// With its halo; a view without origin leaves what is there.
+    /// Copies a host's view with its halo. A view without origin leaves the field unchanged.
     void upload(ConstView<D> host, cudaStream_t stream) const {
         columns_.upload(host.origin, host.pitch, stream);
     }
@@ -118,6 +121,7 @@ class DeviceField {
     DeviceColumns columns_;
 };
 
+/// Field of `directions` numbers per body, known at run time; without a halo.
 class DeviceDirections {
   public:
     DeviceDirections() = default;

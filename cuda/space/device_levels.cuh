@@ -1,4 +1,5 @@
-// Levels of the tree on a device, compiled one by one.
+// Construction of the pairwise tree's levels on a device; each kind of handles is compiled in a
+// file of its own.
 #pragma once
 
 #include "cuda/space/device_crossing.cuh"
@@ -11,6 +12,7 @@ std::unique_ptr<dca::LevelPart> make_absolute_levels(ChainGroup const&, dca::Lev
 std::unique_ptr<dca::LevelPart> make_articulated_levels(ChainGroup const&, dca::LevelWork const&);
 std::unique_ptr<dca::LevelPart> make_joint_levels(ChainGroup const&, dca::LevelWork const&);
 
+/// Makes the levels for a leaf type; used with with_absolute_leaf() and its siblings.
 struct MakeLevels {
     ChainGroup const& group;
     dca::LevelWork const& work;

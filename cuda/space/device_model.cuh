@@ -1,4 +1,4 @@
-// A group's model on a device.
+// Constant properties of a group's bodies and joints on a device.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -7,7 +7,7 @@
 
 namespace catena::cuda {
 
-/// A copy of a host's field that does not change.
+/// Copy of a constant field of the host.
 template <int D>
 class FixedField {
   public:
@@ -15,14 +15,16 @@ class FixedField {
         field_.upload(host.view(), nullptr);
         check(cudaStreamSynchronize(nullptr), "take the model");
     }
+    /// Returns the view of all bodies, with the halo.
     ConstView<D> view() const { return field_.view(); }
 
   private:
     DeviceField<D> field_;
 };
 
-/// Of bodies that are all alike one tile, and a pitch of 0: its first row is every row of bodies.
-/// The halo then is as any body, not as on the host.
+/// Copy of a constant field that stores a single tile, with pitch 0, if all bodies are alike. Every
+/// row of bodies then maps to the first row of the tile. The halo equals any body in that case,
+/// unlike on the host.
 template <int D>
 class AlikeField {
   public:
@@ -44,6 +46,8 @@ class AlikeField {
     DeviceField<D> field_;
 };
 
+/// Copy of a group's model: masses, inertias, handles, axes and joint types.
+/// ChainGroup describes each field; units are those of the scene (nm, ps, amu unless `units: si`).
 class DeviceModel {
   public:
     explicit DeviceModel(ChainGroup const& group)
@@ -63,6 +67,7 @@ class DeviceModel {
           mass_(group.mass_of_sweeps()),
           inertia_(group.inertia_of_sweeps()) {}
 
+    /// Returns the addresses of the model in the form that leaves read.
     GroupView view() const {
         return {size_,
                 is_first_.data(),
@@ -79,18 +84,27 @@ class DeviceModel {
                 mass_.view(),
                 inertia_.view()};
     }
+    /// Returns the number of restricted directions of every joint.
     std::uint8_t const* restricted() const { return restricted_.data(); }
 
   private:
     std::int64_t size_;
+    /// Flags of chains' first and last bodies, and restricted directions of joints.
     Buffer<std::uint8_t> is_first_, is_last_, restricted_;
+    /// Index of the jointed tip of a last body, and screw of each jointed tip.
     Buffer<std::int32_t> jointed_tip_;
     Buffer<Vec3> tip_screw_;
+    /// Inverse masses, and inverse inertias about the centre of mass in body axes (lower
+    /// triangles).
     AlikeField<1> inverse_mass_;
     AlikeField<6> inverse_inertia_;
+    /// Vectors from the centre of mass to handles 1 and 2 in body axes.
     AlikeField<3> r1_, r2_;
+    /// Axes of the inboard joint in its meeting frame, and of the outboard joint in body axes.
     AlikeField<6> axes1_, axes2_;
+    /// Parameters {c, s, rate} of prismatic and helical joints (ChainGroup::screw).
     FixedField<3> screw_;
+    /// Masses and inertias, only for articulated handles and runs on revolute joints.
     AlikeField<1> mass_;
     AlikeField<6> inertia_;
 };

@@ -1,4 +1,4 @@
-// Records on a GPU.
+// Arrays of records (segments, joints, forces) in a GPU's memory.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace catena::cuda {
 
-/// Zero at first.
+/// Array of `count` records, initially zero; `order` is their layout (math/records.hpp).
 template <class T, dca::Order order>
 class DeviceRecords {
   public:

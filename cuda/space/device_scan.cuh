@@ -1,5 +1,5 @@
-// Scans along chains on a GPU: a launch a stage upwards, a launch a stage downwards, one for both
-// at the top.
+// Scans along chains on a GPU: one launch per stage inwards and one per stage outwards. A single
+// launch does both passes of the top stage.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,10 @@
 
 namespace catena::cuda {
 
-/// HostSpace::ScanTree says what it promises.
+/// Tree of scans; it behaves as HostSpace::ScanTree specifies.
 class DeviceScan {
   public:
+    /// Plans the stages and copies them to the GPU.
     DeviceScan(std::vector<dca::Run> const& runs,
                std::vector<std::vector<dca::Merge>> const& levels,
                std::vector<dca::Root> const& roots, std::int64_t slots)
@@ -24,32 +25,38 @@ class DeviceScan {
              dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
             stages_.emplace_back(stage, runs_);
     }
+    /// Performs the inward pass.
     template <class Scan>
     void climb(Scan const& scan, cudaStream_t stream) const {
         walk(stream).climb(scan);
     }
+    /// Performs the outward pass.
     template <class Scan>
     void descend(Scan const& scan, cudaStream_t stream) const {
         walk(stream).descend(scan);
     }
+    /// Performs both passes.
     template <class Scan>
     void climb_and_descend(Scan const& scan, cudaStream_t stream) const {
         walk(stream).climb_and_descend(scan);
     }
-    /// As ScanWalk::at_once.
+    /// Performs both passes and an action in one launch, if possible; see ScanWalk::at_once.
     template <class Scan, class Action>
     bool at_once(Scan const& scan, std::int64_t count, Action const& action,
                  cudaStream_t stream) const {
         return walk(stream).at_once(scan, count, action);
     }
-    /// Whether at_once() would, or the other turn_shared(), and goes_by_steps.
+    /// True if at_once(), or turn_shared() with an action, would succeed for a scan with
+    /// goes_by_steps.
     bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
-    /// As ScanWalk::turn_shared.
+    /// Performs both passes with an exchange between ranks in one launch; see
+    /// ScanWalk::turn_shared.
     template <class Scan, class Numbers>
     bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                      DeviceScan const& top, cudaStream_t stream) const {
         return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
     }
+    /// Performs the same, followed by action(k) for k < count.
     template <class Scan, class Numbers, class Action>
     bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                      DeviceScan const& top, std::int64_t count, Action const& action,
@@ -58,6 +65,7 @@ class DeviceScan {
     }
 
   private:
+    /// A stage's lists in the GPU's memory.
     struct Stage {
         Stage(dca::ScanStage const& stage, RunsView const& runs)
             : slot(stage.slot),
@@ -74,6 +82,7 @@ class DeviceScan {
                    tops.data(),
                    block.data(),
                    level_end.data()} {}
+        /// Lists of items, merges, complete segments, blocks and ends of levels (dca::ScanStage).
         Buffer<std::int32_t> slot;
         Buffer<dca::ScanMerge> merges;
         Buffer<dca::ScanTop> tops;
@@ -81,7 +90,7 @@ class DeviceScan {
         Buffer<std::int32_t> level_end;
         kernels::DeviceScanStage view;
     };
-    /// Of ScanWalk.
+    /// Launches that ScanWalk requests; see there.
     struct Launches {
         DeviceScan const& tree;
         cudaStream_t stream;
@@ -100,6 +109,7 @@ class DeviceScan {
         void descend(std::size_t i, Scan const& scan) const {
             launch(kernels::descend_scan<Scan>, i, scan);
         }
+        /// Launches both passes and the action by one cluster; returns false if that is impossible.
         template <class Scan, class Action>
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
             kernels::DeviceScanStage const& stage = tree.stages_.front().view;
@@ -113,6 +123,7 @@ class DeviceScan {
                          scan, count, action);
             return true;
         }
+        /// Launches both passes of the last stage with an exchange and the passes of `top`.
         template <class Scan, class Numbers>
         void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                          Launches const& top) const {
@@ -125,6 +136,7 @@ class DeviceScan {
                          exchange.next(), scan);
             ++scans_shared;
         }
+        /// Launches the same and the action by one cluster; returns false if that is impossible.
         template <class Scan, class Numbers, class Action>
         bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                               Launches const& top, std::int64_t count, Action const& action) const {
@@ -145,6 +157,7 @@ class DeviceScan {
         }
 
       private:
+        /// Returns the bytes of shared memory of a stage's block.
         template <class Scan>
         static std::size_t bytes(kernels::DeviceScanStage const& stage) {
             return sizeof(double) *
@@ -162,7 +175,7 @@ class DeviceScan {
         return ScanWalk<Launches>({*this, stream});
     }
 
-    /// Whose blocks have so many bytes of shared memory.
+    /// True if there are clusters whose blocks can have so many bytes of shared memory.
     bool has_cluster_of(std::size_t shared_bytes) const {
         return has_clusters_ && shared_bytes <= most_shared_bytes_;
     }

@@ -1,3 +1,4 @@
+// Selects the tree solver by the group's handles, axes and number of directions.
 #include "cuda/space/device_solver.cuh"
 
 namespace catena::cuda {

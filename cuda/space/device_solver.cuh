@@ -1,4 +1,4 @@
-// The tree solver whose views are of a device.
+// Construction of tree solvers that work on a device's views.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace catena::cuda {
 
-/// For any group. The group and the communicator must outlive it.
+/// Makes the solver for any group. The group and the communicator must outlive it.
 std::unique_ptr<ChainSolver> make_device_solver(ChainGroup const&, DeviceSpace const&,
                                                 Communicator const&);
 
-// Its parts, compiled one by one.
+// Solvers by kind of handles; each is compiled in a file of its own to limit compile time.
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, DeviceSpace const&,
                                               Communicator const&);
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, DeviceSpace const&,
@@ -23,6 +23,7 @@ template <int K, bool sliding>
 std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const&, DeviceSpace const&,
                                                Communicator const&);
 
+/// Makes the tree solver for one leaf type.
 template <class Leaf>
 std::unique_ptr<ChainSolver> make_solver(ChainGroup const& group, DeviceSpace const& space,
                                          Communicator const& communicator) {

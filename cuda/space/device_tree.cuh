@@ -1,4 +1,4 @@
-// Trees of chains on a GPU: which launches their sweeps take, and with how many threads.
+// Trees of chains on a GPU: plans the launches of their sweeps and the numbers of threads.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,10 @@
 
 namespace catena::cuda {
 
-/// HostSpace::Tree says what it promises.
+/// Tree of sweeps; it behaves as HostSpace::Tree specifies.
 class DeviceTree {
+    /// Plans the stages, and copies runs and stages to the GPU. `slots`: number of segments;
+    /// `restricted`: number of restricted directions of every joint.
   public:
     DeviceTree(std::vector<dca::Run> const& runs,
                std::vector<std::vector<dca::Merge>> const& levels,
@@ -48,7 +50,7 @@ class DeviceTree {
                                  most_shared_bytes_);
         };
         short_ = one_chain(dca::part_length);
-        // Where stages take the runs as well, there are fewer launches.
+        // If stages contain the runs as well, fewer launches are needed without groups.
         if (runs_apart_ && !by_groups.groups.empty()) above_groups_ = one_chain(bodies_of_group);
         if (stages_above_groups_ || above_groups_) {
             group_list_ = Buffer<dca::Run>(by_groups.groups);
@@ -56,14 +58,17 @@ class DeviceTree {
         }
     }
 
+    /// Performs the inward pass.
     template <class Sweep>
     void climb(Sweep const& sweep, cudaStream_t stream) const {
         walk(stream).climb(sweep);
     }
+    /// Performs the outward pass.
     template <class Sweep>
     void descend(Sweep const& sweep, cudaStream_t stream) const {
         walk(stream).descend(sweep);
     }
+    /// Performs both passes, in a single launch for a short chain.
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep, cudaStream_t stream) const {
         if (stages_.empty()) return;
@@ -77,7 +82,7 @@ class DeviceTree {
             }
         walk(stream).climb_and_descend(sweep);
     }
-    /// As StageWalk::turn_shared.
+    /// Performs both passes of a tree shared by ranks in one launch; see StageWalk::turn_shared.
     template <class Sweep, class Numbers>
     bool turn_shared(Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
                      DeviceTree const& top, cudaStream_t stream) const {
@@ -85,6 +90,7 @@ class DeviceTree {
     }
 
   private:
+    /// A stage's lists and kept records in the GPU's memory.
     struct Stage {
         Stage(dca::Stage const& stage, dca::StagesTogether const& together, RunsView const& runs,
               dca::StageSizes const& sizes, dca::StageRecords const& records)
@@ -100,17 +106,21 @@ class DeviceTree {
                    roots.data(),
                    kept.data(),
                    stage.gathers} {}
+        /// Encoded lists of all blocks (tree/stage_encoding.hpp).
         Buffer<dca::StageWord> words;
         Buffer<dca::StageRoot> roots;
+        /// Places that blocks keep between the passes.
         Buffer<double> kept;
+        /// Planned threads per block.
         int threads;
         kernels::DeviceStage view;
     };
+    /// Returns the sizes of stages for the present GPU and stores its shared memory per block.
     static dca::StageSizes sizes_here(dca::StageRecords const& records, int& shared_bytes) {
         shared_bytes = static_cast<int>(most_shared_bytes());
         return dca::stage_sizes(records, shared_bytes, blocks_at_once());
     }
-    /// Of StageWalk.
+    /// Launches that StageWalk requests; see there.
     struct Launches {
         DeviceTree const& tree;
         cudaStream_t stream;
@@ -136,15 +146,18 @@ class DeviceTree {
                            sweep),
                    tree.stages_[i].view, sweep);
         }
+        /// True if stage `first` and the one above it run at once, or if it is the last stage.
         template <class Sweep>
         bool can_turn(std::size_t first, Sweep const& sweep) const {
             return first + 1 == stages() ||
                    runs_at_once<kernels::NoExchange>(first, sweep, nullptr);
         }
+        /// Launches both passes of stage `first` and of the one above it.
         template <class Sweep>
         void turn(std::size_t first, Sweep const& sweep) const {
             turn(first, sweep, kernels::NoExchange{}, nullptr);
         }
+        /// True if both passes fit in a launch that also contains an exchange and `top`.
         template <class Sweep, class Numbers>
         bool can_turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const&,
                       Launches const& top) const {
@@ -153,12 +166,14 @@ class DeviceTree {
                 return runs_at_once<kernels::ExchangeByBlock<Numbers>>(first, sweep, &above);
             return grid_of_turn(first, sweep, &above).shared_bytes <= shared_bytes();
         }
+        /// Launches both passes with an exchange and the passes of `top`.
         template <class Sweep, class Numbers>
         void turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
                   Launches const& top) const {
             turn(first, sweep, exchange.next(), &top.tree.stages_.back());
             ++turns_shared;
         }
+        /// Launches the inward pass of the runs, by teams of lanes if there are few runs.
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
@@ -170,6 +185,7 @@ class DeviceTree {
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, shared_bytes());
             launch(kernels::climb_runs<Sweep>, grid, sweep);
         }
+        /// Launches the outward pass of the runs, by teams of lanes if there are few runs.
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
@@ -182,20 +198,24 @@ class DeviceTree {
             launch(kernels::descend_runs<Sweep>, grid, sweep);
         }
         bool stages_above_groups() const { return tree.stages_above_groups_; }
+        /// Launches the inward pass of the runs and of the levels within groups.
         template <class Sweep>
         void climb_groups(Sweep const& sweep) const {
             launch(kernels::climb_groups<Sweep>,
                    kernels::grid_of_climb<Sweep>(tree.runs_.count, shared_bytes()), sweep);
         }
+        /// Launches the outward pass of the levels within groups and of the runs.
         template <class Sweep>
         void descend_groups(Sweep const& sweep) const {
             launch(kernels::descend_groups<Sweep>,
                    kernels::grid_of_descent<Sweep>(tree.runs_.count, shared_bytes()), sweep);
         }
+        /// True if one cluster can hold the tree above the groups.
         template <class Sweep>
         bool can_turn_groups() const {
             return grid_above_groups<Sweep>().blocks > 0;
         }
+        /// Launches both passes of the tree above the groups.
         template <class Sweep>
         void turn_groups(Sweep const& sweep) const {
             tree.above_groups_.launch(grid_above_groups<Sweep>(), stream,
@@ -204,13 +224,17 @@ class DeviceTree {
         }
 
       private:
+        /// Returns the largest shared memory of a block, bytes.
         std::size_t shared_bytes() const {
             return static_cast<std::size_t>(tree.most_shared_bytes_);
-        }  // of a block at most
+        }
+        /// Returns the cluster's grid for the tree above groups; it has no blocks if that is not
+        /// possible.
         template <class Sweep>
         Grid const& grid_above_groups() const {
             return tree.above_groups_.grid<kernels::GroupLanes<Sweep>>(kernels::turn_groups<Sweep>);
         }
+        /// Returns the grid of one stage.
         template <class Sweep>
         static Grid grid_of(Stage const& stage, int planned_threads, int most_threads,
                             Sweep const&) {
@@ -219,7 +243,7 @@ class DeviceTree {
                     sizeof(double) * static_cast<std::size_t>(
                                          kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
         }
-        /// `top`: null where nothing is above.
+        /// Launches both passes of the last stages. `top`: null if there is no stage above.
         template <class Sweep, class Exchange>
         void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
                   Stage const* top) const {
@@ -230,13 +254,15 @@ class DeviceTree {
                    together ? tree.turn_.letters() : kernels::TopLaunchLetters{}, exchange, sweep);
             if (together) ++turns_together;
         }
-        /// While it waits for other ranks, there is room for what they meet in besides
-        /// (arrived_beads.cu).
+        /// True if all blocks of the launch run at once. While the launch waits for other ranks,
+        /// one multiprocessor remains for the kernel in which they meet (arrived_beads.cu).
         template <class Exchange, class Sweep>
         bool runs_at_once(std::size_t first, Sweep const& sweep, Stage const* top) const {
             return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>,
                                                  grid_of_turn(first, sweep, top), top ? 1 : 0);
         }
+        /// Returns the grid of a launch that performs both passes of the last stages, and of `top`
+        /// if not null.
         template <class Sweep>
         Grid grid_of_turn(std::size_t first, Sweep const& sweep, Stage const* top) const {
             Stage const &lower = tree.stages_[first], &upper = tree.stages_.back();
@@ -254,12 +280,14 @@ class DeviceTree {
             grid.all_at_once = true;
             return grid;
         }
+        /// Launches a kernel after permitting its shared memory.
         template <class... Parameters>
         void launch(void (*kernel)(Parameters...), Grid const& grid,
                     std::type_identity_t<Parameters> const&... arguments) const {
             allow_shared(kernel, grid.shared_bytes);
             cuda::launch(grid, stream, kernel, arguments...);
         }
+        /// Launches a kernel over groups of runs and counts the launch.
         template <class Sweep>
         void launch(void (*kernel)(RunsView, GroupsView, Sweep), kernels::RunsGrid const& grid,
                     Sweep const& sweep) const {
@@ -267,6 +295,7 @@ class DeviceTree {
                    tree.groups_, sweep);
             ++launches_by_groups;
         }
+        /// Launches a kernel over runs.
         template <class Sweep>
         void launch(void (*kernel)(RunsView, Sweep), kernels::RunsGrid const& grid,
                     Sweep const& sweep) const {
@@ -277,15 +306,18 @@ class DeviceTree {
         return StageWalk<Launches>({*this, stream});
     }
 
-    int most_shared_bytes_ = 0;  // of a block
+    int most_shared_bytes_ = 0;  // shared memory per block, bytes
+    /// Runs of the tree: their list and its view.
     Buffer<dca::Run> run_list_;
     RunsView runs_;
     Buffer<dca::Run> group_list_;
-    GroupsView groups_;  // none where no launch goes by them
+    GroupsView groups_;  // empty if no launch uses groups
     bool stages_above_groups_ = false;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
+    /// Launch of the last two stages at once; empty if that is not possible.
     TopLaunch turn_;
+    /// Launches of one cluster: for a whole short chain, and for the tree above groups.
     ClusterLaunch short_, above_groups_;
 };
 

@@ -1,5 +1,5 @@
-// What runs on a GPU for DeviceSpace: loops, answers, and a sweep's stages. A launcher indexes,
-// loads, calls and stores; the mathematics is in dca/.
+// Kernels of DeviceSpace: loops, queries and the stages of sweeps. A kernel indexes, loads, calls
+// and stores; the mathematics is in dca/.
 #pragma once
 
 #include "cuda/space/device_field.cuh"
@@ -9,24 +9,27 @@ namespace catena::cuda {
 
 namespace kernels {
 
-/// Neighbouring threads at neighbouring places.
+/// Calls action(k) for bodies k of [0, count), in gpu_order: neighbouring threads access
+/// neighbouring addresses.
 template <class Action>
 __global__ void for_each(std::int64_t count, Action action) {
     wait_for_launch();
     if (std::int64_t const k = gpu_order::body(thread()); k < count) action(k);
 }
+/// Calls action(item) for each of `count` items.
 template <class Item, class Action>
 __global__ void over(Item const* items, std::int64_t count, Action action) {
     wait_for_launch();
     if (std::int64_t const i = thread(); i < count) action(items[i]);
 }
 
-/// Item i: number i of a body, between a field and memory that the host reaches or gave.
+/// Copies number i of a body, for item i, from a field to memory that the host can read.
 struct TakeBody {
     double const* from;
     double* to;
     __device__ void operator()(std::int64_t i) const { to[i] = from[i * gpu_order::lanes]; }
 };
+/// Writes number i of a body, for item i, from a value given by the host to a field.
 template <int D>
 struct PutBody {
     double* to;
@@ -36,7 +39,8 @@ struct PutBody {
     }
 };
 
-/// Doubles from 0 on have the order of their bits, and a NaN is above them all.
+/// Finds the largest |value(i)|, i < count, as the bits of a double. Non-negative doubles are
+/// ordered like their bits, and a NaN compares above all of them.
 template <class Value>
 __global__ void largest(std::int64_t count, unsigned long long* found, Value value) {
     wait_for_launch();

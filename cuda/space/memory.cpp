@@ -1,3 +1,4 @@
+// Implements the memory estimate by constructing solvers and dynamics over MemoryEstimator.
 #include "cuda/space/memory.hpp"
 
 #include <fmt/format.h>
@@ -17,8 +18,8 @@ namespace {
 
 using namespace dca;
 
-/// Where runs float a tree's memory depends on the directions alone: one leaf stands for all that
-/// have so many.
+/// Calls use(Of<Leaf>) with one leaf type per number of directions. For floating runs the tree's
+/// memory depends on the number of directions only, so that one leaf type represents all.
 template <class Use>
 auto with_directions(ChainGroup const& group, Use const& use) {
     switch (group.directions) {
@@ -37,12 +38,14 @@ auto with_directions(ChainGroup const& group, Use const& use) {
     }
 }
 
+/// Calls use(Of<Leaf>) with a leaf type that needs the same memory as the group's.
 template <class Use>
 auto with_leaf(ChainGroup const& group, Use const& use) {
     return group.handles == Handles::articulated ? use(Of<ArticulatedLeaf<false>>{})
                                                  : with_directions(group, use);
 }
 
+/// Makes the tree solver of the group over MemoryEstimator.
 std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, Communicator const& communicator) {
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
         return std::make_unique<TreeSolver<typename decltype(leaf)::type, MemoryEstimator>>(
@@ -51,8 +54,8 @@ std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, Communicator const
     return with_leaf(group, make);
 }
 
-/// The lowest levels, with what crosses where they are cut: at most the bodies' segments, forces
-/// and joints.
+/// Counts the memory of the tree's lowest levels and of the items that cross the cut between GPU
+/// and host. At most these are the bodies' segments, forces and joints.
 void count_levels(ChainGroup const& group, Scene const& scene) {
     GpuLevels const levels = scene.solver.levels_on_gpu();
     Schedule const& s = group.schedule;
@@ -76,11 +79,12 @@ void count_levels(ChainGroup const& group, Scene const& scene) {
     });
 }
 
+/// Counts the memory of the group's solver and dynamics.
 void count_group(ChainGroup const& group, Scene const& scene, Backend backend,
                  Communicator const& communicator) {
     if (backend == Backend::cuda_levels) return count_levels(group, scene);
     if (group.axes != Axes::joint && group.directions == 1 && group.schedule.shared.empty())
-        MemoryEstimator::Blocks{group};  // made at the first step, where it pays
+        MemoryEstimator::Blocks{group};  // allocated at the first step, if blocks are used
     if (group.beads) {
         BeadDynamics<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
                                       tree_of(group, communicator));

@@ -1,5 +1,5 @@
-// A Space (dca/host_space.hpp) without memory: what DeviceSpace would allocate is counted, and
-// nothing is ever computed.
+// A Space (dca/host_space.hpp) that only counts the memory that DeviceSpace would allocate. It
+// computes nothing.
 #pragma once
 
 #include "cuda/space/memory.hpp"
@@ -9,8 +9,8 @@
 
 namespace catena::cuda {
 
-/// Of the objects that this thread makes while it is there: arrays do not know the space they
-/// belong to.
+/// Sums the memory of the objects that this thread makes during the lifetime of a Count. Arrays do
+/// not know the space they belong to; the present Count is therefore a thread-local variable.
 class Count {
   public:
     Count() : outer_(present()) { present() = this; }
@@ -19,12 +19,13 @@ class Count {
     Count& operator=(Count const&) = delete;
     DeviceMemory const& sum() const { return sum_; }
 
+    /// Adds an allocation to the present Count, if there is one.
     static void add(std::int64_t bytes) {
         if (!present() || bytes == 0) return;
         present()->sum_.bytes += bytes;
         ++present()->sum_.allocations;
     }
-    /// Of columns of numbers, which pass through memory of the same size.
+    /// Adds columns of numbers; their transfer needs temporary memory of the same size.
     static void add_columns(std::int64_t bytes) {
         add(bytes);
         if (present()) present()->sum_.transient = std::max(present()->sum_.transient, bytes);
@@ -35,20 +36,23 @@ class Count {
         static thread_local Count* count = nullptr;
         return count;
     }
+    /// The Count that was present before this one.
     Count* outer_;
     DeviceMemory sum_;
 };
 
-/// As DeviceColumns pads them.
+/// Returns the bytes of columns up to body `end`, padded as in DeviceColumns.
 inline std::int64_t bytes_of_columns(std::int64_t end, int columns) {
     return static_cast<std::int64_t>(sizeof(double)) * columns *
            (gpu_order::lanes + gpu_order::padded(end));
 }
 
+/// Space with the members of DeviceSpace; arrays have no memory.
 class MemoryEstimator : public HostAccess {
   public:
     static constexpr bool answers_at_once = false;
 
+    /// Array of `count` elements; its size is counted and not kept.
     template <class T>
     class Array {
       public:
@@ -59,6 +63,7 @@ class MemoryEstimator : public HostAccess {
         T* data() const { return nullptr; }
         std::size_t size() const { return 0; }
     };
+    /// Direct exchange between GPUs; there is none.
     struct Direct {
         explicit operator bool() const { return false; }
     };
@@ -74,18 +79,20 @@ class MemoryEstimator : public HostAccess {
     void exchange(Communicator const&, BodyExchange<D> const&) const {}
     template <int D, class First>
     void exchange(Communicator const&, BodyExchange<D> const&, First const&) const {}
-    /// Of the host.
+    /// Host memory, which is not counted.
     template <class T>
     class HostArray {
       public:
         explicit HostArray(std::size_t) {}
         T* data() const { return nullptr; }
     };
+    /// Constant array, copied from the host.
     template <class T>
     class List : public Array<T> {
       public:
         explicit List(std::vector<T> const& host) : Array<T>(host.size()) {}
     };
+    /// Field of D numbers per body.
     template <int D>
     class FieldOf {
       public:
@@ -99,12 +106,14 @@ class MemoryEstimator : public HostAccess {
       private:
         std::int64_t size_ = 0;
     };
+    /// Constant field, as cuda::FixedField.
     template <int D>
     class Fixed : public FieldOf<D> {
       public:
         explicit Fixed(Field<D> const& host) : FieldOf<D>(host.size()) {}
         ConstView<D> view() const { return {}; }
     };
+    /// Constant field that stores one tile if bodies are alike, as cuda::AlikeField.
     template <int D>
     class Alike : public FieldOf<D> {
       public:
@@ -112,6 +121,7 @@ class MemoryEstimator : public HostAccess {
             : FieldOf<D>(one_tile_serves(host) ? gpu_order::tile : host.size()) {}
         ConstView<D> view() const { return {}; }
     };
+    /// Field of a number of directions known at run time.
     class Directions {
       public:
         Directions() = default;
@@ -120,6 +130,7 @@ class MemoryEstimator : public HostAccess {
         }
         DirectionsView view() const { return {}; }
     };
+    /// Model of a group, as cuda::DeviceModel.
     class Model {
       public:
         explicit Model(ChainGroup const& group)
@@ -152,6 +163,7 @@ class MemoryEstimator : public HostAccess {
         Alike<1> mass_;
         Alike<6> inertia_;
     };
+    /// Records, as cuda::DeviceRecords.
     template <class T, dca::Order order>
     class Records {
       public:
@@ -161,13 +173,15 @@ class MemoryEstimator : public HostAccess {
         }
         dca::RecordsView<T, order> view() { return {}; }
     };
+    /// Tree of sweeps, as cuda::DeviceTree.
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
              std::vector<dca::Root> const& roots, std::int64_t slots,
              std::span<std::uint8_t const> restricted, dca::StageRecords const& records) {
-            constexpr std::int64_t shared_bytes = 227 << 10,
-                                   at_once = 132;  // of an H100; others' plans take about as much
+            // Shared memory per block and blocks at once of an H100; plans for other GPUs need
+            // about as much.
+            constexpr std::int64_t shared_bytes = 227 << 10, at_once = 132;
             dca::StageSizes const sizes = dca::stage_sizes(records, shared_bytes, at_once);
             dca::StagePlan const plan =
                 dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
@@ -181,12 +195,14 @@ class MemoryEstimator : public HostAccess {
                            dca::kept_numbers(stage, records));
             }
             if (!together) return;
+            // Letters and counters of the launch that performs both passes of the last two stages.
             constexpr std::int64_t of_letter = 16, of_launches = 4;
             Count::add(of_letter * static_cast<std::int64_t>(together.numbers_up(records)));
             Count::add(of_letter * static_cast<std::int64_t>(together.numbers_down(records)));
             Count::add(of_launches * static_cast<std::int64_t>(together.blocks()));
         }
     };
+    /// Tree of scans, as cuda::DeviceScan.
     class ScanTree {
       public:
         ScanTree(std::vector<dca::Run> const& runs,
@@ -204,8 +220,8 @@ class MemoryEstimator : public HostAccess {
         }
     };
 
-    /// Blocks as large as they get: smaller ones, where few chains are spread over the GPU, take up
-    /// to 2 MB more.
+    /// Blocks of the largest size. Smaller blocks, which spread few chains over the GPU, need up to
+    /// 2 MB more.
     class Blocks {
       public:
         explicit Blocks(ChainGroup const& group) {
@@ -219,6 +235,8 @@ class MemoryEstimator : public HostAccess {
     template <int K>
     static constexpr bool has_teams = has_blocks<K>;
     bool pays_by_blocks(ChainGroup const&) const { return true; }
+    // Loops and sweeps do nothing.
+
     template <class Action>
     void each_block(Blocks const&, Action const&) const {}
     template <class Action>
@@ -237,6 +255,8 @@ class MemoryEstimator : public HostAccess {
     void climb_and_descend(ScanTree const&, Scan const&, List<T> const&, Action const&) const {}
     static bool has_threads_for_bodies(ScanTree const&) { return false; }
     static bool has_threads_to_spare(std::int64_t) { return false; }
+    // Queries return zeros or empty fields, and copies do nothing.
+
     template <class Value>
     double largest(std::int64_t, Value const&) const {
         return 0;
@@ -264,6 +284,7 @@ class MemoryEstimator : public HostAccess {
     template <int D, class Set>
     void set(FieldOf<D>&, Set const&) const {}
     static Executor const& on_host() { return this_thread(); }
+    /// Host copy of a field; it needs no GPU memory.
     template <int D>
     struct Mirror {};
     template <int D>
@@ -280,13 +301,14 @@ class MemoryEstimator : public HostAccess {
     int threads() const { return 1; }
 
   private:
+    /// Counts the memory of a list.
     template <class T>
     static void count(std::vector<T> const& items) {
         Count::add(static_cast<std::int64_t>(items.size() * sizeof(T)));
     }
 };
 
-/// As DeviceCrossing.
+/// Counts the memory of DeviceCrossing.
 class CountingCrossing {
     template <int D>
     using FieldOf = MemoryEstimator::FieldOf<D>;

@@ -1,6 +1,7 @@
-// Quotients and roots without branches, so that what is independent of them goes on meanwhile. They
-// have the bits of those that are rounded once: steps and ranges are the ones that nvcc takes
-// itself before it looks for the rest. Beyond these ranges they say so, or answer NaN.
+// Quotients and roots without branches, so that independent instructions overlap with them. Their
+// results are bitwise those of correctly rounded operations. The iteration steps and argument
+// ranges are those of nvcc's own fast path. Outside these ranges the functions report failure or
+// return NaN.
 #pragma once
 
 #include <limits>
@@ -9,29 +10,30 @@
 
 namespace catena::cuda::kernels {
 
+/// Result of an operation whose argument is out of range.
 __device__ inline double not_known() { return __builtin_nan(""); }
 
 #if defined(__CUDACC__)
-/// A double's upper half: its sign, eleven bits of its exponent, and the leading ones of its
-/// mantissa.
+/// Upper half of a double: sign, eleven bits of exponent, and the leading bits of the mantissa.
 namespace upper {
 constexpr unsigned no_sign = 0x7fffffff, exponent_step = 0x00100000, infinite = 0x7ff00000;
 __device__ inline unsigned of(double x) { return static_cast<unsigned>(__double2hiint(x)); }
 }  // namespace upper
-/// A first guess has twenty good bits in its upper half; nvcc puts something there for the lower
-/// one that tells of the range as well.
+/// Combines the hardware's approximation, which has twenty correct bits in its upper half, with a
+/// lower half. nvcc uses a lower half that depends on the range of the argument, and this function
+/// receives the same.
 __device__ inline double first_guess(double coarse, unsigned lower) {
     return __hiloint2double(__double2hiint(coarse), static_cast<int>(lower));
 }
 #endif
 
-/// 1 / x, or anything where it does not `know`.
+/// Computes 1 / x. If `known` becomes false, the result is arbitrary.
 struct BranchlessInverse {
     bool& known;
     __device__ double operator()(double x) const {
 #if defined(__CUDACC__)
-        constexpr unsigned shift =
-            0x00300402;  // the sign's bit and those below it tell where the exponent is too large
+        // The sign bit and the bits below it tell if the exponent is too large.
+        constexpr unsigned shift = 0x00300402;
         unsigned const lower = upper::of(x) + shift;
         double y;
         asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
@@ -51,6 +53,7 @@ struct BranchlessInverse {
     }
 };
 
+/// Computes 1 / |d|, or NaN if the square of the length is out of range.
 struct BranchlessInverseLength {
     static constexpr bool may_fail = true;
     __device__ double operator()(Vec3 const& d) const {
@@ -64,11 +67,13 @@ struct BranchlessInverseLength {
         double const e = __fma_rn(x, -__dmul_rn(y, y), 1.0);
         y = __fma_rn(__fma_rn(e, 0.375, 0.5), __dmul_rn(y, e), y);
         double const root = __dmul_rn(x, y);
+        // This is half of y.
         double const half = __hiloint2double(static_cast<int>(upper::of(y) - upper::exponent_step),
-                                             __double2loint(y));  // of y
+                                             __double2loint(y));
         double const length = __fma_rn(__fma_rn(root, -root, x), half, root);
         bool known = lower < upper::infinite - least;
-        double const found = BranchlessInverse{known}(length);  // in any case: no branch
+        // The inverse is computed in any case, to avoid a branch.
+        double const found = BranchlessInverse{known}(length);
         return known ? found : not_known();
 #else
         double const x = dot(d, d);
@@ -78,8 +83,9 @@ struct BranchlessInverseLength {
     }
 };
 
-/// As factorize() of one direction, where it is not restricted or its pivot is positive and the
-/// inverse is known quickly; else anything, and it is not `sure`.
+/// Factorizes a matrix of one direction as factorize() does, without branches. The result is right
+/// if the direction is unrestricted, or if the pivot is positive and its inverse is known.
+/// Otherwise it is arbitrary and `sure` becomes false.
 struct UncheckedFactorizer {
     static constexpr bool may_fail = true;
     bool& sure;
@@ -94,8 +100,8 @@ struct UncheckedFactorizer {
     }
 };
 
-/// As factorize(), quick where all directions are restricted. `gives_up`: NaN where that does not
-/// do, else it looks again.
+/// Factorizes as factorize() does, without branches if all directions are restricted. `gives_up`:
+/// returns NaN if the fast inverse fails; otherwise it repeats the factorization exactly.
 template <bool gives_up>
 struct BranchlessFactorizer {
     static constexpr bool may_fail = gives_up;
@@ -112,6 +118,7 @@ struct BranchlessFactorizer {
             return known ? quick : dca::factorize(z, restricted);
         }
     }
+    /// Returns result(inverse) with the fast inverse, or with the exact quotient if that fails.
     template <class Result>
     __device__ auto with_inverse(Result const& result) const {
         bool known = true;

@@ -1,4 +1,4 @@
-// Launches of one cluster that take one chain up and down its tree (one_chain.cuh).
+// Launches of one cluster that perform both passes of one chain (one_chain.cuh).
 #pragma once
 
 #include <map>
@@ -9,23 +9,24 @@
 
 namespace catena::cuda {
 
-/// Of a tree, whose GPU and context it belongs to: what these say is asked for once.
+/// Grids of such launches for one tree. The answers are cached and valid for the tree's GPU and
+/// context.
 class ClusterLaunch {
   public:
     ClusterLaunch() = default;
-    /// `most_bytes`: of shared memory that the GPU gives a block.
+    /// `most_bytes`: largest shared memory of a block.
     ClusterLaunch(kernels::OneChain const& chain, int most_bytes)
         : chain_(chain), most_bytes_(most_bytes) {}
     explicit operator bool() const { return chain_.warps > 0; }
-    /// The grid of a kernel whose blocks join by such warps (grid_of_cluster()); of no blocks where
-    /// the GPU does not take the chain in one cluster.
+    /// Returns the grid of a kernel whose blocks consist of such warps (grid_of_cluster()). It has
+    /// no blocks if the GPU cannot hold the chain in one cluster.
     template <class Warp, class... Parameters>
     Grid const& grid(void (*kernel)(kernels::OneChain, Parameters...)) const {
         auto const [known, is_new] = grids_.try_emplace(reinterpret_cast<void const*>(kernel));
         if (is_new && *this) known->second = found<Warp>(kernel);
         return known->second;
     }
-    /// What follows in the stream finds everything as after any launch.
+    /// Launches the kernel. Later work of the stream sees its results as after any other launch.
     template <class... Parameters>
     void launch(Grid const& grid, cudaStream_t stream,
                 void (*kernel)(kernels::OneChain, Parameters...),
@@ -34,7 +35,7 @@ class ClusterLaunch {
     }
 
   private:
-    /// Large clusters at first.
+    /// Finds the grid, trying large clusters first.
     template <class Warp, class Kernel>
     Grid found(Kernel* kernel) const {
         for (int const most : {kernels::most_blocks_of_chain, kernels::most_in_cluster}) {
@@ -45,15 +46,15 @@ class ClusterLaunch {
         }
         return {};
     }
+    /// True if the GPU can run the configuration.
     template <class Kernel>
     bool takes(Kernel* kernel, cudaLaunchConfig_t const& config) const {
         if (config.dynamicSmemBytes > static_cast<std::size_t>(most_bytes_)) return false;
-        allow_shared(
-            kernel,
-            static_cast<std::size_t>(
-                most_bytes_));  // always all: another tree's launch may need more than this one
+        // The limit is always the maximum, because another tree's launch of this kernel may need
+        // more.
+        allow_shared(kernel, static_cast<std::size_t>(most_bytes_));
         if (config.gridDim.x <= kernels::most_in_cluster) return true;
-        // More than any GPU that has clusters takes.
+        // Clusters of this size are not portable: not every GPU with clusters supports them.
         check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel),
                                    cudaFuncAttributeNonPortableClusterSizeAllowed, 1),
               "have large clusters");
@@ -66,7 +67,7 @@ class ClusterLaunch {
 
     kernels::OneChain chain_;
     int most_bytes_ = 0;
-    mutable std::map<void const*, Grid> grids_;  // of each kernel
+    mutable std::map<void const*, Grid> grids_;  // grids found, by kernel
 };
 
 }  // namespace catena::cuda

@@ -1,5 +1,5 @@
-// The tree above groups of runs (run_groups.cuh) of one chain, up and down in one launch: a lane
-// has a group.
+// Single launch with both passes of the tree above groups of runs (run_groups.cuh) of one chain:
+// one lane per group.
 #pragma once
 
 #include "cuda/sweeps/joined_lanes.cuh"
@@ -7,7 +7,7 @@
 
 namespace catena::cuda::kernels {
 
-/// Of one warp, in its block's shared memory.
+/// Work of one warp, in its block's shared memory.
 template <class Sweep>
 class GroupLanes {
     using Segment = typename Sweep::Segment;
@@ -16,7 +16,7 @@ class GroupLanes {
   public:
     static constexpr int most_threads = most_joining_warps * lanes_of_warp;
     static constexpr int warps_for_each(int /*joining*/) { return 1; }
-    /// As ShortLanes'.
+    /// Returns the size of a block's shared memory in doubles; see ShortLanes::numbers().
     static constexpr std::size_t numbers(int joining, int warps) {
         return static_cast<std::size_t>(Lanes::of_block(warps) + joining * Lanes::of_warp);
     }
@@ -33,12 +33,13 @@ class GroupLanes {
                  memory + Lanes::of_block(chain.warps) +
                      threadIdx.x / lanes_of_warp * Lanes::of_warp) {}
 
-    /// While the launch before may still go on: nothing is read here, nor when it is made, that a
-    /// launch writes.
+    /// Prepares the launch while the previous one may still run. Neither this call nor the
+    /// constructor reads memory that a launch writes.
     __device__ void open() { lanes_.open(true); }
+    /// Performs both passes and stores the forces at the first joint of each group.
     __device__ void turn() const {
         Segment const segment = exists_ ? sweep_.load(slot_) : Segment::zero();
-        __syncwarp();  // all at once to the barrier
+        __syncwarp();  // all lanes arrive at the barrier together
         wait_for_cluster();
         lanes_.turn(segment, restricted_, [&](auto const& ends) {
             if (exists_) sweep_.s.forces.store(first_, ends.first);
@@ -47,16 +48,17 @@ class GroupLanes {
 
   private:
     Sweep const& sweep_;
-    std::int64_t group_, first_;  // the lane's, and its first body
+    std::int64_t group_, first_;  // the lane's group and its first body
     bool exists_;
     std::int64_t slot_;
     int restricted_;
     Lanes lanes_;
 };
 
-/// Sweeps that go this way.
+/// True for sweeps that use this launch.
 template <class Sweep>
 constexpr bool turns_groups = Sweep::goes_short && by_groups<Sweep>;
+/// Kernel of both passes above the groups of one chain.
 template <class Sweep>
 __global__ void __launch_bounds__(GroupLanes<Sweep>::most_threads)
     turn_groups(OneChain chain, GroupsView groups, Sweep sweep) {

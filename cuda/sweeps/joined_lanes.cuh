@@ -1,6 +1,6 @@
-// What lanes hold of one chain whose handles carry one direction: a lane joins what it holds to
-// what another lane has, in registers, and without branches. Every warp is given the segments of
-// all of them and joins those as well, so that nobody waits twice.
+// Passes of one chain whose handles carry one direction: lanes merge their segments in
+// registers, without branches. Every warp receives the segments of all warps and merges those as
+// well, so that it waits only once.
 #pragma once
 
 #include "cuda/sweeps/branchless_math.cuh"
@@ -8,14 +8,15 @@
 
 namespace catena::cuda::kernels {
 
-/// action(s) for s of [0, steps), or back.
+/// Calls action(s) for s of [0, steps), or in reverse order if `back`.
 template <int steps, bool back = false, class Action>
 __device__ void each_step(Action const& action) {
     CATENA_UNROLL
     for (int i = 0; i < steps; ++i) action(back ? steps - 1 - i : i);
 }
 
-/// A warp's records in memory, number n of lane i at n pitch + i: lanes do not meet in a bank.
+/// Records of a warp's lanes in shared memory: number n of lane i is at n * pitch + i, so that
+/// lanes access different banks.
 struct OfLanes {
     static constexpr int pitch = lanes_of_warp + 1;
     template <class T>
@@ -35,22 +36,25 @@ struct OfLanes {
     }
 };
 
-/// One meeting of lanes: lane l of those with l & mask == last joins what lane l - distance has to its own; all that lie between them count
-/// to its own. `others`: whether some have theirs for a later one.
+/// One step in which lanes merge: every lane l with l & mask == last merges the segment of lane l -
+/// distance with its own. The merged segment contains the lanes in between. `others`: some lanes
+/// keep their segment for a later step.
 struct Meeting {
     int distance, mask, last;
     bool others;
-    /// `in_row` lanes one after the other, then pairs.
+    /// Returns step `step` of merging `in_row` lanes one after the other, then pairs.
     template <int in_row>
     __device__ static Meeting of_row(int step) {
         constexpr int steps = in_row - 1;
         if (step < steps) return {1, in_row - 1, step + 1, step + 1 < steps};
         return of_pairs(in_row << (step - steps));
     }
+    /// Returns the step that merges pairs of `distance` lanes each.
     __device__ static Meeting of_pairs(int distance) { return {distance, 2 * distance - 1, 2 * distance - 1, false}; }
 };
 
-/// Of a warp whose lanes have a segment of `of_lane` bodies each; `in_row` neighbours are joined one after the other, then pairs of these.
+/// Lanes of a warp that hold a segment of `of_lane` bodies each. First `in_row` neighbouring lanes
+/// are merged one after the other, then pairs of these.
 template <class Sweep, int of_lane, int in_row>
 class JoinedLanes {
     static_assert(Sweep::K == 1);
@@ -63,15 +67,18 @@ class JoinedLanes {
     static constexpr int steps_of_warp = in_row - 1 + levels_of_warp, bodies_of_warp = lanes_of_warp * of_lane;
 
   public:
-    /// Forces at a segment's first joint and at the one after it.
+    /// Forces at a segment's first joint and at the joint after it.
     struct Ends {
         State first, next;
     };
-    /// Numbers of shared memory: of a block in a launch of so many warps, and of each warp of its own.
+    /// Size of a block's shared memory in doubles, for a launch of `warps` merging warps.
     static constexpr __host__ __device__ int of_block(int warps) { return 2 + numbers_of<Segment> * warps; }
-    static constexpr int of_warp = 3 * OfLanes::size<Node>;  // nodes of the warp's lanes, of those of the top and within these
+    /// Size of each warp's memory in doubles: nodes of its lanes, of the top's lanes and of pairs
+    /// of warps within these.
+    static constexpr int of_warp = 3 * OfLanes::size<Node>;
 
-    /// Warp `warp` of the chain's; `shared` is its block's.
+    /// `warp`: number of this warp in the chain; `shared`: memory of the block; `own`: memory of
+    /// the warp.
     __device__ JoinedLanes(OneChain const& chain, Sweep const& sweep, int lane, int warp, double* shared, double* own)
         : chain_(chain),
           sweep_(sweep),
@@ -82,7 +89,8 @@ class JoinedLanes {
           own_(own),
           unit_((chain.warps + lanes_of_warp - 1) / lanes_of_warp) {}
 
-    /// By all threads of the cluster, before any joins: these ask for what the top is joined by.
+    /// Opens the inbox and reads the numbers of restricted directions at the top. All threads of
+    /// the cluster call it before any lane merges; `joins` is true for warps that merge.
     __device__ void open(bool joins) {
         if (threadIdx.x == 0 && !is_alone(chain_)) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
@@ -93,15 +101,17 @@ class JoinedLanes {
             at_top_[i] = warp < chain_.warps && joins ? sweep_.s.restricted[warp * bodies_of_warp] : 0;
         }
     }
-    /// Up from what each lane has, zero() if nothing, and down again: down(Ends) where the warp has bodies. `restricted`: directions that
-    /// the lane's first joint restricts. All blocks' open() lies behind (wait_for_cluster()).
+    /// Performs both passes. `segment`: the lane's segment, zero() if it has no bodies.
+    /// `restricted`: number of directions that the lane's first joint restricts. Calls down(Ends)
+    /// with the forces at the ends of the lane's segment if the warp has bodies. Precondition:
+    /// open() is complete in all blocks (wait_for_cluster()).
     template <class Down>
     __device__ void turn(Segment segment, int restricted, Down const& down) const {
         climb<steps_of_warp>(segment, own_, warp_ * lanes_of_warp, of_lane, restricted,
                              [](int step) { return Meeting::of_row<in_row>(step); });
         if (warp_ >= chain_.warps) return;
         give(segment);
-        int const place = lane_ % in_row;  // in the row
+        int const place = lane_ % in_row;  // place of the lane in its row
         auto const of_levels = nodes_of_levels<levels_of_warp>(own_, in_row);
         auto const of_row = nodes_of<in_row - 1>(own_, [second = lane_ - place + 1](int i) { return second + i; });
         if (!is_alone(chain_)) inbox_.wait();
@@ -119,12 +129,16 @@ class JoinedLanes {
     }
 
   private:
-    /// Lane l has the segment from body (first + l) `length` on. What is joined is with the last of those who met.
+    /// Inward pass of lanes. Lane l has the segment that starts at body (first + l) * length. The
+    /// last lane of a pair holds the merged segment; the node is stored at the first lane of the
+    /// outboard segment. If the unchecked factorizer was not sure, the pass is repeated with exact
+    /// factors and branches.
     template <int steps, class Step>
     __device__ void climb(Segment& segment, double* nodes, int first, int length, int restricted, Step const& step) const {
         bool sure = true;
         Segment quickly = segment;
-        unsigned const restricts = __ballot_sync(whole_warp, restricted > 0);  // where there is no joint, none
+        // A lane without a joint restricts nothing.
+        unsigned const restricts = __ballot_sync(whole_warp, restricted > 0);
         each_step<steps>([&](int s) {
             Meeting const m = step(s);
             int const lane = lane_ - m.distance + 1;
@@ -161,7 +175,8 @@ class JoinedLanes {
         }
         __syncwarp();
     }
-    /// Nodes that a lane goes down by, the i-th with lane `lane(i)`, read before they are wanted.
+    /// Nodes for a lane's outward pass, read before they are needed; node i is stored at lane
+    /// `lane(i)`.
     template <int count, class Lane>
     struct Nodes {
         Lane lane;
@@ -175,13 +190,13 @@ class JoinedLanes {
     __device__ static Nodes<count, Lane> nodes_of(double const* nodes, Lane const& lane) {
         return {nodes, lane};
     }
-    /// Of pairs of `lanes` lanes each, twice as many, ...
+    /// Returns the nodes of pairs of `lanes` lanes each, then of twice as many lanes, and so on.
     template <int levels>
     __device__ auto nodes_of_levels(double const* nodes, int lanes) const {
         return nodes_of<levels>(nodes,
                                 [lane = lane_, lanes](int level) { return (lane & ~(2 * (lanes << level) - 1)) + (lanes << level); });
     }
-    /// From what a lane's pair holds together to what it holds itself, level by level.
+    /// Outward pass from the ends of a lane's pair to the ends of its own segment, level by level.
     template <int levels, class Lane>
     __device__ void go_down(Ends& ends, Nodes<levels, Lane> const& nodes, int first, int length) const {
         each_step<levels, true>([&](int level) {
@@ -192,9 +207,9 @@ class JoinedLanes {
             ends.first = dca::either(exists && lane_ >= middle, there, ends.first);
         });
     }
-    /// The last lane's segment, to all blocks.
+    /// Sends the last lane's segment, which is the warp's, to all blocks.
     __device__ void give(Segment const& segment) const {
-        double* const letter = own_ + OfLanes::size<Node>;  // free till the top is climbed
+        double* const letter = own_ + OfLanes::size<Node>;  // unused before the top's inward pass
         if (lane_ == lanes_of_warp - 1) {
             auto const values = __builtin_bit_cast(NumbersOf<Segment>, segment);
             CATENA_UNROLL
@@ -202,15 +217,16 @@ class JoinedLanes {
         }
         __syncwarp();
         send_to_all<numbers_of<Segment>>(chain_, inbox_, lane_, letter, [&](int n) { return segments_ + n * chain_.warps + warp_; });
-        __syncwarp();  // the top's nodes come there
+        __syncwarp();  // the top's nodes overwrite this memory
     }
+    /// Returns the segment of a warp that has arrived.
     __device__ Segment given(int warp) const {
         NumbersOf<Segment> values;
         CATENA_UNROLL
         for (int n = 0; n < numbers_of<Segment>; ++n) values[n] = segments_[n * chain_.warps + warp];
         return __builtin_bit_cast(Segment, values);
     }
-    /// The forces at the ends of this warp.
+    /// Merges the segments of all warps and returns the forces at the ends of this warp.
     __device__ Ends solve_top() const {
         double *const nodes = own_ + OfLanes::size<Node>, *const within = nodes + OfLanes::size<Node>;
         int const first = unit_ * lane_;
@@ -228,7 +244,9 @@ class JoinedLanes {
         }
         return from_lane(ends, warp_ / unit_);
     }
-    /// Of what each lane holds, in as many levels as there have to be: a constant, so that one level's instructions go beside another's.
+    /// Performs both passes of the top with one segment per lane, in as many levels as necessary.
+    /// The number of levels is a compile-time constant, so that instructions of different levels
+    /// overlap.
     template <int levels>
     __device__ Ends solve_lanes(Segment segment, double* nodes) const {
         if constexpr (levels < most_levels_of_top)
@@ -249,8 +267,8 @@ class JoinedLanes {
     int lane_, warp_;
     Inbox inbox_;
     double *segments_, *own_;
-    int unit_;       // warps a lane of the top
-    int at_top_[2];  // directions that its joints restrict
+    int unit_;  // warps per lane of the top
+    int at_top_[2];  // directions that the joints before the lane's warps restrict
 };
 
 }  // namespace catena::cuda::kernels

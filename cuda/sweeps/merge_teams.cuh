@@ -1,8 +1,8 @@
-// Merges of a tree by several lanes of a warp each: a column of the matrices a lane, and one lane
-// for the biases. Larger handles have too many numbers for one thread's registers, and too long a
-// way through them. What they leave has the bits of Evaluation's joined() and force()
-// (dca/fused_sweep.hpp). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
-// before it.
+// Merges by several lanes of a warp: one lane per column of the matrices, and one lane for the
+// biases. Merges of larger handles need more registers than one thread has, and a long chain of
+// dependent operations. Results are bitwise those of FusedSweep's joined() and force()
+// (dca/fused_sweep.hpp). tests/support/cuda_on_host.hpp, included first, makes this file compile on
+// the host.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace catena::cuda::kernels {
 
-/// Of sweeps that have matrices and biases, over merges in shared memory.
+/// Team of lanes that merges segments in shared memory, for sweeps with matrices and biases.
 template <class Sweep>
 class MergeTeam {
     static constexpr int K = Sweep::K;
@@ -31,7 +31,7 @@ class MergeTeam {
     using Segments = PackedRecords<Segment, of_place>;
     using Nodes = PackedRecords<Node, of_place>;
     using Forces = PackedRecords<Directions, K>;
-    // In a segment, and in a node.
+    // Offsets of the numbers in a segment, and in a node.
     static constexpr int at_z22 = Triangle::size, at_z12 = 2 * Triangle::size,
                          at_b1 = at_z12 + K * K, at_b2 = at_b1 + K;
     static constexpr int at_inboard = Triangle::size, at_outboard = at_inboard + K * K,
@@ -43,9 +43,9 @@ class MergeTeam {
           column_(own_ < K ? own_ : K - 1),
           has_biases_(own_ == K) {}
 
-    /// action(i, works) for i of [begin, end) by one team of the block each. All threads of a warp
-    /// come to each call of `action`; one whose team does not work has the i of the warp's first
-    /// team.
+    /// Calls action(i, works) for i of [begin, end), each i by one team of the block. All threads
+    /// of a warp call `action` together. A team without work receives the i of the warp's first
+    /// team, and `works` is false.
     template <class Action>
     __device__ static void each(int begin, int end, Action const& action) {
         constexpr int of_warp = 32 / lanes;
@@ -58,20 +58,21 @@ class MergeTeam {
         }
     }
 
-    /// Where two segments are, and where what they become is to go, which may be `inboard`, and the
-    /// joint's node, which may be `outboard`.
+    /// Addresses of the two segments, of the merged segment (may be `inboard`) and of the joint's
+    /// node (may be `outboard`).
     struct Places {
         double *inboard, *outboard, *joined, *node;
     };
-    /// All lanes of a warp come to these. One whose team does not work is given places as well,
-    /// where it reads and nothing more: those of a team of the warp that works, or others that
-    /// nobody writes meanwhile. The lane of the biases is told the outboard segment's.
+    /// Merges two segments as append() does. All lanes of a warp call it. A team that does
+    /// not work only reads from its places. These are the places of a working team of the warp, or
+    /// places that no thread writes during the call. The lane of the biases returns the outboard
+    /// segment's biases.
     __device__ dca::SegmentBias<double, K> join(Sweep const& sweep, dca::JointAt const& at,
                                                 bool works, Places const& places) const {
         bool sure = at.restricted == K;
         Triangle factor = dca::factorize(sum(places), K, BranchlessInverse{sure});
-        Directions of_inboard, of_outboard, first,
-            last;  // of the two and of what is joined: the lane's columns, or its biases
+        // Columns of the two segments and of the merged one, or biases on the lane of the biases.
+        Directions of_inboard, of_outboard, first, last;
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) {
             int const in_triangle = Triangle::at(i, column_ < i ? column_ : i);
@@ -84,12 +85,13 @@ class MergeTeam {
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) of_inboard[i] = has_biases_ ? of_inboard[i] - beyond[i] : of_inboard[i];
         Directions inboard = dca::solve_lower(factor, of_inboard), outboard = dca::solve_lower(factor, of_outboard);
-        __syncwarp();  // both segments are read
+        __syncwarp();  // all lanes have read both segments
         put(places.node, works, inboard, outboard);
         __syncwarp();
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) sure = sure && factor(i, i) > 0;
-        // Asked as late as that: the last pivot's inverse takes its time, and the joint's matrices do not want it.
+        // The check is late because the last pivot's inverse has a long latency and the joint's
+        // matrices do not depend on it.
         if (!__all_sync(0xffffffffu, sure || !works)) {
             factor = factorized(sweep, at, works, sum(places));
             inboard = dca::solve_lower(factor, of_inboard), outboard = dca::solve_lower(factor, of_outboard);
@@ -103,12 +105,13 @@ class MergeTeam {
             if (works && own_ == lanes - 1) places.node[n] = factor.data[n];
         return {beyond, last};
     }
-    /// The force at the joint, to its place.
+    /// Computes the force at the joint of a merge and stores it.
     __device__ void go_down(dca::BlockMerge const& m, bool works, Nodes const& nodes, Forces const& forces) const {
         Directions const found = force(nodes.record(m.outboard), forces.load(m.inboard), forces.load(m.next));
         if (works && own_ == 0) forces.store(m.outboard, found);
     }
-    /// From those at the ends of what was joined there; a row a lane.
+    /// Returns the force at the joint from the forces at the ends of the merged segment; each lane
+    /// computes one row.
     __device__ Directions force(double const* node, Directions const& first, Directions const& next) const {
         auto const inboard = record<Directions>(node + at_inboard + column_ * K), outboard = record<Directions>(node + at_outboard + column_ * K);
         double const of_row = dot(inboard, first) + (dot(outboard, next) + node[at_offset + column_]);
@@ -117,8 +120,9 @@ class MergeTeam {
         for (int i = 0; i < K; ++i) all[i] = from_lane(of_row, lane_ - own_ + i);
         return dca::solve_upper(record<Triangle>(node), all);
     }
+    /// True for the team's first lane.
     __device__ bool leads() const { return own_ == 0; }
-    /// One that a thread reads alone.
+    /// Returns a record that a thread reads alone.
     template <class T>
     __device__ static T record(double const* numbers) {
         NumbersOf<T> values;
@@ -126,10 +130,11 @@ class MergeTeam {
         for (int n = 0; n < numbers_of<T>; ++n) values[n] = numbers[n];
         return __builtin_bit_cast(T, values);
     }
-    /// A segment, by the team.
+    /// Copies a segment by all lanes of the team.
     __device__ void copy(double const* from, double* to) const {
         for (int n = own_; n < numbers_of<Segment>; n += lanes) to[n] = from[n];
     }
+    /// Stores biases from the lane of the biases.
     __device__ void put_bias(double* to, dca::SegmentBias<double, K> const& bias) const {
         if (!has_biases_) return;
         CATENA_UNROLL
@@ -142,9 +147,10 @@ class MergeTeam {
     using Joint = dca::JointMatrix<double, K>;
     static_assert(offsetof(Matrices, z12) == at_z12 * sizeof(double) && offsetof(Joint, outboard) == at_outboard * sizeof(double));
 
-    /// Z of append(). Where a node takes the outboard segment's place, the joint's factor comes last, in the place of that one's z11.
+    /// Returns Z of append(). If a node takes the outboard segment's place, the joint's factor is
+    /// written last, as it overwrites that segment's z11.
     __device__ static Triangle sum(Places const& places) { return record<Triangle>(places.inboard + at_z22) + record<Triangle>(places.outboard); }
-    /// As the sweep's own factorize() and watch().
+    /// Factorizes with the sweep's checks and reports a pivot failure.
     __device__ static Triangle factorized(Sweep const& sweep, dca::JointAt const& at, bool works, Triangle const& z) {
         Triangle const factor = BranchlessFactorizer<false>{}(z, at.restricted);
         dca::PivotFailure found;
@@ -152,7 +158,7 @@ class MergeTeam {
         if (works) sweep.s.note(found);
         return factor;
     }
-    /// A joint's matrices and offset.
+    /// Stores the joint's matrices and offset.
     __device__ void put(double* node, bool works, Directions const& inboard, Directions const& outboard) const {
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) {
@@ -160,13 +166,15 @@ class MergeTeam {
             if (works && own_ < K) node[at_outboard + i * K + column_] = outboard[i];
         }
     }
+    /// Returns column i of a matrix in shared memory.
     __device__ static Directions column(double const* matrix, int i) {
         Directions c;
         CATENA_UNROLL
         for (int k = 0; k < K; ++k) c[k] = matrix[k * K + i];
         return c;
     }
-    /// As append(), a column of the matrices or the biases. Columns of the joint's are read when they are wanted: registers are few.
+    /// Computes and stores a column of the merged matrices, or the biases, as append() does.
+    /// Columns of the joint's matrices are read just before use, because registers are scarce.
     __device__ void put_joined(double const* node, Directions const& of_inboard, Directions const& of_outboard, bool works, double* joined,
                                Directions first, Directions last) const {
         Directions through;
@@ -186,7 +194,8 @@ class MergeTeam {
         }
     }
 
-    int lane_, own_, column_;  // of the warp, of the team; its column of matrices, or one in the place of that
+    /// Lane in the warp, lane in the team, and column of the matrices (clamped to the last one).
+    int lane_, own_, column_;
     bool has_biases_;
 };
 

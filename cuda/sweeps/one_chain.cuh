@@ -1,5 +1,5 @@
-// One whole chain that a launch of one cluster takes up and down its tree: how warps' lanes share
-// it, and what its blocks give each other.
+// One whole chain whose two passes are performed by a launch of one cluster. This file divides the
+// chain among the lanes of warps and defines what blocks exchange.
 #pragma once
 
 #include <bit>
@@ -10,21 +10,25 @@
 
 namespace catena::cuda::kernels {
 
+/// Mask of all lanes of a warp.
 constexpr unsigned whole_warp = 0xffffffff;
+/// Lanes per warp, and limits of a cluster: merging warps per block and blocks per chain.
 constexpr int lanes_of_warp = 32, most_joining_warps = 4, most_blocks_of_chain = 16;
-/// Of those at the top every lane takes one or two.
+/// Largest number of merging warps of a chain. At the top every lane holds the segments of one or
+/// two of them.
 constexpr int most_warps_of_chain = 2 * lanes_of_warp;
 static_assert(most_warps_of_chain <= most_blocks_of_chain * most_joining_warps);
 static_assert(std::has_single_bit(static_cast<unsigned>(lanes_of_warp)));
-/// Of a tree of pairs with so many leaves, a power of two.
+/// Number of levels of a pairwise tree with `leaves` leaves, a power of two.
 constexpr int levels_above(int leaves) { return std::bit_width(static_cast<unsigned>(leaves)) - 1; }
 
-/// `warps`, that join what their lanes hold; none: there is no such chain, or one that is too long.
+/// Chain of a launch: its bodies and the number of warps that merge what their lanes hold. No
+/// warps: there is no single chain, or it is too long.
 struct OneChain {
     int bodies = 0, warps = 0;
 };
-/// That of a tree of one whole chain whose tip is free, in runs as long as they get. A lane has
-/// `of_lane` bodies.
+/// Returns the chain of a tree that consists of one whole chain with a free tip and runs of maximal
+/// length. A lane holds `of_lane` bodies.
 inline OneChain one_chain_of(std::vector<dca::Run> const& runs,
                              std::vector<std::vector<dca::Merge>> const& levels,
                              std::vector<dca::Root> const& roots, std::int64_t of_lane) {
@@ -39,13 +43,15 @@ inline OneChain one_chain_of(std::vector<dca::Run> const& runs,
     return {static_cast<int>(bodies), static_cast<int>((bodies + of_warp - 1) / of_warp)};
 }
 
+/// Dimensions of a launch of one cluster.
 struct ClusterGrid {
     unsigned blocks = 0, threads = 0;
     std::size_t shared_bytes = 0;
 };
-/// As few warps a block as there may be: each then has more of a multiprocessor. `most`: blocks of
-/// a cluster. `Warp`: of those that join, with warps_for_each(joining) and numbers(joining, warps)
-/// as ShortLanes'. Precondition: with four warps a block they are enough.
+/// Returns the grid with as few warps per block as possible, so that each has a larger share of a
+/// multiprocessor. `most`: blocks per cluster. `Warp`: type of the merging warps, with
+/// warps_for_each(joining) and numbers(joining, warps) like ShortLanes. Precondition: four merging
+/// warps per block are enough.
 template <class Warp>
 ClusterGrid grid_of_cluster(OneChain const& chain, int most) {
     int const joining = (chain.warps + most - 1) / most,
@@ -54,16 +60,17 @@ ClusterGrid grid_of_cluster(OneChain const& chain, int most) {
             static_cast<unsigned>(lanes_of_warp * joining * Warp::warps_for_each(joining)),
             sizeof(double) * Warp::numbers(joining, chain.warps)};
 }
-/// Of a block of the launch.
+/// Number of merging warps of a block of the launch.
 __device__ inline int joining_warps(OneChain const& chain) {
     return (chain.warps + static_cast<int>(gridDim.x) - 1) / static_cast<int>(gridDim.x);
 }
 
-/// One warp that joins keeps what it gives: its block is alone in its cluster, and NVIDIA's checker
-/// of memory refuses messages of a block to itself there.
+/// True if one warp merges the whole chain. It then writes its segment to its own shared memory.
+/// Its block is alone in its cluster, and NVIDIA's memory checker rejects a block's messages to
+/// itself there.
 __device__ inline bool is_alone(OneChain const& chain) { return chain.warps == 1; }
 
-/// A record of `numbers` numbers to all blocks of the cluster, by a warp: its number n to at(n).
+/// Sends a record of `numbers` numbers from a warp to all blocks of the cluster: number n to at(n).
 template <int numbers, class At>
 __device__ void send_to_all(OneChain const& chain, Inbox const& inbox, int lane,
                             double const* record, At const& at) {

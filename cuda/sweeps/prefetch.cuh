@@ -1,6 +1,6 @@
-// Bodies on their way from memory to a thread's own place in its block's shared memory while the
-// thread is busy with the one before them: larger handles leave no registers in which to wait for
-// numbers. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Prefetch of bodies to a thread's place in shared memory while the thread processes the body
+// before. With larger handles there are no registers to hold the numbers under way.
+// tests/support/cuda_on_host.hpp, included first, makes this file compile on the host.
 #pragma once
 
 #include "cuda/device/copies.cuh"
@@ -8,17 +8,17 @@
 
 namespace catena::cuda::kernels {
 
-/// Bodies [begin, end) of a thread (`Bodies`: dca::Resting), each once and in turn. A thread's two
-/// places lie together, an odd number of numbers, so that threads do not meet in a bank.
+/// Bodies [begin, end) of a thread, each read once and in order. `Bodies`: dca::Resting. A thread
+/// has two places with an odd number of doubles in total, so that threads access different banks.
 template <class Bodies>
 class BodiesInTurn {
     using Read = typename decltype(Bodies::leaf)::template Body<std::int64_t>;
     using Body = typename Bodies::template Body<std::int64_t>;
-    static constexpr int numbers =
-        static_cast<int>(sizeof(Read) / sizeof(double)) - 1;  // but for which body it is
+    // The index of the body is not stored.
+    static constexpr int numbers = static_cast<int>(sizeof(Read) / sizeof(double)) - 1;
     static constexpr int of_thread = 2 * numbers | 1;
 
-    /// Readers of leaves (dca/lane_access.hpp): one starts copies, the other finds what has come.
+    /// Reader of leaves (dca/lane_access.hpp) that starts asynchronous copies and returns zeros.
     struct Start {
         double* to;
         int n = 0;
@@ -40,6 +40,7 @@ class BodiesInTurn {
             return if_any(view, k);
         }
     };
+    /// Reader that returns the copied numbers in the order in which Start copied them.
     struct Take {
         double const* from;
         int n = 0;
@@ -64,7 +65,7 @@ class BodiesInTurn {
     };
 
   public:
-    /// Numbers of a block in shared memory.
+    /// Size of a block's shared memory in doubles.
     static __host__ __device__ constexpr std::size_t size(int threads) {
         return static_cast<std::size_t>(of_thread) * static_cast<std::size_t>(threads);
     }
@@ -72,20 +73,23 @@ class BodiesInTurn {
         : bodies_(bodies), own_(memory + threadIdx.x * of_thread), next_(begin), end_(end) {
         start();
     }
-    /// As a sweep asks for a part's bodies: which one it is is known.
+    /// Access to a part's bodies in the form that a sweep expects; the index is ignored.
     struct Part {
         BodiesInTurn& all;
         __device__ Body body(int) const { return all.next(); }
     };
 
   private:
+    /// Place of body k.
     __device__ double* place_of(std::int64_t k) const { return own_ + (k & 1) * numbers; }
+    /// Starts the copy of the next body.
     __device__ void start() {
         bodies_.leaf.body(bodies_.loads, next_, Start{place_of(next_)});
         restricted_ = bodies_.restricted[next_];
         close_copies();
     }
-    /// The next copies start before these numbers are asked for, as a compiler keeps them in this order: who has few registers asks late.
+    /// Returns the next body. The following copy starts before this body's numbers are read. The
+    /// compiler keeps this order, so that code with few registers reads the numbers late.
     __device__ Body next() {
         wait_for_copies<0>();
         std::int64_t const k = next_;

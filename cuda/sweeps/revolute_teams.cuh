@@ -1,22 +1,23 @@
-// Runs on revolute joints by several lanes of a warp each: where runs are few, a GPU has more
-// threads than that. What does not wait for other bodies the lanes find of a body each, and leave
-// in shared memory; then, on the way up, all have the inertia and each one or two of the six
-// wrenches (floating_run.hpp), and in the end a row of the segment. They leave the bits of one
-// thread's climb_revolutes() and descend_revolutes(). A host compiler takes it too, where
-// tests/support/cuda_on_host.hpp stands before it.
+// Passes of runs on revolute joints by several lanes of a warp, for chains with fewer runs than a
+// GPU has threads. Each lane computes what does not depend on other bodies for one body at a time
+// and stores it in shared memory. In the inward pass all lanes have the articulated-body inertia,
+// and each has one or two of the six wrenches (floating_run.hpp). At the end each has a row of the
+// segment. Results are bitwise those of one thread's climb_revolutes() and descend_revolutes().
+// tests/support/cuda_on_host.hpp, included first, makes this file compile on the host.
 #pragma once
 
 #include "cuda/sweeps/team_memory.cuh"
 
 namespace catena::cuda::kernels {
 
+/// Lanes per team.
 constexpr int lanes_of_narrow_team = 4, lanes_of_broad_team = 16;
-// More runs than the first have fewer lanes each, more than the second a thread: they keep a GPU
-// busy with that.
+// Largest numbers of runs for broad teams and for teams at all. More runs keep a GPU busy with
+// narrow teams, or with one thread per run.
 constexpr std::int64_t most_runs_of_broad_teams = 2048, most_runs_of_teams = 8192;
 
-/// All lanes of a warp come to what it does: also with teams that have fewer bodies than others of
-/// it.
+/// Team of lanes that eliminates one run in the inward pass. All lanes of a warp call its members
+/// together. Teams of the warp may have different numbers of bodies unless `whole`.
 template <int lanes, bool whole>
 class RevoluteTeam {
     using Body = dca::ArticulatedBody<double>;
@@ -25,12 +26,12 @@ class RevoluteTeam {
     using InRun = dca::LoadedBodyInRun<double>;
     using Ahead = BodiesAhead<lanes>;
     using Column = Vector<double, 6>;
-    // Wrench 0 to 4: `first`, then the bias; wrench w is that of lane w % lanes.
+    // Wrenches 0 to 4 are `first`, wrench 5 is the bias. Lane w % lanes holds wrench w.
     static constexpr int bias = 5, wrenches = (bias + lanes) / lanes, last_wrench = wrenches - 1;
     static_assert(whole ? bodies_of_whole_run % lanes == 0 : bodies_of_whole_run == lanes);
 
   public:
-    /// `works`: else it only goes along with the warp's other teams.
+    /// `works`: false for a team that only accompanies the warp's other teams.
     __device__ RevoluteTeam(BodiesOfTeam<lanes, whole> const& bodies, int lane, bool works)
         : bodies_(bodies),
           own_(lane % lanes),
@@ -39,7 +40,8 @@ class RevoluteTeam {
           works_(works) {}
     __device__ bool leads() const { return works_ && own_ == 0; }
 
-    /// As dca::climb_revolutes(). put_row(i, dca::SegmentRow): by the lane that has it.
+    /// Eliminates the run as dca::climb_revolutes() does. put_row(i, dca::SegmentRow) is called by
+    /// the lane that holds row i.
     template <class BodyOf, class Kept, class PutRow>
     __device__ __forceinline__ void climb(BodyOf const& body, Ahead const& ahead, Kept& kept,
                                           PutRow const& put_row) {
@@ -51,7 +53,7 @@ class RevoluteTeam {
                     before_last());
         end(before, body(bodies_.last()), dca::Undriven{}, kept, put_row);
     }
-    /// The same where revolute joints' loads are given. `all`: as FollowedBodies.
+    /// Eliminates a run whose loads at revolute joints are given. `all`: as for FollowedBodies.
     template <class Leaf, class Kept, class PutRow>
     __device__ __forceinline__ void climb(dca::RunWithLoads<Leaf> const& loaded, bool all,
                                           Ahead const& ahead, Kept& kept, PutRow const& put_row) {
@@ -65,6 +67,7 @@ class RevoluteTeam {
     }
 
   private:
+    /// Storage that only the team's first lane writes.
     template <class Kept>
     struct ByLeader {
         Kept& kept;
@@ -77,12 +80,13 @@ class RevoluteTeam {
         }
     };
 
-    /// What the bodies after it want of one, as dca::BodiesOfRun::State.
+    /// State of a body that the following bodies need; see dca::BodiesOfRun::State.
     struct Prepared {
         Mat3 turn, axes2;
         Vec3 inward;
     };
-    /// All bodies; returns the last of the lane's own.
+    /// Prepares all bodies and stores what the inward pass needs. Returns the state of the last of
+    /// the lane's own bodies.
     template <class BodyOf, class Kept>
     __device__ __forceinline__ Prepared prepare(BodyOf const& body, Ahead const& ahead,
                                                 Kept& kept) {
@@ -102,10 +106,12 @@ class RevoluteTeam {
         __syncwarp();
         return own;
     }
-    /// All bodies, as FollowedBodies; returns the last but one.
+    /// Computes the motion along the run and prepares all bodies, as FollowedBodies does. Returns
+    /// the state of the last body but one.
     template <class Leaf, class Kept>
     __device__ __forceinline__ dca::FollowedState<double> follow(
         dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead, Kept& kept) {
+        /// Axis of a revolute joint in the run's axes, and its rate.
         struct Turning {
             Vec3 axis;
             double rate;
@@ -142,12 +148,14 @@ class RevoluteTeam {
         __syncwarp();
         return of_lane(own, before_last());
     }
-    /// The lane that has this body.
+    /// Lane that holds the last body but one.
     __device__ int before_last() const { return (bodies_.last() - 1) % lanes; }
-    /// Of the bodies from `first` on, one a lane; `swing`: of the one before them.
+    /// Stores what the inward pass needs of the bodies from `first` on, one per lane. `swing`:
+    /// velocity bias of the body before them.
     template <class Kept>
     __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about,
                                               Swing& swing, Ahead const& ahead, Kept& kept) {
+        /// Terms of a body by which the velocity bias is propagated.
         struct Swung {
             Swing difference;
             Vec3 across;
@@ -161,6 +169,7 @@ class RevoluteTeam {
         if (works_) kept.put(i, body, swing_);
     }
 
+    /// Starts the inward pass with the run's first body.
     __device__ __forceinline__ void begin(Body const& body) {
         all_ = inertia_of(body);
         CATENA_UNROLL
@@ -176,7 +185,8 @@ class RevoluteTeam {
             for (int i = 0; i < bias; ++i) row_[s][i] = 0;
         }
     }
-    /// To all bodies but the first and the last. `Torque`: as dca::release_driven.
+    /// Adds all bodies but the first and the last to the articulated-body inertia and to the
+    /// wrenches. `Torque`: as for dca::release_driven.
     template <class Torque, class Kept>
     __device__ __forceinline__ void go_on(Ahead const& ahead, Kept& kept) {
         CATENA_NO_UNROLL
@@ -200,7 +210,8 @@ class RevoluteTeam {
         else
             return {};
     }
-    /// `goes`: else for other teams' sake.
+    /// Passes a revolute joint about `axis`. `goes`: false if the team only accompanies other
+    /// teams.
     template <class Torque>
     __device__ __forceinline__ dca::ReleasedRevolute<double> pass_revolute(Vec3 const& axis, Torque const& torque, bool goes = true) {
         dca::ReleasedRevolute<double> h;
@@ -209,7 +220,8 @@ class RevoluteTeam {
             dca::Release<double> const r = release_revolute(all_, axis, h);
             CATENA_UNROLL
             for (int s = 0; s < last_wrench; ++s) along[s] = release_revolute(wrench_[s], r);
-            if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
+            // Adding -0 leaves the wrenches that are not the bias unchanged, bit by bit.
+            if constexpr (std::is_same_v<Torque, double>)
                 along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
             else
                 along[last_wrench] = release_revolute(wrench_[last_wrench], r);
@@ -222,7 +234,7 @@ class RevoluteTeam {
         for (int s = 0; s < wrenches; ++s) gain_row(h, along[s], bias - 1, row_[s], e_[s]);
         return h;
     }
-    /// As dca::end_run() and dca::segment_of().
+    /// Ends the run and writes the rows of its segment, as dca::end_run() and dca::segment_of() do.
     template <class Torque, class Kept, class PutRow>
     __device__ __forceinline__ void end(dca::OutboardHandle<double> const& before, Body const& last, Torque const& torque, Kept& kept,
                                         PutRow const& put_row) {
@@ -246,7 +258,8 @@ class RevoluteTeam {
             kept.put_axes(before.axes);
         }
         dca::Handle<double, 5> const handle = handle2_of_end(last);
-        Column first[wrenches], second[wrenches];  // L^-1 of them; the bias's lane: of that
+        // L^-1 times the wrenches; on the lane of the bias, L^-1 times the bias.
+        Column first[wrenches], second[wrenches];
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) {
             int const own = own_ + s * lanes;
@@ -284,18 +297,20 @@ class RevoluteTeam {
             if (works_ && own_ + s * lanes < bias) put_row(own_ + s * lanes, row[s]);
         }
     }
+    /// Subtracts the acceleration difference `d` of a joint's two sides from the bias and the rows.
     __device__ __forceinline__ void take_difference(Swing const& d) {
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) dca::take_difference(e_[s], wrench_[s], d);
         if (has_bias()) dca::take_difference(wrench_[last_wrench], all_, d);
     }
-    /// Whether the lane's last wrench is the bias.
+    /// True if the lane's last wrench is the bias.
     __device__ bool has_bias() const { return own_ == bias % lanes; }
 
-    /// step(state, value of it) for the team's lanes in turn, for the first body of all not; returns what it was after the lane's own.
+    /// Calls step(state, value) with the values of the team's lanes in order, except for the run's
+    /// first body. Returns the state after the lane's own value.
     template <class State, class T, class Step>
     __device__ __forceinline__ State along(int first, State& state, T const& value, Step const& step) const {
-        constexpr int few = 4;  // so that what they have is under way together
+        constexpr int few = 4;  // exchanges in flight together
         State own = state;
         CATENA_NO_UNROLL
         for (int begin = 0; begin < lanes; begin += few) {
@@ -315,27 +330,31 @@ class RevoluteTeam {
         if constexpr (lanes < bodies_of_whole_run) state = of_lane(own, lanes - 1);
         return own;
     }
-    /// What the lane before has; `of_last`: the same of the bodies before, by the lanes that have them.
+    /// Returns the value of the lane before. For lane 0 it is `of_last` of the last lane, which
+    /// belongs to the bodies before.
     template <class T>
     __device__ T one_before(T const& value, T const& of_last) const {
         T const before = from_lane(value, leader_ + (own_ + lanes - 1) % lanes), last = of_lane(of_last, lanes - 1);
         return dca::either(own_ > 0, before, last);
     }
+    /// Returns the value of lane `lane` of the team.
     template <class T>
     __device__ T of_lane(T const& value, int lane) const {
         return from_lane(value, leader_ + lane);
     }
 
     BodiesOfTeam<lanes, whole> bodies_;
-    int own_, leader_;  // lane of the team, and of the warp that is the team's first
-    int most_;
+    int own_, leader_;  // lane in the team, and the team's first lane in the warp
+    int most_;  // largest number of bodies of the warp's teams
     bool works_;
-    Swing swing_;  // of the last of the lane's own bodies
+    Swing swing_;  // velocity bias of the last of the lane's own bodies
+    /// Articulated-body inertia of the bodies so far.
     dca::SpatialInertia<double> all_;
     Wrench wrench_[wrenches];
     double row_[wrenches][bias], e_[wrenches] = {};
 };
 
+/// Inward pass of one run by a team.
 template <bool whole, int lanes, class Sweep>
 __device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
     RevoluteTeam<lanes, whole> team(BodiesOfTeam<lanes, whole>(run), lane, works);
@@ -350,6 +369,7 @@ __device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const
     }
     sweep.s.note(kept.lost());
 }
+/// Outward pass of one run by a team.
 template <bool whole, int lanes, class Sweep>
 __device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
     BodiesOfTeam<lanes, whole> const bodies(run);
@@ -368,20 +388,23 @@ __device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run con
             if (leads) sweep.turn(run, i, of_revolute);
         });
 }
-/// Whether all lanes of the warp say so. By shuffles: nvcc 13 makes of what comes after a vote code that takes a quarter longer.
+/// True if `says` is true on all lanes of the warp. It uses shuffles, because after a vote nvcc 13
+/// generates code that is a quarter slower.
 __device__ inline bool all_lanes(int lane, bool says) {
     int all = says ? 1 : 0;
     CATENA_UNROLL
     for (int apart = 16; apart > 0; apart /= 2) all &= __shfl_sync(0xffffffffu, all, lane ^ apart);
     return all != 0;
 }
-/// A team without a run goes along with that of the warp's other one.
+/// Returns the run of a team. A team without a run on revolute joints takes that of the warp's
+/// other team.
 __device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run, bool by_revolutes) {
     std::int64_t const other = wanted ^ 1;
     return by_revolutes ? run : runs[other < runs.count ? other : runs.count - 1];
 }
-/// Whole runs by teams where a warp has no others; broad teams take others on revolute joints, too, but not those of one or two bodies: these, and
-/// what is beside whole runs of narrow teams, a thread takes.
+/// Kernel of the inward pass by teams. Teams take whole runs if all runs of the warp are whole.
+/// Broad teams also take other runs on revolute joints of three or more bodies. A thread takes the
+/// remaining runs.
 template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
     int const lane = static_cast<int>(threadIdx.x) % 32;
@@ -404,7 +427,8 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep s
     }
     if (works && lane % lanes == 0) climb_run(sweep, run);
 }
-/// What is wanted of every body is found one after the other: by a thread.
+/// Kernel of the outward pass by teams. If results of every body are required, a thread computes
+/// them one after the other.
 template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep sweep) {
     int const lane = static_cast<int>(threadIdx.x) % 32;
@@ -427,17 +451,19 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep
     }
     if (works && lane % lanes == 0) descend_run(sweep, run);
 }
+/// Returns the grid of a launch by teams.
 template <int lanes>
 RunsGrid grid_of_teams(std::int64_t runs, std::size_t numbers_of_warp) {
     RunsGrid grid = grid_of_runs(runs, lanes, 32);
     grid.shared_bytes = sizeof(double) * numbers_of_warp;
     return grid;
 }
-/// Of each of so many runs on revolute joints; none: a thread takes it alone.
+/// Returns the number of lanes per run on revolute joints; 0: one thread per run.
 constexpr int lanes_of_teams(std::int64_t runs) {
     return runs <= most_runs_of_broad_teams ? lanes_of_broad_team : runs <= most_runs_of_teams ? lanes_of_narrow_team : 0;
 }
-/// launch(kernel, grid), unless the runs go another way.
+/// Calls launch(kernel, grid) for the inward pass. Returns false, without a call, if teams are not
+/// used.
 template <class Sweep, class Launch>
 bool climb_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     if constexpr (dca::takes_whole_runs<Sweep>) {
@@ -448,6 +474,8 @@ bool climb_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     }
     return false;
 }
+/// Calls launch(kernel, grid) for the outward pass. Returns false, without a call, if teams are not
+/// used.
 template <class Sweep, class Launch>
 bool descend_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     if constexpr (dca::takes_whole_runs<Sweep>) {

@@ -1,6 +1,6 @@
-// A group of runs (run_groups.hpp) up and down, by a warp whose lane i has run i of it; on the way
-// down several may do the same. A host compiler takes it too, where tests/support/cuda_on_host.hpp
-// stands before it.
+// Passes of a group of runs (run_groups.hpp) by a warp whose lane i has run i of the group. In the
+// outward pass several warps may compute the same. tests/support/cuda_on_host.hpp, included first,
+// makes this file compile on the host.
 #pragma once
 
 #include "cuda/device/cluster.cuh"
@@ -9,13 +9,14 @@
 
 namespace catena::cuda::kernels {
 
-/// Sweeps that have such launches.
+/// True for sweeps that have launches by groups.
 template <class Sweep>
 constexpr bool by_groups = go_by_groups(Sweep::Sweeps::in_stage);
 
+/// One group of runs, as seen by a lane.
 class GroupOfRuns {
   public:
-    /// `group`: which of them.
+    /// `group`: number of the group.
     __device__ GroupOfRuns(GroupsView const& groups, RunsView const& runs, std::int64_t group)
         : groups_(groups),
           group_(group),
@@ -23,7 +24,8 @@ class GroupOfRuns {
           runs_(runs.count - group * runs_of_group),
           lane_(static_cast<int>(threadIdx.x) % runs_of_group) {}
 
-    /// From each lane's segment, if it has a run, to that of all, which is stored.
+    /// Merges the lanes' segments into the group's segment and stores it. Lanes beyond the last run
+    /// pass any segment.
     template <class Sweep>
     __device__ void climb(Sweep const& sweep, typename Sweep::Segment segment) const {
         int const restricted = lane_ < runs_ ? sweep.s.restricted[joint(lane_)] : 0;
@@ -48,12 +50,12 @@ class GroupOfRuns {
         if (lane_ == runs_of_group - 1) sweep.store(groups_.slot(group_), segment);
     }
 
-    /// Forces at a run's first joint and at the one after it.
+    /// Forces at a run's first joint and at the joint after it.
     template <class Sweep>
     struct Ends {
         typename Sweep::Sweeps::State first, next;
     };
-    /// Of each lane's run, if it has one.
+    /// Returns the forces at the ends of each lane's run, if it has one.
     template <class Sweep>
     __device__ Ends<Sweep> descend(Sweep const& sweep) const {
         typename Sweep::Sweeps::Node node[levels_of_group];
@@ -71,13 +73,13 @@ class GroupOfRuns {
     }
 
   private:
-    /// Inboard of run i.
+    /// Joint inboard of run i.
     __device__ std::int64_t joint(int i) const { return first_ + i * dca::longest_run; }
-    /// The first run of the outboard half of the pair that has this lane's.
+    /// First run of the outboard half of the pair that contains this lane's run.
     __device__ int middle(int level) const { return (lane_ & ~((2 << level) - 1)) + (1 << level); }
 
     GroupsView const& groups_;
-    std::int64_t group_, first_, runs_;  // `first`: body
+    std::int64_t group_, first_, runs_;  // `first_`: body
     int lane_;
 };
 

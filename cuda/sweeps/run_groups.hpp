@@ -1,5 +1,5 @@
-// Runs that the warp which has them joins itself: the lowest levels of a long chain's tree, without
-// a launch of their own.
+// Groups of runs that one warp merges itself: the lowest levels of a long chain's tree, without a
+// launch of their own.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,22 @@
 
 namespace catena::cuda {
 
-/// A warp has a lane for each.
+/// Number of runs per group, one per lane of a warp, and number of tree levels within a group.
 constexpr int runs_of_group = 32, levels_of_group = 5;
 static_assert(runs_of_group == 1 << levels_of_group);
-constexpr std::int64_t bodies_of_group = runs_of_group * dca::longest_run;  // but of the last one
-/// With fewer, the runs' launches would lose more by them than those of the stages above gain.
+/// Number of bodies per group; the last group may have fewer.
+constexpr std::int64_t bodies_of_group = runs_of_group * dca::longest_run;
+/// Smallest number of groups for which stages are planned above groups. With fewer groups, the
+/// launches of the runs lose more time than those of the stages above gain.
 constexpr std::int64_t fewest_groups_below_stages = 4096;
 
-/// Whether sweeps with such records can, those of handles with one direction: a lane joins what it
-/// holds to what another lane has, in registers.
+/// True if sweeps with such records can use groups: those with handles of one direction. A lane
+/// then merges its segment with another lane's in registers.
 constexpr bool go_by_groups(dca::StageRecords const& records) { return records.state == 1; }
 
-/// As if they were runs. None where the tree's lowest levels do not join the first 32 runs, the
-/// next ones and so on, and nothing else, as where chains begin in between.
+/// Returns the groups in the form of runs. The result is empty unless the tree's lowest levels
+/// merge runs 0 to 31, the next 32 runs and so on, and no others. That fails, for example, if a
+/// chain begins within a group.
 inline std::vector<dca::Run> groups_of(std::vector<dca::Run> const& runs,
                                        std::vector<std::vector<dca::Merge>> const& levels,
                                        dca::StageRecords const& records) {
@@ -47,17 +50,22 @@ inline std::vector<dca::Run> groups_of(std::vector<dca::Run> const& runs,
     return parts;
 }
 
-/// Group i begins with body i bodies_of_group; the first `inner` ones go on to the next one's.
+/// View of a list of groups. Group i begins with body i * bodies_of_group. Each of the first
+/// `inner` groups is followed by the next group's first joint.
 struct GroupsView {
     dca::Run const* list = nullptr;
     std::int64_t inner = 0;
     explicit CATENA_HD operator bool() const { return list != nullptr; }
+    /// Slot of the group's segment.
     CATENA_HD std::int64_t slot(std::int64_t i) const { return list[i].slot; }
+    /// First body of the group.
     CATENA_HD std::int64_t first(std::int64_t i) const { return i * bodies_of_group; }
+    /// Joint after the group.
     CATENA_HD std::int64_t next(std::int64_t i) const {
         return i < inner ? first(i + 1) : list[i].next;
     }
 };
+/// Returns the view of `groups`; `list` is the address of a copy of them.
 inline GroupsView view_of_groups(std::vector<dca::Run> const& groups, dca::Run const* list) {
     GroupsView view{groups.empty() ? nullptr : list};
     while (view.inner < std::ssize(groups) &&
@@ -66,14 +74,14 @@ inline GroupsView view_of_groups(std::vector<dca::Run> const& groups, dca::Run c
     return view;
 }
 
-/// A tree's groups and stages.
+/// Groups and stages of a tree.
 struct PlanByGroups {
     std::vector<dca::Run> groups;      // groups_of()
-    bool stages_above_groups = false;  // else above runs
+    bool stages_above_groups = false;  // false: the stages are above runs
     dca::StagePlan stages;
 };
-/// From `fewest` groups on stages stand above these, with blocks as narrow as one launch that takes
-/// all up and down again allows.
+/// Plans the groups and the stages above them, if there are at least `fewest` groups. Blocks of the
+/// stages are as narrow as a single launch with both passes of all stages allows.
 inline PlanByGroups plan_by_groups(std::vector<dca::Run> const& runs,
                                    std::vector<std::vector<dca::Merge>> const& levels,
                                    std::vector<dca::Root> const& roots, std::int64_t slots,

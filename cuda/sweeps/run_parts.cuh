@@ -1,6 +1,5 @@
-// Records in a block's shared memory, and what its threads do with a few runs of a sweep, up and
-// down: a thread a part. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
-// before it.
+// Records in a block's shared memory, and both passes of a few runs with one thread per part of a
+// run. tests/support/cuda_on_host.hpp, included first, makes this file compile on the host.
 #pragma once
 
 #include "cuda/sweeps/branchless_math.cuh"
@@ -9,20 +8,23 @@
 
 namespace catena::cuda::kernels {
 
+/// Number of this thread in the launch.
 __device__ inline std::int64_t thread() {
     return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
 }
 
+/// Dynamic shared memory of a block.
 alignas(16) extern __shared__ double shared_numbers[];
 
-/// Records in a block's shared memory, `stride` numbers from one to the next: neither neighbouring
-/// threads nor those a power of two apart meet in a bank, and how far a number is from its record's
-/// first one a compiler knows.
+/// Records in a block's shared memory, at intervals of `stride` numbers. Neighbouring threads and
+/// threads a power of two apart access different banks. The offset of a number within its record is
+/// a compile-time constant.
 template <class T, int stride_ = static_cast<int>(sizeof(T) / sizeof(double))>
 struct PackedRecords {
     static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double)),
                          stride = stride_ | 1;
     static_assert(numbers <= stride);
+    /// Size of `count` records in doubles.
     static constexpr __host__ __device__ std::size_t size(int count) {
         return static_cast<std::size_t>(dca::packed_numbers(stride, count));
     }
@@ -45,7 +47,8 @@ struct PackedRecords {
     using Numbers = Vector<double, numbers>;
 };
 
-/// put(i, get(i)) for i from `begin` in steps to the end, so many of them read before any is put: memory may be far.
+/// Calls put(i, get(i)) for i = begin, begin + step, ... below end. It reads `at_once` values
+/// before it writes any, which hides the latency of memory.
 template <int at_once, class Get, class Put>
 __device__ void move_some(int begin, int end, int step, Get const& get, Put const& put) {
     for (int first = begin; first < end; first += at_once * step) {
@@ -59,12 +62,12 @@ __device__ void move_some(int begin, int end, int step, Get const& get, Put cons
     }
 }
 
-/// A sweep that takes factors of ours, in joined(), part(), read() and down() (Evaluation). As these of any, in fewer instructions where it
-/// does.
+/// Sweep whose joined(), part(), read() and down() accept factorizers (FusedSweep).
 template <class Sweep>
 concept takes_factors = requires(Sweep const& sweep, typename Sweep::Segment const& segment, typename Sweep::Node& node) {
     sweep.joined(segment, segment, dca::JointAt{}, node, BranchlessFactorizer<Sweep::K == 1>{});
 };
+/// Merges two segments, with the branchless factorizer if the sweep accepts one.
 template <class Sweep>
 __device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename Sweep::Segment const& inboard,
                                                   typename Sweep::Segment const& outboard, dca::JointAt const& at,
@@ -74,7 +77,7 @@ __device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename S
     else
         return sweep.joined(inboard, outboard, at, node);
 }
-/// `quick`: where there are registers for it.
+/// Reads a part's bodies. `quick`: there are enough registers for the branchless inverse length.
 template <bool quick, class Sweep, class Reader = dca::ReadHere>
 __device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t begin, std::int64_t end, Reader const& by = {}) {
     if constexpr (quick && takes_factors<Sweep>)
@@ -84,6 +87,7 @@ __device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t be
     else
         return sweep.read(begin, end);
 }
+/// Eliminates part `p` of a run, with the branchless factorizer if the sweep accepts one.
 template <class Sweep, class Part>
 __device__ typename Sweep::Segment part_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part) {
     if constexpr (takes_factors<Sweep>)
@@ -92,6 +96,7 @@ __device__ typename Sweep::Segment part_quickly(Sweep const& sweep, dca::Run con
         return sweep.part(run, p, part);
 }
 
+/// Performs the outward pass of part `p` of a run. `passages`: storage for what its joints pass on.
 template <bool unroll, class Sweep, class Part, class State, class Passages>
 __device__ void down_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part, State const& first, State const& next,
                              Passages&& passages) {
@@ -101,24 +106,28 @@ __device__ void down_quickly(Sweep const& sweep, dca::Run const& run, int p, Par
         sweep.template down<unroll>(run, p, part, first, next, passages);
 }
 
-/// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
-/// warp's threads walk side by side.
+/// Assignment of a block's threads to runs and parts. Thread t has part t / lanes mod parts_of_run
+/// of run t mod lanes, in the block's group number t / (lanes parts_of_run). A group has `lanes`
+/// runs, so that the threads of a warp proceed in lockstep.
 struct RunPart {
     int run, part;
     __device__ RunPart(int thread, int lanes)
         : run(thread / (lanes * dca::parts_of_run) * lanes + thread % lanes), part(thread / lanes % dca::parts_of_run) {}
 };
+/// Number of runs per group.
 __device__ inline int lanes_of_block() {
     int const of_part = static_cast<int>(blockDim.x) / dca::parts_of_run;
     return of_part < 32 ? of_part : 32;
 }
 
-/// Each in the place of the part's segment.
+/// Storage of nodes, each in the place of its part's segment.
 template <class Sweep>
 using NodesOfParts = PackedRecords<typename Sweep::Sweeps::Node, PackedRecords<typename Sweep::Segment>::stride>;
-/// The segments of runs `first` + RunPart(...).run, as many as the block's threads do at once: take(run, segment) by one thread each. All
-/// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its
-/// bodies. `nodes_stay`: a sweep that keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
+/// Computes the segments of runs `first` + RunPart(...).run, as many as the block's threads can
+/// process at once. Calls take(run, segment) by one thread per run. All threads of a block must
+/// call it, and there is one thread for every part. `memory` has room for one segment per thread.
+/// `part` receives the bodies that a thread read. `nodes_stay`: nodes between parts stay in
+/// `memory` for the outward pass in the same launch; otherwise they are stored by joint.
 template <bool nodes_stay, class Sweep, class Take>
 __device__ void climb_some_runs(RunsView const& runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
                                 typename Sweep::Part& part, Take const& take) {
@@ -130,7 +139,8 @@ __device__ void climb_some_runs(RunsView const& runs, std::int64_t first, std::i
     dca::Run run;
     if (i < end) run = runs[i];
     int const count = i < end ? dca::parts_of(run) : 0;
-    std::uint8_t restricted_of[dca::parts_of_run] = {};  // read now, looked at when parts join
+    // Numbers of restricted directions are read now and used when parts are merged.
+    std::uint8_t restricted_of[dca::parts_of_run] = {};
     CATENA_UNROLL
     for (int p = 1; p < dca::parts_of_run; ++p)
         if (p < count) restricted_of[p] = sweep.s.restricted[dca::begin_of(run, p)];
@@ -142,7 +152,8 @@ __device__ void climb_some_runs(RunsView const& runs, std::int64_t first, std::i
     if (mine.part > 0 && mine.part < count) parts.store(static_cast<int>(threadIdx.x), segment);
     __syncthreads();
     if (mine.part == 0 && count > 0) {
-        unsigned restricted = 0;  // a byte each: no array with a place that varies
+        // One byte per part avoids an array with a variable index.
+        unsigned restricted = 0;
         CATENA_UNROLL
         for (int p = 1; p < dca::parts_of_run; ++p) restricted |= static_cast<unsigned>(restricted_of[p]) << (8 * p);
         CATENA_NO_UNROLL
@@ -165,12 +176,13 @@ __device__ void climb_some_runs(RunsView const& runs, std::int64_t first, std::i
     __syncthreads();
 }
 
-/// Where a thread leaves what a part's joints pass on, but the last one.
+/// Storage in shared memory for what the joints of a thread's part pass on, except the last joint.
 template <class Sweep>
 struct PassagesInMemory {
     static constexpr int most = dca::part_length - 2;
     using Passage = typename Sweep::Passage;
     double* memory;
+    /// Size in doubles.
     static __host__ __device__ constexpr std::size_t size(int threads) { return most * PackedRecords<Passage>::size(threads); }
     __device__ void put(int i, Passage const& passage) const { records(i).store(static_cast<int>(threadIdx.x), passage); }
     __device__ Passage get(int i) const { return records(i).load(static_cast<int>(threadIdx.x)); }
@@ -182,11 +194,12 @@ struct PassagesInMemory {
 };
 template <class Sweep>
 using BodiesOf = decltype(Sweep::bodies);
-/// A sweep that reads a part's bodies one by one and comes by them twice on its way down.
+/// Sweep that reads a part's bodies one by one, and twice in its outward pass.
 template <class Sweep>
 concept comes_twice = requires { requires Sweep::one_by_one; };
-/// Where a thread leaves what such a sweep wants again. What is of bodies lies together, an odd number of numbers, so that threads do not meet
-/// in a bank; passages, where they do not stay with the thread, come after.
+/// Storage in shared memory for data that such a sweep needs twice. Data of a thread's bodies are
+/// contiguous, with an odd number of doubles, so that threads access different banks. Passages
+/// follow, unless they stay in registers.
 template <class Sweep, bool passages_too>
 class LeftInMemory {
     using Turning = typename BodiesOf<Sweep>::Turning;
@@ -199,6 +212,7 @@ class LeftInMemory {
   public:
     static constexpr bool keeps_turnings = true;
     static constexpr int most = Passages::most, of_thread = dca::part_length * numbers_of<Turning> | 1;
+    /// Size in doubles.
     static __host__ __device__ constexpr std::size_t size(int threads) {
         std::size_t const turnings = size_of_turnings(threads);
         if constexpr (passages_too)
@@ -227,10 +241,11 @@ class LeftInMemory {
     double* turnings_;
     Passages passages_;
 };
-/// Whether passages stay in registers where there is memory for them.
+/// True if passages stay in registers although there is shared memory for them.
 template <class Sweep>
 constexpr bool passages_stay = Sweep::K <= 2;
-/// Whether there is room for them where a thread has a segment's memory, and its state there too.
+/// True if the memory of one segment per thread has room for a thread's state and for the data of
+/// its bodies.
 template <class Sweep>
 constexpr bool turnings_fit = false;
 template <class Sweep>
@@ -238,14 +253,15 @@ template <class Sweep>
 constexpr bool turnings_fit<Sweep> = PackedRecords<typename Sweep::Sweeps::State>::stride + LeftInMemory<Sweep, false>::of_thread <=
                                      PackedRecords<typename Sweep::Segment>::stride;
 
-/// Whether bodies of runs come ahead of the thread that waits for them: it gains where handles are spherical, others lose a little.
+/// True if bodies of runs are prefetched to shared memory. This is faster with spherical joints and
+/// slightly slower with others.
 template <class Sweep>
 constexpr bool comes_ahead = false;
 template <class Sweep>
     requires comes_twice<Sweep>
 constexpr bool comes_ahead<Sweep> = Sweep::K == 3;
 
-/// Numbers of a block that descend_some_runs() takes in memory.
+/// Size of the block's shared memory for descend_some_runs() in doubles.
 template <class Sweep>
 constexpr std::size_t numbers_of_descent(int threads) {
     std::size_t const states = PackedRecords<typename Sweep::Sweeps::State>::size(threads);
@@ -255,9 +271,11 @@ constexpr std::size_t numbers_of_descent(int threads) {
         return states;
 }
 
-/// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a segment a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`:
-/// as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
+/// Performs the outward pass of the same runs from the forces at their ends, of_first(run, i) and
+/// of_next(run, i). A thread computes the force at its part's first joint from the forces of the
+/// parts after it. `memory`: one segment per thread, or numbers_of_descent() if `roomy`, that is if
+/// registers are scarce. `part`: as left by climb_some_runs(), or null. `nodes_stay`: `memory` is
+/// unchanged since climb_some_runs().
 template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(RunsView const& runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
@@ -272,7 +290,8 @@ __device__ void descend_some_runs(RunsView const& runs, std::int64_t first_run, 
     typename Sweep::Part read;
     typename Sweep::Sweeps::Node node;
     State own, next;
-    if (mine.part < count) {  // all that is read before any of it is needed
+    // All data are read before any of them is used.
+    if (mine.part < count) {
         if (!part) read = read_quickly<!roomy>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part), dca::ReadLast{});
         if constexpr (nodes_stay && Sweep::keeps_nodes) {
             if (mine.part > 0) node = NodesOfParts<Sweep>{memory}.load(here);

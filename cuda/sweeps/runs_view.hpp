@@ -1,5 +1,5 @@
-// A tree's runs as a GPU's threads ask for them: its memory is far, and most of them are known
-// without it.
+// List of a tree's runs for GPU threads. Most runs follow a pattern and need no access to memory,
+// whose latency is high.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace catena::cuda {
 
-/// Run i of a rank's first chain, if it is not its last one.
+/// Returns run i of a rank's first chain, if it is not the last run of that chain.
 CATENA_HD dca::Run inner_run(std::int64_t i) {
     return {i * dca::longest_run, dca::longest_run, i, (i + 1) * dca::longest_run};
 }
 
-/// The first `inner` are as inner_run() says, and not looked up.
+/// View of a list of runs. The first `inner` runs equal inner_run() and are not read from memory.
 struct RunsView {
     dca::Run const* list = nullptr;
     std::int64_t count = 0, inner = 0;
@@ -23,7 +23,7 @@ struct RunsView {
     }
 };
 
-/// Of these runs, which `list` has somewhere.
+/// Returns the view of `runs`; `list` is the address of a copy of them.
 inline RunsView view_of(std::vector<dca::Run> const& runs, dca::Run const* list) {
     auto const is_inner = [](dca::Run const& run, dca::Run const& i) {
         return run.body == i.body && run.count == i.count && run.slot == i.slot &&

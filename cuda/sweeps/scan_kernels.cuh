@@ -1,6 +1,6 @@
-// Scans along chains (tree/stages.hpp, plan_scan) on a GPU: a block climbs its part of the tree in
-// its shared memory and descends there. A host compiler takes it too, where
-// tests/support/cuda_on_host.hpp stands before it.
+// Scans along chains (tree/stages.hpp, plan_scan) on a GPU. A block performs both passes of its
+// part of the tree in shared memory. tests/support/cuda_on_host.hpp, included first, makes this
+// file compile on the host.
 #pragma once
 
 #include <algorithm>
@@ -14,40 +14,42 @@ namespace catena::cuda::kernels {
 
 using dca::most_of_scan;
 
-/// A stage of a scan on a device.
+/// Stage of a scan on a device.
 struct DeviceScanStage {
     unsigned blocks = 0;
-    int levels = 0, width = 0;
-    RunsView runs = {};  // the items; none where they are not
-    std::int32_t const* slot = nullptr;
+    int levels = 0, width = 0;           // `width`: most items of a block
+    RunsView runs = {};                  // the items; empty if the items are stored values
+    std::int32_t const* slot = nullptr;  // slot of every item
     dca::ScanMerge const* merges = nullptr;
     dca::ScanTop const* tops = nullptr;
     dca::ScanBlock const* block = nullptr;
     std::int32_t const* level_end = nullptr;
 };
 
-/// Whose runs' values come from their bodies' steps, one after the other (RevoluteScan); and what
-/// comes after the scan may come before it for runs that begin at the ground.
+/// Scan whose runs' values are products of their bodies' steps (RevoluteScan). An action after the
+/// scan may run before it for runs that begin at the ground.
 template <class Scan>
 concept goes_by_steps = requires(Scan const& scan, dca::Run const& run) {
     scan.step(run, 0);
     scan.begins_at_ground(run);
 };
 
-/// A block's part of it. On the way up a joined value takes the inboard one's place and that the
-/// outboard one's, on the way down what lies before a segment takes its place.
+/// A block's part of a stage, in shared memory. In the inward pass a joined value takes the inboard
+/// value's place, and the inboard value takes the outboard one's. In the outward pass a segment's
+/// value is replaced by the value before it.
 template <class Scan>
 class BlockOfScan {
     using Value = typename Scan::Value;
     using Values = PackedRecords<Value>;
 
   public:
-    /// Numbers that it needs.
+    /// Size of the memory in doubles.
     static __host__ __device__ int size(DeviceScanStage const& stage) {
         return static_cast<int>(Values::size(stage.width)) + stage.width + (stage.levels + 1) / 2;
     }
-    /// Reads the lists, and what lies before what is complete where that is `known`: nothing waits
-    /// for these later. A thread an item.
+    /// Reads the lists, and the values before complete segments if `known`, so that later code does
+    /// not wait for them. The block has one thread per item. `number`: number of the block in the
+    /// stage.
     __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory,
                            bool known, unsigned number = blockIdx.x)
         : stage_(stage),
@@ -70,12 +72,12 @@ class BlockOfScan {
                 stage.level_end[static_cast<std::int64_t>(number) * stage.levels + threadIdx.x];
         if (known) learn();
     }
-    /// What lies before what is complete.
+    /// Reads the values before complete segments.
     __device__ void learn() {
         if (has_top_) before_top_ = scan_.before(top_.slot);
     }
 
-    /// `runs_are_known`: as wholes.
+    /// Performs the inward pass. `runs_are_known`: the runs' values are already stored.
     template <bool runs_are_known = false>
     __device__ void climb() const {
         if (has_item_)
@@ -91,19 +93,22 @@ class BlockOfScan {
             });
         __syncthreads();
     }
-    /// What other stages make more of, and what the way down by a launch of its own needs.
+    /// Stores values that other stages continue with, and that an outward pass in another launch
+    /// needs.
     __device__ void put() const {
         if (has_item_) scan_.set_whole(slot_, values_.load(place()));
         put_tops();
     }
+    /// Stores the values of segments that are complete in this block.
     __device__ void put_tops() const {
         if (has_top_) scan_.set_whole(top_.slot, values_.load(top_.place));
     }
+    /// Reads the values back for an outward pass.
     __device__ void take() const {
         if (has_item_) values_.store(place(), scan_.whole(slot_));
         __syncthreads();
     }
-    /// Precondition: what lies before the block was known.
+    /// Performs the outward pass. Precondition: the values before complete segments were read.
     __device__ void descend() const {
         if (has_top_) values_.store(top_.place, before_top_);
         CATENA_NO_UNROLL
@@ -118,7 +123,7 @@ class BlockOfScan {
 
   private:
     static __device__ int place() { return static_cast<int>(threadIdx.x); }
-    /// After all threads have met.
+    /// Calls action(merge) for the thread's merge of a level, after a barrier.
     template <class Action>
     __device__ void at_merge(int level, Action const& action) const {
         __syncthreads();
@@ -138,9 +143,10 @@ class BlockOfScan {
     Value before_top_;
 };
 
-/// Blocks that share a multiprocessor: more find no registers for larger values.
+/// Number of blocks that share a multiprocessor; more blocks lack registers for larger values.
 template <class Scan>
 constexpr int scans_at_once = sizeof(typename Scan::Value) <= 8 * sizeof(double) ? 2 : 1;
+/// Kernel of a stage's inward pass.
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>)
     climb_scan(DeviceScanStage stage, Scan scan) {
@@ -149,6 +155,7 @@ __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>)
     block.climb();
     block.put();
 }
+/// Kernel of both passes of the last stage.
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage, Scan scan) {
     wait_for_launch();
@@ -156,19 +163,20 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage,
     block.climb();
     block.descend();
 }
-/// action(item i)
+/// Action that calls action(item i) for index i.
 template <class Item, class Action>
 struct OfItem {
     Item const* items;
     Action action;
     __device__ void operator()(std::int64_t i) const { action(items[i]); }
 };
+/// True if an action is an OfItem.
 template <class Action>
 inline constexpr bool is_of_items = false;
 template <class Item, class Action>
 inline constexpr bool is_of_items<OfItem<Item, Action>> = true;
-/// action(k) for every body or item k, by all threads of the launch: neighbours at neighbouring
-/// places.
+/// Calls action(k) for every body or item k < count, by all threads of the launch. Neighbouring
+/// threads access neighbouring addresses.
 template <bool of_items, class Action>
 __device__ void for_all(std::int64_t count, Action const& action) {
     std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x,
@@ -176,8 +184,8 @@ __device__ void for_all(std::int64_t count, Action const& action) {
     for (std::int64_t i = thread(); i < end; i += threads)
         if (std::int64_t const k = of_items ? i : gpu_order::body(i); k < count) action(k);
 }
-/// What a cluster's blocks find of the runs of a stage of one block: a thread a body, then a thread
-/// a run.
+/// Computes the values of a stage's runs by the blocks of a cluster, for a stage of one block.
+/// First a thread computes the step of one body, then a thread combines the steps of one run.
 template <class Scan>
 class RunsByStep {
     static constexpr int bodies = static_cast<int>(dca::longest_run),
@@ -185,10 +193,11 @@ class RunsByStep {
     using Steps = PackedRecords<typename Scan::Step>;
 
   public:
+    /// Number of runs per block of the cluster.
     static __host__ __device__ int runs_of_block(DeviceScanStage const& stage, unsigned blocks) {
         return (stage.width + static_cast<int>(blocks) - 1) / static_cast<int>(blocks);
     }
-    /// Numbers that it needs.
+    /// Size of the memory in doubles.
     static __host__ __device__ std::size_t size(DeviceScanStage const& stage, unsigned blocks) {
         return Steps::size((runs_of_block(stage, blocks) + at_once - 1) / at_once * most_of_scan);
     }
@@ -200,7 +209,7 @@ class RunsByStep {
           end_(begin_ + runs_of_block(stage, gridDim.x)) {
         if (end_ > stage.width) end_ = stage.width;
     }
-    /// Leaves their wholes.
+    /// Stores the values of the block's runs.
     __device__ void operator()() const {
         int const thread = static_cast<int>(threadIdx.x);
         CATENA_NO_UNROLL
@@ -215,6 +224,7 @@ class RunsByStep {
     }
 
   private:
+    /// Combines the steps of run i.
     __device__ typename Scan::Value whole(int i, int count) const {
         auto const [rotation_of_first, omega_of_first, axes] = steps_.load(i * bodies);
         auto rotation = rotation_of_first;
@@ -230,15 +240,15 @@ class RunsByStep {
     Steps steps_;
     int begin_, end_;
 };
-/// Of one block's runs, and then action(i) for every item i, a run of the stage's: by one cluster,
-/// whose first block turns() when all runs' wholes are known.
+/// Performs both passes of a stage of one block by one cluster, then action(i) for every item i, a
+/// run of the stage. The first block calls turns() after the values of all runs are known.
 template <class Scan, class Action, class Turns>
 __device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, double* memory,
                               std::int64_t count, Action const& action, Turns const& turns) {
     static_assert(is_of_items<Action>);
     RunsByStep<Scan>(stage, scan, memory)();
     meet_cluster();
-    if (blockIdx.x + 1 == gridDim.x)  // while the first block turns
+    if (blockIdx.x + 1 == gridDim.x)  // concurrently with the first block
         for (std::int64_t i = threadIdx.x; i < count; i += blockDim.x)
             if (scan.begins_at_ground(stage.runs[i])) action(i);
     if (blockIdx.x == 0) turns();
@@ -247,14 +257,15 @@ __device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, do
         if (!scan.begins_at_ground(stage.runs[i])) action(i);
     });
 }
-/// Of one block, and then action(k) for every body or item k: by one cluster.
+/// Kernel of both passes of a stage of one block, then action(k) for every body or item k, by one
+/// cluster.
 template <class Scan, class Action>
 __global__ void __launch_bounds__(most_of_scan)
     turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
     wait_for_launch();
     if constexpr (goes_by_steps<Scan>) {
-        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true,
-                                      0);  // lists on their way meanwhile
+        // The block's lists are read while the runs' values are computed.
+        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true, 0);
         turn_by_steps(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage), count, action,
                       [&] {
                           block.template climb<true>();
@@ -270,7 +281,7 @@ __global__ void __launch_bounds__(most_of_scan)
         for_all<is_of_items<Action>>(count, action);
     }
 }
-/// Of that, of most_of_scan threads each.
+/// Number of blocks of that cluster, with most_of_scan threads each.
 template <class Scan>
 unsigned blocks_of_turn(DeviceScanStage const& stage, std::int64_t count) {
     std::int64_t const wanted =
@@ -278,13 +289,15 @@ unsigned blocks_of_turn(DeviceScanStage const& stage, std::int64_t count) {
     return static_cast<unsigned>(
         std::min<std::int64_t>(most_in_cluster, (wanted - 1) / most_of_scan + 1));
 }
+/// Size of a block's shared memory in doubles.
 template <class Scan>
 std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
     auto numbers = static_cast<std::size_t>(BlockOfScan<Scan>::size(stage));
     if constexpr (goes_by_steps<Scan>) numbers += RunsByStep<Scan>::size(stage, blocks);
     return numbers;
 }
-/// Of one block, with exchange() and the one block of the top `above` in between, as turn().
+/// Performs both passes of one block, with exchange() and the one block of the top `above` between
+/// the passes, as turn() does.
 template <bool runs_are_known, class Scan, class Exchange>
 __device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above,
                                   Exchange const& exchange) {
@@ -299,6 +312,7 @@ __device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> co
     block.learn();
     block.descend();
 }
+/// Kernel of both passes with an exchange between ranks.
 template <class Scan, class Exchange>
 __global__ void __launch_bounds__(most_of_scan)
     turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
@@ -307,7 +321,7 @@ __global__ void __launch_bounds__(most_of_scan)
     BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
     turn_shared_block<false>(block, above, exchange);
 }
-/// The same of one block's runs, and then action(i) as turn_scan_then().
+/// Kernel of both passes with an exchange between ranks, then action(i) as in turn_scan_then().
 template <class Scan, class Exchange, class Action>
 __global__ void __launch_bounds__(most_of_scan)
     turn_shared_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan,
@@ -319,6 +333,7 @@ __global__ void __launch_bounds__(most_of_scan)
     turn_by_steps(stage, scan, of_top + BlockOfScan<Scan>::size(top), count, action,
                   [&] { turn_shared_block<true>(block, above, exchange); });
 }
+/// Kernel of a stage's outward pass.
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>)
     descend_scan(DeviceScanStage stage, Scan scan) {
@@ -328,6 +343,7 @@ __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>)
     block.descend();
 }
 
+/// Number of threads of a stage's block.
 inline unsigned threads_of_scan(DeviceScanStage const& stage) {
     return static_cast<unsigned>((stage.width + 31) / 32 * 32);
 }

@@ -1,4 +1,5 @@
-// Which launches a scan takes over its stages, whoever makes them: as stage_walk.cuh for sweeps.
+// Order of the launches of a scan over its stages, independent of how a launch is made (see
+// stage_walk.cuh for sweeps).
 #pragma once
 
 #include <cstddef>
@@ -9,22 +10,31 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages() and blocks(i) of stage i; climb(i, scan), turn(i, scan) and descend(i,
-/// scan) of it; whether turn_then(scan, count, action) was launched; turn_shared(scan, exchange,
-/// top) of the last stage, what ranks show each other and `top`, and whether turn_shared_then(scan,
-/// exchange, top, count, action) was launched.
+/// Performs the passes of a scan by calls of `Launches`, which has these members.
+/// - stages(), blocks(i): number of stages and blocks of stage i.
+/// - climb(i, scan), turn(i, scan), descend(i, scan): inward pass, both passes and outward pass of
+/// stage i.
+/// - turn_then(scan, count, action): both passes and an action in one launch; false if that is
+/// impossible.
+/// - turn_shared(scan, exchange, top): both passes of the last stage with an exchange between ranks
+/// and their `top` tree.
+/// - turn_shared_then(scan, exchange, top, count, action): the same with an action; false if that
+/// is impossible.
 template <class Launches>
 class ScanWalk {
   public:
     explicit ScanWalk(Launches const& launches) : launches_(launches) {}
+    /// Performs the inward pass.
     template <class Scan>
     void climb(Scan const& scan) const {
         climb_below(launches_.stages(), scan);
     }
+    /// Performs the outward pass.
     template <class Scan>
     void descend(Scan const& scan) const {
         descend_below(launches_.stages(), scan);
     }
+    /// Performs both passes.
     template <class Scan>
     void climb_and_descend(Scan const& scan) const {
         if (launches_.stages() == 0) return;
@@ -33,14 +43,17 @@ class ScanWalk {
         launches_.turn(last, scan);
         descend_below(last, scan);
     }
-    /// And then action(k) for k < count, if one launch does all; else nothing is done.
+    /// Performs both passes, then action(k) for k < count, in one launch. If one launch is not
+    /// enough, it does nothing and returns false.
     template <class Scan, class Action>
     bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
         return is_one_block() && launches_.turn_then(scan, count, action);
     }
+    /// True if one block contains the whole scan.
     bool is_one_block() const { return launches_.stages() == 1 && launches_.blocks(0) == 1; }
 
-    /// As StageWalk::turn_shared.
+    /// Performs both passes with an exchange between ranks and their `top` tree, as
+    /// StageWalk::turn_shared().
     template <class Scan, class Exchange>
     bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
         if (!turns_in_a_block(launches_, top)) return false;
@@ -50,7 +63,7 @@ class ScanWalk {
         descend_below(last, scan);
         return true;
     }
-    /// And at_once().
+    /// Performs the same, then action(k) for k < count, in one launch as at_once().
     template <class Scan, class Exchange, class Action>
     bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top,
                      std::int64_t count, Action const& action) const {

@@ -1,5 +1,5 @@
-// A block's part of a sweep's stage (tree/stages.hpp) on a GPU. A host compiler takes it too, where
-// tests/support/cuda_on_host.hpp stands before it.
+// A block's part of a sweep's stage (tree/stages.hpp) on a GPU. tests/support/cuda_on_host.hpp,
+// included first, makes this file compile on the host.
 #pragma once
 
 #include <algorithm>
@@ -10,49 +10,50 @@
 
 namespace catena::cuda::kernels {
 
-/// A stage of a sweep (tree/stages.hpp) on a device.
+/// Stage of a sweep (tree/stages.hpp) on a device.
 struct DeviceStage {
     unsigned blocks = 0;
-    int forces = 0;  // places of a block
+    int forces = 0;  // places for forces per block
     dca::StageLayout layout;
-    RunsView runs = {};  // the items; none where they are not
+    RunsView runs = {};  // the items; empty if the items are stored segments
     dca::StageWord const* words = nullptr;
     dca::StageRoot const* roots = nullptr;
-    double* kept =
-        nullptr;  // of every block, its segments' memory: StageRecords::kept numbers a place
-    bool gathers = false;  // as dca::Stage
+    /// Memory in which each block keeps its places between the passes: StageRecords::kept numbers
+    /// per place.
+    double* kept = nullptr;
+    bool gathers = false;  // true if the stage only gathers segments for other ranks (dca::Stage)
 };
 
-/// Whether lanes of a warp share a merge: larger segments and biases at once find no registers in
-/// one.
+/// True if several lanes of a warp share a merge. One lane lacks registers for larger segments
+/// together with their biases.
 template <class Sweep>
 constexpr bool merges_by_teams = false;
 template <class Sweep>
     requires requires(Sweep const& sweep) { sweep.matrices(), sweep.biases(); }
 constexpr bool merges_by_teams<Sweep> = (Sweep::K > dca::most_directions_of_a_thread);
-/// Threads of a stage's block at most; of one that turns, where few blocks have a GPU to
-/// themselves.
+/// Largest number of threads of a stage's block, and of a block that performs both passes in one
+/// launch. In the latter case few blocks have the GPU to themselves.
 template <class Sweep>
 constexpr int threads_of = merges_by_teams<Sweep> ? 128 : Sweep::Sweeps::in_stage.threads;
 template <class Sweep>
 constexpr int threads_of_turn = merges_by_teams<Sweep> ? 256 : threads_of<Sweep>;
-/// And blocks that share a multiprocessor where a stage's memory lets them.
+/// Number of blocks that share a multiprocessor, if their shared memory allows it.
 template <class Sweep>
 constexpr int blocks_of_stage = merges_by_teams<Sweep> ? 4 : 1;
-/// Threads where so many are planned for a merge each, and there may be so many. Teams always take
-/// all.
+/// Returns the threads per block: `planned`, with one merge per thread, or `most` if teams merge.
 template <class Sweep>
 constexpr int threads_for(int planned, int most) {
     return merges_by_teams<Sweep> ? most : planned;
 }
 
-/// action(i) for i of [0, count) by a block's threads.
+/// Calls action(i) for i of [0, count) by the threads of a block.
 template <class Action>
 __device__ void each_of(int count, Action const& action) {
     for (auto i = static_cast<int>(threadIdx.x); i < count; i += static_cast<int>(blockDim.x))
         action(i);
 }
-/// How segments, nodes and forces lie in a stage's shared memory: a node in the place of a segment.
+/// Layout of segments, nodes and forces in a stage's shared memory. A node takes the place of a
+/// segment.
 template <class Sweep>
 struct RecordsOfStage {
     using Segments = PackedRecords<typename Sweep::Segment>;
@@ -62,6 +63,7 @@ struct RecordsOfStage {
     using Forces = PackedRecords<typename Sweep::Sweeps::State>;
     static_assert(!Sweep::keeps_nodes || Nodes::stride == Segments::stride);
 };
+/// Layout for sweeps whose merges use teams.
 template <class Sweep>
     requires merges_by_teams<Sweep>
 struct RecordsOfStage<Sweep> {
@@ -71,9 +73,9 @@ struct RecordsOfStage<Sweep> {
     using Forces = typename MergeTeam<Sweep>::Forces;
 };
 
-/// A block's part of a stage, in its shared memory: its words, which are read once, and the
-/// segments and forces at its places. A sweep that keeps nodes, or whose merges go by teams, has
-/// those there as well, each in the place of the outboard segment that it was made of.
+/// A block's part of a stage in its shared memory: its words, read once, and the segments and
+/// forces at its places. A sweep that keeps nodes, or whose merges go by teams, stores nodes there
+/// too. Each takes the place of the outboard segment of its merge.
 template <class Sweep>
 class BlockOfStage {
     using Segment = typename Sweep::Segment;
@@ -85,14 +87,14 @@ class BlockOfStage {
     static constexpr bool by_teams = merges_by_teams<Sweep>;
 
   public:
-    /// Numbers that it needs, of so many threads; an even number, so that words may stand behind
-    /// them.
+    /// Returns the size of the memory in doubles for a block of `of_threads` threads. It is even,
+    /// so that another block's words may follow.
     static __host__ __device__ int size(DeviceStage const& stage, int of_threads) {
         int const all =
             before_parts(stage) + (stage.runs ? static_cast<int>(Segments::size(of_threads)) : 0);
         return all + all % 2;
     }
-    /// `block` of the stage.
+    /// `block`: number of the block in the stage; `memory`: its shared memory.
     __device__ BlockOfStage(DeviceStage const& stage, unsigned block, Sweep const& sweep,
                             double* memory)
         : stage_(stage),
@@ -104,7 +106,7 @@ class BlockOfStage {
           forces_{segments_.origin + Segments::size(stage.layout.items)},
           memory_(memory),
           parts_(memory + before_parts(stage)) {}
-    /// First of all; before anything else the block's threads must meet.
+    /// Reads the block's words. It is called first; a barrier must follow.
     __device__ void take_words() const {
         int const count = stage_.layout.words();
         dca::StageWord const* const from = stage_.words + static_cast<std::int64_t>(block_) * count;
@@ -115,8 +117,8 @@ class BlockOfStage {
             [&](int i, dca::StageWord const& word) { to[i] = word; });
     }
 
-    /// `part`: of the thread's bodies, where items are runs. `and_down`: the way down is the same
-    /// launch's.
+    /// Reads the items' segments, or eliminates the runs. `part`: the thread's bodies, if items are
+    /// runs. `and_down`: the same launch performs the outward pass.
     template <bool and_down>
     __device__ void take_items(typename Sweep::Part& part) const {
         dca::BlockHead const& head = words_.head();
@@ -132,7 +134,7 @@ class BlockOfStage {
                     segments_.store(static_cast<int>(i - head.first_item), segment);
                 });
     }
-    /// What the blocks below give, and the rest as anywhere.
+    /// Receives segments of blocks below by letters and reads the other items from memory.
     __device__ void take_items(Letters const& letters) const {
         int const items = words_.head().items;
         each_of(items, [&](int i) {
@@ -144,9 +146,10 @@ class BlockOfStage {
             else
                 segments_.store(i, sweep_.load(item.own_slot()));
         });
-        // Neighbouring threads take neighbouring items, as many numbers of an item as there are
-        // threads left.
-        constexpr int at_once = Segments::numbers > 16 ? 16 : 8;  // memory is far
+        // Neighbouring threads take neighbouring items; the remaining threads share the numbers of
+        // an item.
+        // Independent requests hide the latency of memory.
+        constexpr int at_once = Segments::numbers > 16 ? 16 : 8;
         auto const all = static_cast<int>(blockDim.x), own = static_cast<int>(threadIdx.x);
         int side_by_side = 32;
         while (side_by_side < items && side_by_side < all) side_by_side *= 2;
@@ -156,6 +159,7 @@ class BlockOfStage {
                     i, own / side_by_side, Segments::numbers, all / side_by_side,
                     [&](int n, double number) { segments_.number(i, n) = number; });
     }
+    /// Merges segments, level by level.
     __device__ void climb() const {
         CATENA_NO_UNROLL
         for (int l = 0; l < stage_.layout.levels; ++l) {
@@ -173,6 +177,7 @@ class BlockOfStage {
         }
         __syncthreads();
     }
+    /// Stores segments that other stages or ranks need.
     __device__ void give_up() const {
         int const ups = words_.head().ups;
         if constexpr (by_teams)
@@ -182,7 +187,7 @@ class BlockOfStage {
                 sweep_.store(words_.up(i).at, segments_.load(words_.up(i).place));
             });
     }
-    /// To the block of the stage above.
+    /// Sends segments to the block of the stage above.
     __device__ void give_up(Letters const& letters) const {
         each_of(words_.head().ups * Segments::numbers, [&](int i) {
             dca::BlockHanded const& up = words_.up(i / Segments::numbers);
@@ -190,12 +195,13 @@ class BlockOfStage {
             letters.put(up.above, n, segments_.number(up.place, n));
         });
     }
+    /// Computes the forces at the ends of chains whose tree is complete in this block.
     __device__ void close() const {
         dca::BlockHead const& head = words_.head();
         each_of(head.roots,
                 [&](int i) { close(i == 0 ? head.root : stage_.roots[head.first_root + i]); });
     }
-    /// Between a climb and a descent of their own.
+    /// Stores the nodes for an outward pass in another launch.
     __device__ void put_nodes() const {
         if constexpr (by_teams)
             copy(segments_.origin, kept());
@@ -203,6 +209,7 @@ class BlockOfStage {
             each_merge(
                 [&](dca::BlockMerge const& m) { sweep_.keep(m.joint, nodes_.load(m.outboard)); });
     }
+    /// Reads the nodes back.
     __device__ void take_nodes() const {
         if constexpr (by_teams)
             copy(kept(), segments_.origin);
@@ -210,10 +217,11 @@ class BlockOfStage {
             each_merge(
                 [&](dca::BlockMerge const& m) { nodes_.store(m.outboard, sweep_.node(m.joint)); });
     }
+    /// Reads the forces that come from stages above.
     __device__ void take_forces() const {
         each_of(words_.head().downs, [&](int i) { take_force(words_.down(i)); });
     }
-    /// From the block of the stage above, where that has them.
+    /// Receives forces from the block of the stage above and reads the others from memory.
     __device__ void take_forces(Letters const& letters) const {
         int const downs = words_.head().downs;
         each_of(downs, [&](int i) {
@@ -225,13 +233,14 @@ class BlockOfStage {
             if (down.above >= 0) forces_.number(down.place, n) = letters.wait_for(down.above, n);
         });
     }
-    /// To the blocks of the stage below.
+    /// Sends forces to the blocks of the stage below.
     __device__ void give_forces(Letters const& letters) const {
         each_of(stage_.forces, [&](int place) {
         CATENA_UNROLL
             for (int n = 0; n < Forces::numbers; ++n) letters.put(place, n, forces_.number(place, n));
         });
     }
+    /// Computes joint forces, from the highest level to the lowest.
     __device__ void descend() const {
         CATENA_NO_UNROLL
         for (int l = stage_.layout.levels - 1; l >= 0; --l) {
@@ -244,7 +253,9 @@ class BlockOfStage {
         }
         __syncthreads();
     }
-    /// After a climb in the same launch, which left `part`, or alone (null); then loops are unrolled, as many blocks use the instructions.
+    /// Stores the items' forces, or performs the runs' outward pass. `part`: as left by
+    /// take_items() in the same launch, or null if `alone`. Loops are unrolled if `alone`, because
+    /// many blocks then use the instructions.
     template <bool alone>
     __device__ void give_items(typename Sweep::Part const* part) const {
         if (!by_teams && stage_.runs)
@@ -256,13 +267,16 @@ class BlockOfStage {
     }
 
   private:
+    /// Size of the words in doubles.
     static __host__ __device__ int numbers_of_words(DeviceStage const& stage) {
         return stage.layout.words() * static_cast<int>(sizeof(dca::StageWord) / sizeof(double));
     }
+    /// Size of the words, segments and forces in doubles; the memory of run parts follows.
     static __host__ __device__ int before_parts(DeviceStage const& stage) {
         return numbers_of_words(stage) + static_cast<int>(Segments::size(stage.layout.items) + Forces::size(stage.forces));
     }
-    // Sweeps whose merges go by teams leave stages with runs to others (StageWalk).
+    // Sweeps with merges by teams never process stages with runs here; StageWalk splits these
+    // sweeps.
     template <bool alone>
     __device__ void descend_runs(typename Sweep::Part const* part) const {
         if constexpr (!by_teams) {
@@ -274,6 +288,7 @@ class BlockOfStage {
                 [&](dca::Run const&, std::int64_t i) { return forces_.load(words_.next_of_run(place(i))); });
         }
     }
+    /// Computes the forces at the ends of one chain.
     __device__ void close(dca::StageRoot const& closed) const {
         Segment const whole = segments_.load(closed.place);
         if constexpr (takes_factors<Sweep>)
@@ -282,6 +297,7 @@ class BlockOfStage {
         sweep_.close(closed.root, whole);
     }
     __device__ void take_force(dca::BlockHanded const& down) const { forces_.store(down.place, sweep_.s.forces.load(down.at)); }
+    /// Merges two segments; the merged one takes the place of the inboard one.
     __device__ void join(dca::BlockMerge const& m) const {
         Segment const inboard = segments_.load(m.inboard), outboard = segments_.load(m.outboard);
         dca::JointAt const at{m.joint, m.restricted};
@@ -293,6 +309,7 @@ class BlockOfStage {
             segments_.store(m.inboard, sweep_.joined(inboard, outboard, at));
         }
     }
+    /// Computes the force at a merge's joint.
     __device__ void go_down(dca::BlockMerge const& m) const {
         Node node;
         if constexpr (Sweep::keeps_nodes)
@@ -301,6 +318,7 @@ class BlockOfStage {
             node = sweep_.node(m.joint);
         forces_.store(m.outboard, sweep_.force(node, forces_.load(m.inboard), forces_.load(m.next)));
     }
+    /// Calls action(merge) for the merges of a level.
     template <class Action>
     __device__ void each_merge(int level, Action const& action) const {
         int const end = words_.end_of_level(level);
@@ -308,20 +326,21 @@ class BlockOfStage {
         for (int i = words_.end_of_level(level - 1) + static_cast<int>(threadIdx.x); i < end; i += static_cast<int>(blockDim.x))
             action(words_.merge(i));
     }
+    /// Calls action(merge) for the merges of all levels.
     template <class Action>
     __device__ void each_merge(Action const& action) const {
         each_of(words_.end_of_level(stage_.layout.levels - 1), [&](int i) { action(words_.merge(i)); });
     }
-    /// action(team, merge, works) by the block's teams.
+    /// Calls action(team, merge, works) for the merges of a level by the block's teams.
     template <class Action>
     __device__ void each_merge_of_team(int level, Action const& action) const {
         MergeTeam<Sweep> const team;
         team.each(words_.end_of_level(level - 1), words_.end_of_level(level),
                   [&](int i, bool works) { action(team, words_.merge(i), works); });
     }
-    /// A number a warp, an item a lane.
+    /// Reads the items' segments: one number per warp, one item per lane.
     __device__ void take_segments() const {
-        constexpr int at_once = 9;  // memory is far
+        constexpr int at_once = 9;  // independent requests hide the latency of memory
         int const warp = static_cast<int>(threadIdx.x) / 32, warps = static_cast<int>(blockDim.x) / 32;
         for (int place = static_cast<int>(threadIdx.x) % 32; place < words_.head().items; place += 32) {
             std::int64_t const slot = words_.item(place).own_slot();
@@ -330,11 +349,13 @@ class BlockOfStage {
                 [&](int n, double number) { segments_.number(place, n) = number; });
         }
     }
+    /// Stores a segment by all threads of the block.
     __device__ void give(dca::BlockHanded const& up) const {
         each_of(Segments::numbers, [&](int n) { sweep_.s.number_of_segment(up.at, n) = segments_.number(up.place, n); });
     }
+    /// Address of the block's places in the stage's memory.
     __device__ double* kept() const { return stage_.kept + block_ * Segments::size(stage_.layout.items); }
-    /// Of all segments' memory.
+    /// Copies the memory of all segments.
     __device__ void copy(double const* from, double* to) const {
         move_some<8>(
             static_cast<int>(threadIdx.x), static_cast<int>(Segments::size(stage_.layout.items)), static_cast<int>(blockDim.x),

@@ -1,5 +1,5 @@
-// A sweep's stages (tree/stages.hpp) on a GPU. A host compiler takes it too, where
-// tests/support/cuda_on_host.hpp stands before it.
+// Kernels for a sweep's stages (tree/stages.hpp) and runs on a GPU. tests/support/cuda_on_host.hpp,
+// included first, makes this file compile on the host.
 #pragma once
 
 #include "cuda/sweeps/run_groups.cuh"
@@ -7,13 +7,15 @@
 
 namespace catena::cuda::kernels {
 
-constexpr int threads = 128;  // that many find registers for merges of every K
+/// Threads per block of runs; a block of this size has enough registers for merges of every K.
+constexpr int threads = 128;
 
-/// Whether the next launch may start meanwhile. With larger handles its blocks that wait take more
-/// than they save.
+/// True if the next launch may start during this one. With larger handles its waiting blocks would
+/// occupy more than the early start saves.
 template <class Sweep>
 constexpr bool lets_next_start = Sweep::Sweeps::K == 1;
 
+/// Kernel of a stage's inward pass.
 template <class Sweep>
 __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
     climb(DeviceStage stage, Sweep sweep) {
@@ -28,6 +30,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
     block.close();
     block.put_nodes();
 }
+/// Kernel of a stage's outward pass.
 template <class Sweep>
 __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
     descend(DeviceStage stage, Sweep sweep) {
@@ -40,18 +43,20 @@ __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
     block.descend();
     block.template give_items<true>(nullptr);
 }
-/// Threads that are worth having where ranks meet.
+/// Number of threads per block that speeds up a launch in which ranks exchange.
 template <class Sweep>
 constexpr int threads_among_ranks = std::min(256, threads_of_turn<Sweep>);
-/// Of a launch in which they do not.
+/// Exchange of a launch without other ranks; it does nothing.
 struct NoExchange {
     __device__ void operator()() const {}
 };
-/// Up and down again: blocks of the last stage, `upper`. With a stage below, all of whose blocks
-/// run at once, the one block of `upper` comes last: it is all ears before the others have anything
-/// to say. With a `top` that ranks share, of one block as `upper`, exchange(), which all threads of
-/// that one call, shows what is in its slots to other ranks and fills in theirs, and it turns the
-/// top. The same instructions do all of it.
+/// Kernel of both passes of the last stage, `upper`, which has one block if there is a stage below.
+/// If `lower` has blocks, all blocks of both stages run at once, and the block of `upper` has the
+/// highest number. That block starts last and is already polling when the others send their
+/// segments. If ranks share a `top`, then `upper` and `top` have one block each, and all threads of
+/// that block call exchange(). It sends the segments in this rank's slots to the other ranks and
+/// fills their slots; then the block performs both passes of the top. Loops make both stages use
+/// the same instructions.
 template <class Sweep, class Exchange>
 __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     turn(DeviceStage lower, DeviceStage upper, DeviceStage top, TopLaunchLetters letters,
@@ -61,8 +66,10 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
                has_top = among_ranks && is_upper;
     if constexpr (lets_next_start<Sweep>)
         if (by_letters && !has_top)
-            let_next_launch_start();  // which would else take the room of what other ranks wait for
-    // Alone, a stage that gathers has nothing to do: all that it would is in its slots.
+            // The next launch does not start yet if there is a top: it would occupy room for which
+            // other ranks wait.
+            let_next_launch_start();
+    // A gathering stage without blocks below has no work: its segments are already in their slots.
     int const begin = has_top && !by_letters && upper.gathers ? 1 : 0, end = has_top ? 2 : 1;
     auto const with_block = [&](bool is_top, auto const& action) {
         DeviceStage const stage = is_top ? top : is_upper ? upper : lower;
@@ -114,9 +121,10 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     }
     if (by_letters && threadIdx.x == 0) letters.close();
 }
-/// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want
-/// few registers, and many to hide that memory is far; on planar and spherical joints the way down
-/// does. On links' way up a fourth block finds none for quotients without branches.
+/// Blocks of `threads` that share a multiprocessor, in the inward pass and in the outward pass.
+/// Links need few registers, and many blocks to hide the latency of memory. Planar and spherical
+/// joints need many blocks in the outward pass only. In the inward pass of links a fourth block
+/// would lack registers for quotients without branches.
 template <class Sweep>
 constexpr int blocks_of_climb = Sweep::Sweeps::K > 1   ? 1
                                 : takes_factors<Sweep> ? 3
@@ -126,11 +134,12 @@ constexpr int blocks_of_descent =
     Sweep::Sweeps::K == 1                                                    ? 4
     : comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3
                                                                              : 1;
-/// Whether a thread takes a whole run on the way up: larger handles would have most of them wait
-/// for one that joins the parts.
+/// True if a thread processes a whole run in the inward pass. With larger handles and one thread
+/// per part, most threads would wait for the thread that merges the parts.
 template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;
-/// As climb_run(), quickly. `read(p)`: of part p.
+/// Eliminates the run as climb_run(), with the branchless factorizer. `read(p)` returns the bodies
+/// of part p.
 template <class Sweep, class Read>
 __device__ void climb_parts_quickly(Sweep const& sweep, dca::Run const& run, Read const& read) {
     dca::climb_parts(
@@ -142,11 +151,13 @@ __device__ void climb_parts_quickly(Sweep const& sweep, dca::Run const& run, Rea
             return joined;
         });
 }
+/// Eliminates a whole run by one thread, with prefetched bodies if that is faster.
 template <class Sweep>
 __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
     if constexpr (comes_ahead<Sweep>) {
-        static_assert(Sweep::K >
-                      1);  // bodies come once, and links look again where quick factors give up
+        // Bodies can be read only once here; links read them again if the branchless factorizer
+        // fails.
+        static_assert(Sweep::K > 1);
         using Bodies = BodiesInTurn<BodiesOf<Sweep>>;
         Bodies bodies(sweep.bodies, run.body, run.body + run.count, shared_numbers);
         climb_parts_quickly(sweep, run, [&](int) { return typename Bodies::Part{bodies}; });
@@ -158,6 +169,7 @@ __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
         climb_run(sweep, run);
     }
 }
+/// Kernel of the runs' inward pass.
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>)
     climb_runs(RunsView runs, Sweep sweep) {
@@ -175,7 +187,8 @@ __global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>)
             });
     }
 }
-/// From the last block to the first: what the way up read last is still near.
+/// Kernel of the runs' outward pass. Blocks go from the last run to the first, because the data
+/// that the inward pass read last are still in the cache.
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>)
     descend_runs(RunsView runs, Sweep sweep) {
@@ -194,15 +207,17 @@ __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>)
     }
 }
 
-/// The same with the levels above that join groups of runs, a block a group.
+/// Block size of the following kernels, which also process the tree levels within groups of runs:
+/// one group per block.
 static_assert(threads == runs_of_group * dca::parts_of_run);
+/// Kernel of the groups' inward pass.
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>)
     climb_groups(RunsView runs, GroupsView groups, Sweep sweep) {
     using Segment = typename Sweep::Segment;
     constexpr std::size_t any_gpu_shares = 48 << 10;
-    static_assert(sizeof(double) * PackedRecords<Segment>::size(threads) <=
-                  any_gpu_shares);  // so that blocks are no smaller
+    // The memory fits on any GPU, so that grid_of_climb() does not reduce the block size.
+    static_assert(sizeof(double) * PackedRecords<Segment>::size(threads) <= any_gpu_shares);
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     typename Sweep::Part part;
@@ -212,6 +227,7 @@ __global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>)
                            [&](std::int64_t, Segment const& segment) { own = segment; });
     if (threadIdx.x < runs_of_group) GroupOfRuns(groups, runs, blockIdx.x).climb(sweep, own);
 }
+/// Kernel of the groups' outward pass.
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>)
     descend_groups(RunsView runs, GroupsView groups, Sweep sweep) {
@@ -225,20 +241,22 @@ __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>)
         [&](dca::Run const&, std::int64_t) { return ends.next; });
 }
 
+/// Dimensions of a launch over runs.
 struct RunsGrid {
     unsigned blocks = 0, threads = 0;
     std::size_t shared_bytes = 0;
 };
-/// Threads of whole groups of 32 runs, which walk side by side.
+/// Returns a grid with threads for whole groups of 32 runs, whose lanes proceed in lockstep.
 inline RunsGrid grid_of_runs(std::int64_t runs, int threads_of_run, int threads_of_block) {
     std::int64_t const wanted = (runs + 31) / 32 * 32 * threads_of_run;
     return {static_cast<unsigned>((wanted + threads_of_block - 1) / threads_of_block),
             static_cast<unsigned>(threads_of_block), 0};
 }
-/// Threads of a block of whole runs: a warp, so that few runs spread over a GPU.
+/// Block size if a thread processes a whole run: a single warp, so that few runs spread over the
+/// GPU.
 template <class Sweep>
 constexpr int threads_of_whole_runs = dca::takes_whole_runs<Sweep> ? 32 : threads;
-/// The largest blocks whose numbers(threads) in shared memory the GPU has.
+/// Returns the grid of the largest blocks whose numbers(threads) doubles fit in shared memory.
 template <class Numbers>
 RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads,
                         std::size_t most_shared_bytes, Numbers const& numbers) {
@@ -248,7 +266,8 @@ RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads,
     grid.shared_bytes = sizeof(double) * numbers(of_block);
     return grid;
 }
-/// Of a GPU whose blocks may share so many bytes.
+/// Returns the grid of the runs' inward pass. `most_shared_bytes`: largest shared memory of a
+/// block.
 template <class Sweep>
 RunsGrid grid_of_climb(std::int64_t runs, std::size_t most_shared_bytes) {
     if constexpr (comes_ahead<Sweep>)
@@ -260,6 +279,7 @@ RunsGrid grid_of_climb(std::int64_t runs, std::size_t most_shared_bytes) {
         return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes,
                               PackedRecords<typename Sweep::Segment>::size);
 }
+/// Returns the grid of the runs' outward pass.
 template <class Sweep>
 RunsGrid grid_of_descent(std::int64_t runs, std::size_t most_shared_bytes) {
     if constexpr (dca::takes_whole_runs<Sweep>)

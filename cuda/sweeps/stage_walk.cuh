@@ -1,4 +1,5 @@
-// Which launches a sweep takes over a tree's stages, whoever makes them.
+// Order of the launches of a sweep over a tree's stages, independent of how a launch is made.
+// DeviceTree makes them on a GPU; tests make them on the host.
 #pragma once
 
 #include <cstddef>
@@ -9,28 +10,36 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers(),
-/// blocks(i) of stage i and whether it takes_runs(i); climb(i, sweep) and descend(i, sweep) of
-/// stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one after it, if
-/// any, where can_turn() says so; climb_runs(sweep) and descend_runs(sweep). It can turn the last
-/// stage alone. Groups of runs (run_groups.hpp): climb_groups(sweep) and descend_groups(sweep), in
-/// the place of the runs' where there are stages_above_groups(); where it can_turn_groups<Sweep>(),
-/// turn_groups(sweep) between these stands for all stages.
+/// Performs the passes of a sweep by calls of `Launches`, which has these members.
+/// - stages(), runs_apart(): number of stages, and whether runs precede them in launches of their
+///   own (dca::StagePlan).
+/// - gathers(): true if the last stage only gathers segments for other ranks.
+/// - blocks(i), takes_runs(i): blocks of stage i, and whether its items are runs.
+/// - climb(i, sweep), descend(i, sweep): inward and outward pass of stage i.
+/// - turn(i, sweep), turn(i, sweep, exchange, top): both passes of stage i and the stage above it,
+///   if any. The call requires can_turn() with the same arguments; for the last stage alone it is
+///   always true.
+/// - climb_runs(sweep), descend_runs(sweep): passes of the runs.
+/// - climb_groups(sweep), descend_groups(sweep): the same with groups of runs (run_groups.hpp).
+///   They replace the passes of the runs if stages_above_groups().
+/// - turn_groups(sweep): both passes of everything above the groups, if can_turn_groups<Sweep>().
 template <class Launches>
 class StageWalk {
   public:
     explicit StageWalk(Launches const& launches) : launches_(launches) {}
+    /// Performs the inward pass of all runs and stages.
     template <class Sweep>
     void climb(Sweep const& sweep) const {
         climb_runs(sweep);
         climb_stages(working_stages(), sweep);
     }
+    /// Performs the outward pass of all stages and runs.
     template <class Sweep>
     void descend(Sweep const& sweep) const {
         descend_stages(working_stages(), sweep);
         descend_runs(sweep);
     }
-    /// Precondition: there are stages.
+    /// Performs both passes with as few launches as possible. Precondition: there are stages.
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep) const {
         if constexpr (kernels::turns_groups<Sweep>)
@@ -43,8 +52,9 @@ class StageWalk {
         turn_stages(sweep);
         descend_runs(sweep);
     }
-    /// The same with what ranks show each other and the `top` that they share, if one launch turns
-    /// it with the last stages; else nothing is done.
+    /// Performs both passes with an exchange between ranks and the `top` tree that they share. One
+    /// launch must contain the last stages, the exchange and the top; otherwise the call does
+    /// nothing and returns false.
     template <class Sweep, class Exchange>
     bool turn_shared(Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
         if (!turns_in_a_block(launches_, top)) return false;
@@ -61,16 +71,19 @@ class StageWalk {
     }
 
   private:
-    /// Without one that gathers, which has nothing to do alone.
+    /// Number of stages that work in launches of their own; a stage that only gathers is not one of
+    /// them.
     std::size_t working_stages() const {
         return launches_.stages() - (launches_.gathers() ? 1 : 0);
     }
-    /// Where merges go by teams, a stage with runs is for the sweep's two sweeps one after the
-    /// other: a thread finds no registers for runs' segments and biases at once.
+    /// True if the stage's matrices and biases need launches of their own. That is so for stages
+    /// with runs if teams merge segments. A thread then lacks registers for the runs' matrices and
+    /// biases together.
     template <class Sweep>
     bool goes_apart(std::size_t stage) const {
         return kernels::merges_by_teams<Sweep> && launches_.takes_runs(stage);
     }
+    /// Performs both passes of all stages.
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
         std::size_t const stages = launches_.stages(),
@@ -83,13 +96,14 @@ class StageWalk {
             }
         turn_from(first, sweep);
     }
+    /// Performs both passes of all stages, those from `first` on in one launch.
     template <class Sweep, class... Shared>
     void turn_from(std::size_t first, Sweep const& sweep, Shared const&... exchange_and_top) const {
         climb_stages(first, sweep);
         launches_.turn(first, sweep, exchange_and_top...);
         descend_stages(first, sweep);
     }
-    /// Of the first `stages` stages.
+    /// Performs the inward pass of the first `stages` stages.
     template <class Sweep>
     void climb_stages(std::size_t stages, Sweep const& sweep) const {
         for (std::size_t i = 0; i < stages; ++i) climb_stage(i, sweep);
@@ -103,6 +117,7 @@ class StageWalk {
             }
         launches_.climb(i, sweep);
     }
+    /// Performs the outward pass of the first `stages` stages.
     template <class Sweep>
     void descend_stages(std::size_t stages, Sweep const& sweep) const {
         for (std::size_t i = stages; i-- > 0;) descend_stage(i, sweep);

@@ -1,6 +1,6 @@
-// What a team of lanes keeps of its run in shared memory (revolute_teams.cuh): on the way up what
-// it needs of the bodies ahead, on the way down of the revolute joints behind. A host compiler
-// takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Data of a team's run in shared memory (revolute_teams.cuh): of the bodies ahead in the inward
+// pass, and of the revolute joints behind in the outward pass. tests/support/cuda_on_host.hpp,
+// included first, makes this file compile on the host.
 #pragma once
 
 #include "cuda/sweeps/stage_kernels.cuh"
@@ -8,7 +8,7 @@
 
 namespace catena::cuda::kernels {
 
-/// Something for each of a warp's teams: in so many slots.
+/// Array of `slots` records for each team of a warp.
 template <class T, int lanes, int slots>
 class SlotsOfTeam {
     static constexpr int teams = 32 / lanes;
@@ -29,10 +29,11 @@ class SlotsOfTeam {
     Records records_;
     int team_;
 };
+/// Number of bodies of a run of maximal length, and of those between the first and the last.
 constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run),
               bodies_within = bodies_of_whole_run - 2;
-/// How many bodies a team's run has. `whole`: as a whole run, which teams of any width take; else
-/// three or more, and the warp's other teams may have another number.
+/// Number of bodies of a team's run. `whole`: a run of maximal length, for teams of any width.
+/// Otherwise it has three or more bodies, and the warp's other teams may have other numbers.
 template <int lanes, bool whole>
 class BodiesOfTeam {
   public:
@@ -41,7 +42,7 @@ class BodiesOfTeam {
     __device__ int last() const { return count() - 1; }
     __device__ bool is_within(int i) const { return i > 0 && i < last(); }
     __device__ int body_or_last(int i) const { return whole || i < count_ ? i : count_ - 1; }
-    /// Of the warp's team that has most: of all lanes together.
+    /// Returns the largest count among the warp's teams. All lanes call it together.
     __device__ int most(int lane) const {
         int most = count();
         if constexpr (!whole)
@@ -54,27 +55,31 @@ class BodiesOfTeam {
   private:
     int count_;
 };
-/// What a run needs of a body to go on to it. All are found before what the way up needs takes the
-/// registers; not those of the first and the last, so that eight warps have room.
+/// Data of a body that the inward pass needs to include it. They are computed before the pass
+/// occupies the registers. The first and the last body are left out, so that eight warps fit in
+/// shared memory.
 struct BodyAhead : dca::BodyInRun<double> {
-    double torque_about;  // the revolute joint, where that is in no body's own
+    /// Torque about the revolute joint if it is not part of the bodies' torques.
+    double torque_about;
     dca::AddedBody<double> body;
     dca::Wrench<double> load;  // about handle 2
 };
 template <int lanes>
 using BodiesAhead = SlotsOfTeam<BodyAhead, lanes, bodies_within>;
-/// And to come back from it, where the force at the run's first joint is known.
+/// Data of a joint and a body that the outward pass needs, after the force at the run's first joint
+/// is known.
 struct RevoluteBehind {
     dca::PushedRevolute<double> revolute;
     dca::BodyInRun<double> body;
 };
+/// Data of a team's run for the outward pass, in shared memory.
 template <class Sweep, int lanes, bool whole>
 class RevolutesBehind {
     using Tail = typename dca::RunWorkspace<typename Sweep::Sweeps>::Tail;
     using Revolutes = SlotsOfTeam<RevoluteBehind, lanes, bodies_of_whole_run - 1>;
     using Tails = SlotsOfTeam<Tail, lanes, 1>;
-    using Frames =
-        SlotsOfTeam<dca::RevoluteFrame<double>, lanes, 3>;  // of the first body and the last two
+    // Frames of the first body and of the last two.
+    using Frames = SlotsOfTeam<dca::RevoluteFrame<double>, lanes, 3>;
     static_assert(lanes >= 3);
 
   public:
@@ -85,7 +90,7 @@ class RevolutesBehind {
           tail_(memory + Revolutes::size, lane),
           frames_(memory + Revolutes::size + Tails::size, lane),
           own_(lane % lanes) {}
-    /// All lanes of the warp together.
+    /// Reads the data of all joints and bodies. All lanes of the warp call it together.
     template <class Kept, class Frame>
     __device__ void fetch(Kept const& kept, Vector<double, 5> const& first,
                           Frame const& frame) const {
@@ -98,7 +103,7 @@ class RevolutesBehind {
             [&](int n, double v) { tail_.number(0, n) = v; });
         __syncwarp();
     }
-    // What dca::descend_revolutes() asks for.
+    // The following members are the interface that dca::descend_revolutes() requires.
     __device__ dca::RevoluteFrame<double> frame(int i) const {
         return frames_.get(i == 0 ? 0 : i - (bodies_.count() - 3));
     }

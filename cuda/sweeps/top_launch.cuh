@@ -1,4 +1,4 @@
-// The launch that takes the last two stages of a sweep up and down again (stage_kernels.cuh).
+// Launch that performs both passes of the last two stages of a sweep (stage_kernels.cuh).
 #pragma once
 
 #include <map>
@@ -9,11 +9,12 @@
 
 namespace catena::cuda {
 
-/// Of a tree, whose GPU and context it belongs to.
+/// Memory and occupancy of such launches for one tree. It is valid for the GPU and the context of
+/// that tree.
 class TopLaunch {
   public:
     TopLaunch() = default;
-    /// `most_bytes`: of shared memory that the GPU gives a block.
+    /// `most_bytes`: largest shared memory of a block.
     TopLaunch(dca::StagesTogether const& stages, dca::StageRecords const& records, int most_bytes)
         : up_(stages.numbers_up(records)),
           down_(stages.numbers_down(records)),
@@ -22,11 +23,12 @@ class TopLaunch {
           forces_(static_cast<int>(stages.upper->forces)),
           most_bytes_(most_bytes) {}
     explicit operator bool() const { return launches_.size() > 0; }
+    /// Returns the letters by which the blocks of the two stages exchange segments and forces.
     kernels::TopLaunchLetters letters() const {
         return {{up_.data(), items_}, {down_.data(), forces_}, launches_.data()};
     }
-    /// Whether the GPU runs all of the grid's blocks at once, and has so many multiprocessors to
-    /// spare; of a kernel and a tree there is one grid.
+    /// True if the GPU runs all blocks of the grid at once and has `spare` multiprocessors left.
+    /// The answer is cached per kernel, because a kernel and a tree have one grid.
     template <class Kernel>
     bool fits(Kernel* kernel, Grid const& grid, int spare) const {
         auto const [known, is_new] = fits_.try_emplace(reinterpret_cast<void const*>(kernel));
@@ -35,6 +37,7 @@ class TopLaunch {
     }
 
   private:
+    /// Queries the occupancy of a kernel.
     template <class Kernel>
     bool asks_for(Kernel* kernel, Grid const& grid, int spare) const {
         if (grid.shared_bytes > static_cast<std::size_t>(most_bytes_)) return false;
@@ -51,7 +54,7 @@ class TopLaunch {
     Buffer<unsigned> launches_;
     int items_ = 0, forces_ = 0;
     int most_bytes_ = 0;
-    mutable std::map<void const*, bool> fits_;  // of each kind of sweep
+    mutable std::map<void const*, bool> fits_;  // answers of fits(), by kernel
 };
 
 }  // namespace catena::cuda
