@@ -100,8 +100,8 @@ class BeadPart {
         c.bias = {bias_};
         return c;
     }
-    /// Writes back the state that a step changes. Positions go to OpenMM's particles too if
-    /// `particles` are given.
+    /// Writes back the state that a step changes. Positions are also written to OpenMM's particles
+    /// if these exist.
     CATENA_HD_IN_PLACE void store(DeviceParticles const& particles) const {
         each([&](int i) {
             if (ends_before(i)) return;

@@ -190,8 +190,8 @@ struct RigidChains {
 
     // Forces and torques on bodies.
 
-    /// Sets the torque of joint k, including its spring; that of an implicit joint goes to its
-    /// rotor. Precondition: given.joint_loads.
+    /// Sets the torque of joint k, including its spring; that of an implicit joint is applied to
+    /// its rotor. Precondition: given.joint_loads.
     CATENA_HD void set_joint_torque(std::int64_t k) const {
         Vec3 torque_on_body = Vec3::zero();
         if (joint[k] == JointType::spherical) {
