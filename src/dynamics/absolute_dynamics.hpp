@@ -90,8 +90,8 @@ struct StateArray {
     std::vector<double> values;  // Values of this rank's bodies, body after body.
 };
 
-/// State and equations of motion of a group of chains in absolute coordinates. An integrator
-/// composes a step of its operations; observers read results.
+/// State and equations of motion of a group of chains in absolute coordinates. An integrator builds
+/// a step from its operations; observers read results.
 class AbsoluteDynamics : public BeadHost {
   public:
     /// Computes link directions and the neighbours' positions at the current positions. Collective.

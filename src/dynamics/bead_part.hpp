@@ -1,6 +1,6 @@
-// A step of chains of point beads by a team of threads that keeps them in registers for the whole
-// step, up to four consecutive beads per thread (dca/team_tree.hpp). The arithmetic per bead is
-// that of bead_step.hpp and bead_chains.hpp, as in all other ways to execute a step.
+// A step of chains of point beads by a team of threads. The team keeps the chains in registers for
+// the whole step, up to four consecutive beads per thread (dca/team_tree.hpp). The arithmetic per
+// bead is that of bead_step.hpp and bead_chains.hpp, as in all other ways to execute a step.
 #pragma once
 
 #include "dca/body_leaf.hpp"

@@ -34,8 +34,8 @@ struct AllowedErrors {
     Speeds speed;
 };
 
-/// State and equations of motion of a group of chains in joint coordinates. An integrator composes
-/// a step of its operations; observers read results.
+/// State and equations of motion of a group of chains in joint coordinates. An integrator builds a
+/// step from its operations; observers read results.
 class JointDynamics : public BeadHost {
   public:
     /// Coordinates and velocities of bodies and free bases, copied to the host.

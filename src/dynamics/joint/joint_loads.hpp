@@ -11,10 +11,10 @@
 
 namespace catena {
 
-/// Springs K and dampers C that act implicitly within a step of length h. They enter P^T phi = tau
-/// - B u' with B = c h^2 K + h C / 2 (c: rotor_of_spring()). The joint's force then is unknown
-/// along every direction, and its two sides accelerate relative to each other by u' = B^-1 (tau -
-/// P^T phi).
+/// Springs K and dampers C that act implicitly within a step of length h. With B = c h^2 K + h C /
+/// 2 (c: rotor_of_spring()), the joint obeys P^T phi = tau - B u'. The joint's force then is
+/// unknown along every direction, and its two sides accelerate relative to each other by u' = B^-1
+/// (tau - P^T phi).
 struct ImplicitJoints {
     /// B / K = c h^2, and B / C = h / 2.
     double of_stiffness = 0, of_damping = 0;

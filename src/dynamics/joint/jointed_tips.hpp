@@ -36,7 +36,7 @@ struct JointedTip {
     /// Cosine of the angle between the axes of a universal joint.
     double cosine = 0;
 };
-/// Jointed tips of this rank's bodies: those of last bodies in the order of ChainGroup::tips, then
+/// Jointed tips of this rank's bodies: those of last bodies, in the order of ChainGroup::tips, then
 /// those of rings that only begin here. `start` is the motion at the scene's start, positions
 /// included, which fixes the frames G on the ground.
 std::vector<JointedTip> jointed_tips(ChainGroup const&, Scene const&, BodyMotion& start);
