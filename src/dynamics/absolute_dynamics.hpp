@@ -110,7 +110,7 @@ class AbsoluteDynamics : public BeadHost {
     /// Collective.
     virtual void observe(double h) = 0;
     /// Drift: moves positions by h along the velocities. `sweeps` quasi-Newton sweeps add impulses
-    /// along the joints of the last updated configuration until the joints close at the end.
+    /// along the joints of the last updated configuration so that the joints close at the end.
     /// Velocities become the mean ones of the drift. Collective.
     virtual void drift(double h, int sweeps) = 0;
     /// Adds one sweep to the last drift, which had length h, with the same result as a drift with

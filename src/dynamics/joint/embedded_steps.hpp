@@ -110,7 +110,8 @@ struct EmbeddedSteps {
 
     /// Measure of how implausible a stage is: 1 or more if it is so far from any useful step that
     /// its equations may have no solution. NaN if it is not finite. Orientations are measured by
-    /// the deviation of the quaternion's length from 1, and velocities by 1000 rad in the step.
+    /// the deviation of the quaternion's length from 1, and velocities relative to 1000 rad per
+    /// step.
     CATENA_HD double wildness(std::int64_t k, double length) const {
         StateView const& state = steps.chains.scan.state;
         Vector<double, 4> const q = state.q.load(k);

@@ -59,8 +59,8 @@ class JointDynamics : public BeadHost {
     /// Fuses assemble_matrices() and solve(), for use when there is no force computation to overlap
     /// with. The matrices are not kept, and the last bits of the result may differ. Collective.
     virtual void solve_once() = 0;
-    /// Solves at the same coordinates with the current velocities; matrices and forces on carried
-    /// beads are those of before. Collective.
+    /// Solves at the same coordinates with the current velocities. The matrices and the forces on
+    /// carried beads are reused. Collective.
     virtual void solve_again() = 0;
     /// Computes the rates (second derivatives of coordinates) after solve().
     virtual void set_rates() = 0;
@@ -135,10 +135,11 @@ class JointDynamics : public BeadHost {
     virtual double residual(Executor const&) = 0;
     /// Potential energy at the current state. Collective.
     virtual PotentialEnergy potential() = 0;
+    /// Default number of Newton steps that close tips.
+    static constexpr int usual_corrections = 2;
     /// Closes jointed tips again: `corrections` Newton steps for positions, then one for
     /// velocities. Each correction is the smallest in the metric of the masses. Does nothing
     /// without jointed tips. Collective.
-    static constexpr int usual_corrections = 2;
     virtual void close_tips(int corrections = usual_corrections) = 0;
     /// Largest opening of a jointed tip over all ranks, relative to reach(); NaN if the state is
     /// not finite. Collective.
