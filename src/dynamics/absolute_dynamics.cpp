@@ -1,3 +1,4 @@
+// Functions that all dynamics in absolute coordinates share.
 #include "dynamics/absolute_dynamics.hpp"
 
 #include <algorithm>

@@ -1,6 +1,8 @@
-// Chains in absolute coordinates (positions of beads; poses of bodies on spherical joints) as the
-// constrained integrators see them: every projection is a bias sweep of the divide-and-conquer
-// solver, with impulses in the place of forces.
+// Interface of dynamics in absolute coordinates (positions of beads, poses of rigid bodies), as the
+// constrained integrators use it. Every constraint projection is a bias sweep of the
+// divide-and-conquer solver, with impulses instead of forces.
+//
+// Frames: W ground axes, B body axes. Units: nm, ps, amu, kJ/mol, unless the scene has `units: si`.
 #pragma once
 
 #include <cmath>
@@ -17,45 +19,50 @@
 
 namespace catena {
 
-/// What a tip's joint does to the last body, W; torque about the origin of its joint frame.
+/// Constraint force of a tip's joint on the last body, W; the torque is about the origin of the
+/// joint frame.
 struct TipForce {
-    std::int64_t chain = 0;  // of the scene
-    Vector<double, 6>
-        wrench{};  // constraint [torque, force]; in a plane: what the chain's own directions know
+    std::int64_t chain = 0;  // Index of the chain in the scene.
+    /// Constraint [torque, force]. In a planar chain it includes only the directions that the
+    /// chain's handles carry.
+    Vector<double, 6> wrench{};
 };
 
-/// Accelerations and forces body by body, ground axes, for output and checks.
+/// Accelerations and constraint forces of bodies, W, for output and checks.
 struct BodyResults {
-    std::vector<Vec3> alpha;         // angular; empty for beads
-    std::vector<Vec3> acceleration;  // of the centre of mass
-    std::vector<Vector<double, 6>>
-        joint_force;  // constraint [torque, force] on body k at its inboard joint
+    std::vector<Vec3> alpha;         // Angular acceleration, rad/ps^2; empty for beads.
+    std::vector<Vec3> acceleration;  // Acceleration of the centre of mass, nm/ps^2.
+    /// Constraint [torque, force] on body k at its inboard joint.
+    std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
 };
 
-/// Body by body, this rank's.
+/// Potential energy of each body on this rank, kJ/mol.
 struct PotentialEnergy {
-    std::vector<double> gravity, springs, fixman;  // fixman: where the scene asks for it
+    /// Energy of gravity, of the inboard joint's springs and of the Fixman potential. The last is
+    /// empty unless the scene uses it.
+    std::vector<double> gravity, springs, fixman;
 };
 
-/// The larger of two; a NaN counts as the largest.
+/// The larger of two numbers; NaN if either is NaN.
 inline double larger(double a, double b) { return b > a || b != b ? b : a; }
 
-/// A residual over the size of its terms.
+/// A residual divided by the size of its terms; 0 if all terms are 0.
 inline double relative(double difference, double terms) {
     return terms == 0 ? 0.0 : std::abs(difference) / terms;
 }
 
-/// A field over last bodies, of any space; absent where the group has no jointed tips.
+/// View of a field over last bodies, in any Space. It has no origin if the group has no jointed
+/// tips.
 template <class Directions>
 DirectionsView of_tips(ChainGroup const& group, Directions& field) {
     return group.has_tips() ? field.view() : DirectionsView{};
 }
 
-/// The group's chains on this rank.
+/// The parts of the group's chains on this rank, with the anchors of their bases.
 std::vector<LocalPiece> local_pieces(ChainGroup const&, Scene const&);
-/// And where they are held, rings that only begin here behind the others; `end(k)`: where the
-/// outboard end of last body k starts, W.
+/// Attachments of the group's tips on this rank. Rings that only begin on this rank follow at the
+/// end. end(k) is the starting position of the outboard end of last body k, W.
 template <class End>
 std::vector<HeldTip> held_tips(ChainGroup const& group, End const& end) {
     std::vector<HeldTip> tips;
@@ -73,93 +80,104 @@ std::vector<HeldTip> held_tips(ChainGroup const& group, End const& end) {
     }
     return tips;
 }
-/// No springs.
+/// Potential energy of bodies at `position` in the field `gravity` (W). Springs count as zero.
 PotentialEnergy potential_in(Vec3 const& gravity, ChainGroup const&, Field<3> const& position);
 
-/// A named array of the state, `width` numbers a body.
+/// A named array of the state, with `width` numbers per body.
 struct StateArray {
     std::string name;
     int width = 0;
-    std::vector<double> values;  // this rank's bodies, one after the other
+    std::vector<double> values;  // Values of this rank's bodies, body after body.
 };
 
+/// State and equations of motion of a group of chains in absolute coordinates. An integrator builds
+/// a step from its operations; observers read results.
 class AbsoluteDynamics : public BeadHost {
   public:
-    /// Directions and neighbours' positions for the current positions. Collective.
+    /// Computes link directions and the neighbours' positions at the current positions. Collective.
     virtual void update_configuration() = 0;
-    /// Matrices at the configuration updated last. Needs no forces. Collective.
+    /// Assembles the matrices at the last updated configuration. Needs no forces, so that it may
+    /// run while they are computed. Collective.
     virtual void assemble_matrices() = 0;
-    /// Sets the forces of gravity, wrenches and joint springs at the configuration updated last.
-    /// Collective.
+    /// Sets the forces of gravity, external wrenches and joint springs at the last updated
+    /// configuration. Collective.
     virtual void set_simple_forces() = 0;
 
-    /// v <- P (v + h M^-1 f), P the projection on the joints' velocities at the current
-    /// configuration. Collective.
+    /// Kick with constraint projection: v <- P (v + h M^-1 f). P projects on the velocities that
+    /// the joints permit at the current configuration. Collective.
     virtual void kick(double h) = 0;
-    /// What kick(h) would make of the velocities, into a copy (see observed_state). Collective.
+    /// Computes the velocities that kick(h) would produce, into a copy (observed_state()).
+    /// Collective.
     virtual void observe(double h) = 0;
-    /// Positions by h along the velocities, impulses along the joints of the configuration updated
-    /// last added in `sweeps` quasi-Newton sweeps so that the joints close at the end; velocities
-    /// become the drift's. Collective.
+    /// Drift: moves positions by h along the velocities. `sweeps` quasi-Newton sweeps add impulses
+    /// along the joints of the last updated configuration so that the joints close at the end.
+    /// Velocities become the mean ones of the drift. Collective.
     virtual void drift(double h, int sweeps) = 0;
-    /// One more sweep of the drift by h that was done last, as if it had been asked for at once;
-    /// false: ask for it at once. Precondition: nothing but constraint_error() has been called
-    /// since. Collective.
+    /// Adds one sweep to the last drift, which had length h, with the same result as a drift with
+    /// one more sweep. Returns false if it cannot: then repeat the drift. Precondition: only
+    /// constraint_error() has been called since the drift. Collective.
     virtual bool close_further(double /*h*/) { return false; }
-    /// Velocities between those of before and noise, which kick() then projects.
+    /// Thermostat: mixes velocities with noise. The next kick() projects them.
     virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
-    /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the
-    /// configuration is. Collective.
+    /// Takes a step from x_n to x_n+1. Configuration, matrices and forces must be up to date at
+    /// x_n; at x_n+1 only the configuration is. Collective.
     virtual void step(ConstrainedStep const& step) { take_step(*this, step); }
-    /// Velocities of temperature kt, projected; matrices must be assembled. Collective.
+    /// Draws projected thermal velocities of temperature kt (kJ/mol) for the chosen chains.
+    /// Matrices must be assembled. Collective.
     virtual void draw_velocities(double kt, std::uint64_t seed,
                                  std::vector<bool> const& of_chain) = 0;
 
-    /// Largest violation of a joint over all ranks at the current positions: links relative to
-    /// their length, other joints relative to the longest distance of a joint from its bodies'
+    /// Largest violation of a joint at the current positions, over all ranks. Links count relative
+    /// to their length, other joints relative to the longest distance of a joint from its bodies'
     /// centres. Collective.
     virtual double constraint_error() = 0;
 
-    /// Everything that a checkpoint needs.
+    /// The full state, as checkpoints store it.
     virtual std::vector<StateArray> state() const = 0;
+    /// Restores a state from state(); arrays are found by name.
     virtual void set_state(std::vector<StateArray> const&) = 0;
-    /// `position`, for bodies `orientation`, and the velocities of the last observe(): `velocity`
-    /// (W) and for bodies `omega` (B).
+    /// Arrays `position` and `velocity` (W), for bodies also `orientation` and `omega` (B).
+    /// Velocities are those of the last observe().
     virtual std::vector<StateArray> observed_state() const = 0;
-    /// Accelerations and joint forces at the configuration, matrices and forces of now and the
-    /// velocities observed last: one bias sweep. Collective.
+    /// Computes accelerations and joint forces by one bias sweep. It uses the current
+    /// configuration, matrices and forces and the last observed velocities. Collective.
     virtual void evaluate() = 0;
-    /// Matrices and evaluate() together, where neither has anything to hide behind it. Collective.
+    /// Assembles matrices and calls evaluate(). Backends may fuse both, since there is no force
+    /// computation to overlap with. Collective.
     virtual void evaluate_at_once() {
         assemble_matrices();
         evaluate();
     }
-    /// Seconds of the solver's part of evaluate_at_once() (ChainSolver::time_evaluations).
+    /// Times the solver's part of evaluate_at_once(), in seconds (ChainSolver::time_evaluations()).
     /// Collective.
     virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
-    /// Of the last evaluate(), ground axes.
+    /// Results of the last evaluate(), W.
     virtual BodyResults results() const = 0;
-    /// Largest local backward residual of the last evaluate() (src/dca/README.md, "Residuals"),
-    /// over all ranks. Collective.
+    /// Largest local backward residual of the last evaluate() over all ranks (src/dca/README.md,
+    /// "Residuals"). Collective.
     virtual double residual() = 0;
-    /// At the current positions. Collective.
+    /// Potential energy at the current positions. Collective.
     virtual PotentialEnergy potential() = 0;
 
+    /// The solver, for its report and its checks.
     virtual ChainSolver& solver() const = 0;
 };
 
+/// Dynamics of point beads on links, on the host.
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&,
                                                      Executor const&, Communicator const&,
                                                      std::unique_ptr<ChainSolver>);
-/// Rigid bodies on spherical joints, or on links among point beads.
+/// Dynamics of rigid bodies on spherical joints, or on links together with point beads, on the
+/// host. `implicit_step`: the step length h of implicit joint springs; 0 for explicit ones.
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&,
                                                       Executor const&, Communicator const&,
                                                       std::unique_ptr<ChainSolver>,
                                                       double implicit_step = 0);
 
-/// One array of the given name; throws ComputationError if it is not there.
+/// The array with the given name. Throws ComputationError if the state has none.
 StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);
 
+/// Copies a field over bodies into a named array.
 template <int D>
 StateArray to_array(std::string const& name, ConstView<D> field, Executor const& executor) {
     StateArray a{name, D, std::vector<double>(static_cast<std::size_t>(field.size * D))};
@@ -168,6 +186,7 @@ StateArray to_array(std::string const& name, ConstView<D> field, Executor const&
     });
     return a;
 }
+/// Copies an array into a field over bodies.
 template <int D>
 void from_array(StateArray const& a, View<D> field, Executor const& executor) {
     executor.for_each(field.size, [&](std::int64_t k) {

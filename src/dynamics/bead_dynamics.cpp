@@ -1,3 +1,4 @@
+// Start, results and residual of bead chains on the host.
 #include "dynamics/bead_dynamics.hpp"
 
 namespace catena {
@@ -26,7 +27,7 @@ void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, 
     });
 }
 
-/// On bead k by its outboard link, backwards.
+/// Force of the outboard link, with the opposite sign of that on bead k.
 Vec3 BeadSolution::outboard_force(std::int64_t k) const {
     if (group.has_jointed_tip(k)) return tip_force.load<1>(k)[0] * tip_direction.load(k);
     return group.is_last[k] ? Vec3::zero() : joint_force.load<1>(k + 1)[0] * direction.load(k + 1);
@@ -48,7 +49,8 @@ BodyResults BeadSolution::results() const {
 
 double BeadSolution::residual(Communicator const& communicator, ConstView<3> velocity,
                               std::vector<HeldTip> const& tips) const {
-    Field<4> terms(group.size);  // acceleration and the size of what each force adds to it
+    /// Acceleration of bead k, and the sum of the sizes of the forces' contributions to it.
+    Field<4> terms(group.size);
     double worst = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
         Vec3 const a = acceleration.load(k), ma = group.mass.view().at(k, 0) * a, f = force.load(k);

@@ -1,4 +1,5 @@
-// Chains of point beads on links in absolute coordinates, in any Space: their state stays there.
+// Dynamics of chains of point beads on links in absolute coordinates, in any Space, which holds the
+// state. Ground axes (W); nm, ps, amu, kJ/mol, unless the scene has `units: si`.
 #pragma once
 
 #include <cmath>
@@ -12,32 +13,37 @@
 
 namespace catena {
 
-/// Links of the group's chains on this rank.
+/// For each local bead, 1 if it has an inboard link, else 0.
 std::vector<std::uint8_t> links_of(ChainGroup const&);
-/// Where they start.
+/// Fills the starting positions and velocities of the scene.
 void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity,
                  Executor const&);
 
-/// What the last evaluate() of bead chains found, on the host.
+/// Results of the last evaluate() of bead chains, on the host.
 struct BeadSolution {
     ChainGroup const& group;
     ConstView<3> force, acceleration, direction, tip_direction;
     ConstDirectionsView joint_force, tip_force;
+    /// Force of the outboard link of bead k on the next bead or on the ground; minus the force on
+    /// bead k.
     Vec3 outboard_force(std::int64_t k) const;
     BodyResults results() const;
-    /// `velocity`: of the evaluation, with its halo. Collective.
+    /// Largest local backward residual over all ranks. `velocity`: velocities of the evaluation,
+    /// with halo. Collective.
     double residual(Communicator const&, ConstView<3> velocity, std::vector<HeldTip> const&) const;
 };
 
-/// 0 where there is no link.
+/// 1 / (2 length) of each link; 0 without a link.
 Field<1> halves_over(Field<1> const& length, Executor const&);
 
+/// State, arrays and operations of bead chains; DeviceBeads serves OpenMM on the same GPU,
+/// ClosingDrifts the closing of links.
 template <class Space>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
 
   public:
-    /// `solver` takes views of the same space.
+    /// `solver` must read and write views of the same Space.
     BeadDynamics(ChainGroup const& group, Scene const& scene, Space const& space,
                  Communicator const& communicator, std::unique_ptr<ChainSolver> solver)
         : group_(group),
@@ -91,7 +97,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         settle_forces();
         fixman_->add_forces(directions(), force_.view());
     }
-    /// On the host alone.
+    /// Adds the Fixman potential to the forces. Host only.
     void use(std::unique_ptr<FixmanPotential> fixman) { fixman_ = std::move(fixman); }
     View<3> bead_forces() override {
         settle_forces();
@@ -103,7 +109,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         if (std::exchange(forces_are_out_, false)) space_.push(force_, force_mirror_);
     }
 
-    // Where the space is a GPU's.
+    // DeviceBeads: data exchange with OpenMM on the same GPU. On the host on_device() is null.
     DeviceBeads* on_device() override { return stream() ? this : nullptr; }
     std::int64_t count() const override { return group_.size; }
     void* stream() const override {
@@ -145,7 +151,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     void thermalise(Thermostat const& thermostat, std::uint64_t step) override {
         parts().thermalise(thermostat, step);
     }
-    /// Block by block where it pays.
+    /// Takes the whole step in one launch, block by block, if the solver can and it is faster.
     void step(ConstrainedStep const& step) override {
         if (!carry<dca::BeadLeaf<1>>(step) && !carry<dca::BeadLeaf<3>>(step))
             AbsoluteDynamics::step(step);
@@ -157,7 +163,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             return of_chain[static_cast<std::size_t>(group_.pieces[i].chain)];
         };
         for (std::size_t i = 0, end = 0; i < group_.pieces.size();
-             i = end) {  // neighbours in one loop
+             i = end) {  // One loop over neighbouring pieces.
             std::int64_t count = 0;
             for (end = i; end < group_.pieces.size() && drawn(end) == drawn(i); ++end)
                 count += group_.pieces[end].count;
@@ -170,7 +176,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
 
     double constraint_error() override {
-        settle_forces();  // whoever reads them says what is wrong with them
+        // The next reader of the forces reports what is wrong with them.
+        settle_forces();
         check();
         return agreed_error();
     }
@@ -185,7 +192,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         found.hold([&] { check(); });
         return found.text();
     }
-    /// Neighbours' positions are here: update_configuration() has brought them.
+    /// Precondition: update_configuration() has brought the neighbours' positions.
     double own_error() override {
         BeadChains const c = chains();
         double const along = space_.largest(
@@ -257,7 +264,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         });
     }
     PotentialEnergy potential() override {
-        settle_forces();  // OpenMM's energy takes the place of its forces
+        // OpenMM's energy computation overwrites its forces, so sum them first.
+        settle_forces();
         PotentialEnergy energy = potential_in(gravity_, group_, space_.read(position_));
         if (fixman_) energy.fixman = fixman_->energy();
         return energy;
@@ -265,8 +273,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
-    /// A step's parts, loop after loop over all chains (bead_step.hpp). Not private: nvcc asks for
-    /// that.
+    /// Execution policy of a step: one loop over all chains after the other (bead_step.hpp). Public
+    /// because of nvcc.
     struct Way {
         BeadDynamics& d;
         template <class Action>
@@ -302,8 +310,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         }
     };
 
-    /// Adds up the forces that are ahead: whoever reads the array comes here first. Not private:
-    /// nvcc asks for that.
+    /// Sums the pending forces into the force array; every reader of that array calls it first.
+    /// Public because of nvcc.
     void settle_forces() {
         if (std::exchange(forces_are_ahead_, false))
             space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) {
@@ -313,8 +321,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
 
   private:
     static constexpr std::int64_t never = -1;
-    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that
-    /// itself.
+    /// Runs `action`. On the host it keeps a pivot failure until the next check(); on a GPU the
+    /// solver keeps it.
     template <class Action>
     void held(Action const& action) {
         if constexpr (Space::answers_at_once)
@@ -322,11 +330,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         else
             action();
     }
+    /// Throws ComputationError if a pivot failure is pending on this rank.
     void check() const {
         solver_->check();
         trouble_.check();
     }
-    /// Whether own_error() is known to be at most `tolerance`.
+    /// True if own_error() is known to be at most `tolerance`.
     bool closed_within(double tolerance) {
         BeadChains const c = chains();
         for (dca::Piece const& p : group_.pieces)
@@ -337,8 +346,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             if (!(c.tip_error(i) <= tolerance)) return false;
         return true;
     }
+    /// The parts of a step, executed loop by loop.
     BeadStep<Way> parts() { return {chains(), {*this}}; }
-    /// Whether the solver, if it is one of this leaf, carried the chains through the step.
+    /// Takes a step in one launch if the solver is a TreeSolver with this leaf that supports it.
+    /// Returns true if it did.
     template <class Leaf>
     bool carry(ConstrainedStep const& step) {
         if constexpr (Space::template has_blocks<Leaf::K>) {
@@ -357,10 +368,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         }
         return false;
     }
+    /// Configuration for the solver by link directions.
     ConfigurationView directions() {
         return {
             direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}};
     }
+    /// Configuration for assemble_and_solve() by positions; the solver computes the directions.
     ConfigurationView where() const {
         ConfigurationView at;
         at.direction = direction_.view();
@@ -369,6 +382,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         at.pieces = std::ssize(piece_);
         return at;
     }
+    /// Loads for assemble_and_solve() with velocities; the solver computes the biases.
     LoadsView what() const {
         LoadsView loads;
         loads.force = force_.view();
@@ -376,6 +390,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         return loads;
     }
     std::int64_t tips() const { return std::ssize(tip_); }
+    /// Views of all arrays for loops over beads.
     BeadChains chains() {
         BeadChains c;
         c.places.size = group_.size;
@@ -401,6 +416,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         c.tip_bias = of_tips(group_, tip_bias_);
         return c;
     }
+    /// Calls use() with the results of the last evaluation, copied to the host.
     template <class Use>
     auto with_solution(Use const& use) const {
         auto const &force = space_.read(force_), &acceleration = space_.read(change_),
@@ -424,15 +440,19 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     typename Space::template List<LocalPiece> pieces_;
     typename Space::template List<HeldTip> tips_;
     typename Space::template Fixed<1> mass_, inverse_mass_, length_, half_over_length_;
+    /// Arrays over beads; BeadChainsIn documents them.
     Field3 position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     RingEnds<Space> ring_ends_;
     typename Space::template Mirror<3> position_mirror_, force_mirror_;
+    /// Forces that are not yet in force_, if forces_are_ahead_.
     BeadForces forces_;
     DeferredError trouble_;
+    /// forces_are_out_: the host has a copy of the forces that it may have changed.
     bool forces_are_ahead_ = false, forces_are_out_ = false;
-    std::int64_t put_at_step_ =
-        never;  // DeviceParticles::order of the particles that the last step moved with the beads
+    /// DeviceParticles::order of the OpenMM particles to which the last step already wrote the
+    /// positions.
+    std::int64_t put_at_step_ = never;
     std::unique_ptr<FixmanPotential> fixman_;
 };
 

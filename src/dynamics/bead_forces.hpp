@@ -1,14 +1,18 @@
-// Forces on beads that stand in no array of the chains yet: whoever needs them first adds them up.
+// Forces on beads that are not yet summed into the chains' force array; their first reader sums
+// them.
 #pragma once
 
 #include "neighbours/device_beads.hpp"
 
 namespace catena {
 
+/// Gravity and OpenMM's forces on beads.
 struct BeadForces {
     Vec3 gravity = Vec3::zero();
-    DeviceParticles particles;  // of OpenMM; without beads there are none
+    /// OpenMM's arrays on the GPU; absent if it computes no forces there.
+    DeviceParticles particles;
 
+    /// Force on bead k, kJ/mol/nm.
     CATENA_HD Vec3 on(std::int64_t k, double mass) const {
         Vec3 const f = mass * gravity;
         return particles.bead ? f + particles.force_on(k) : f;

@@ -1,6 +1,6 @@
-// A step of chains of point beads by a team of threads that keeps them in registers from its
-// beginning to its end, up to four consecutive beads a thread (dca/team_tree.hpp). What a step does
-// to a bead is in bead_step.hpp and bead_chains.hpp, for every way alike.
+// A step of chains of point beads by a team of threads. The team keeps the chains in registers for
+// the whole step, up to four consecutive beads per thread (dca/team_tree.hpp). The arithmetic per
+// bead is that of bead_step.hpp and bead_chains.hpp, as in all other ways to execute a step.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -14,10 +14,10 @@ namespace catena {
 template <class Way, class Fields>
 struct BeadStep;
 
-/// D numbers for each of a part's beads, which count from 0, and for one neighbour on either side.
+/// D numbers per bead of a thread's part, indexed from 0, and for one neighbour on either side.
 template <int D>
 struct PartField {
-    Vector<double, D>* bead = nullptr;  // the neighbour inboard
+    Vector<double, D>* bead = nullptr;  // Entry 0 is the inboard neighbour.
     CATENA_HD_IN_PLACE double& at(std::int64_t i, int component) const {
         return bead[i + 1][component];
     }
@@ -26,15 +26,16 @@ struct PartField {
         bead[i + 1] = v;
     }
 };
-/// As BeadPlaces; bead part_length is the neighbour outboard.
+/// Counterpart of BeadPlaces for a part; index part_length is the outboard neighbour.
 struct PartPlaces {
     LocalPiece piece;
-    bool starts = false;     // with its chain's first bead
-    bool to_anchor = false;  // whose link is to the ground
+    bool starts = false;     // The part starts with its chain's first bead.
+    bool to_anchor = false;  // That bead has a link to the ground.
     CATENA_HD_IN_PLACE LocalPiece const& piece_of(std::int64_t) const { return piece; }
     CATENA_HD_IN_PLACE bool linked(std::int64_t i) const { return i > 0 || !starts || to_anchor; }
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t i) const { return i == 0 && starts; }
 };
+/// Counterpart of BeadFields for a part in registers.
 struct PartFields {
     using Places = PartPlaces;
     template <int D>
@@ -44,12 +45,14 @@ struct PartFields {
     using Biases = PartField<1>;
 };
 
+/// One thread's part of a chain: its beads' state, and its part of the tree.
 template <class Team, class Leaf>
 class BeadPart {
     static constexpr int K = Leaf::K, length = dca::part_length;
     using Directions = Vector<double, K>;
 
   public:
+    /// Loads the part's beads. Indices beyond its last bead load that bead again.
     CATENA_EITHER_SIDE
     template <class Step>
     CATENA_HD_IN_PLACE BeadPart(Team const& team, Step const& step)
@@ -75,6 +78,7 @@ class BeadPart {
         direction_[length + 1] =
             goes_on() ? chains.direction.load(place_.body + length) : Vec3::zero();
     }
+    /// Views of this part's registers for the per-bead operations.
     CATENA_HD_IN_PLACE BeadChainsIn<PartFields> chains() {
         BeadChainsIn<PartFields> c;
         if (place_.count > 0) {
@@ -96,7 +100,8 @@ class BeadPart {
         c.bias = {bias_};
         return c;
     }
-    /// Gives back what a step changes, to OpenMM's particles too, where forces came from them.
+    /// Writes back the state that a step changes. Positions are also written to OpenMM's particles
+    /// if these exist.
     CATENA_HD_IN_PLACE void store(DeviceParticles const& particles) const {
         each([&](int i) {
             if (ends_before(i)) return;
@@ -108,7 +113,7 @@ class BeadPart {
         });
     }
 
-    // The way of a BeadStep.
+    // Execution policy of a BeadStep (bead_step.hpp).
 
     struct Way {
         BeadPart* part;
@@ -116,7 +121,7 @@ class BeadPart {
         CATENA_HD_IN_PLACE void each_bead(Action const& action) const {
             part->each(action);
         }
-        /// In turn: as one loop `make` is in the program once.
+        /// A loop, so that the code of `make` exists only once in the program.
         template <class Make, class Take>
         CATENA_HD_IN_PLACE void each_bead(Make const& make, Take const& take) const {
             CATENA_NO_UNROLL
@@ -165,21 +170,24 @@ class BeadPart {
     };
 
   private:
+    /// True if the chain continues in the next part.
     CATENA_HD_IN_PLACE bool goes_on() const { return place_.goes_on(team_.part()); }
+    /// True if the part has no bead i.
     CATENA_HD_IN_PLACE bool ends_before(int i) const { return i >= place_.count; }
-    /// Of all the beads that there is place for: what becomes of those that the part has not is not used.
+    /// Runs `action` for all slots of the part. Results of slots without a bead are not used.
     template <class Action>
     CATENA_HD_IN_PLACE void each(Action const& action) const {
         CATENA_UNROLL
         for (int i = 0; i < length; ++i) action(i);
     }
-    /// There is no link behind a chain's last bead.
+    /// Clears the direction behind a chain's last bead, where there is no link.
     CATENA_HD_IN_PLACE void end_directions() {
         CATENA_UNROLL
         for (int i = 0; i <= length; ++i)
             if (i < length ? ends_before(i) : !goes_on()) direction_[i + 1] = Vec3::zero();
     }
     CATENA_HD_IN_PLACE Vec3 const& outboard_direction(int i) const { return direction_[i + 2]; }
+    /// Assembles the matrices and reports pivot failures.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void assemble() {
         dca::PivotFailure lost;
@@ -191,9 +199,11 @@ class BeadPart {
             [&](int i, Symmetric<double, K> const& factor) { sweeps_.watch(sweeps_.at(place_.body + i), factor, lost); });
         sweeps_.note(lost);
     }
+    /// Biases of bead i under `force` along its two links.
     CATENA_HD_IN_PLACE dca::SegmentBias<double, K> bias_of(Vec3 const& force, int i) const {
         return dca::bead_bias(inverse_mass_[i + 1][0], force, direction_[i + 1], outboard_direction(i), Directions{});
     }
+    /// Acceleration of bead i from `force` and the forces of its two links.
     CATENA_HD_IN_PLACE Vec3 acceleration(Vec3 const& force, Directions const& inboard, Directions const& outboard, int i) const {
         return dca::bead_acceleration(inverse_mass_[i + 1][0], force, inboard[0], direction_[i + 1], outboard[0], outboard_direction(i));
     }
@@ -208,8 +218,9 @@ class BeadPart {
          change_[length + 2] = {}, direction_[length + 2] = {};
 };
 
-/// `step` (StepOfChains) as far as one thread of a team has to do with it. The team's threads are at the chains' parts (dca/team_tree.hpp), and
-/// from_before(value), from_after(value) give what the threads before and after this one in the team gave.
+/// One thread's share of `step` (StepOfChains). The team's threads hold the chains' parts
+/// (dca/team_tree.hpp). from_before(value) and from_after(value) return what the previous and the
+/// next thread of the team passed.
 CATENA_EITHER_SIDE
 template <class Team, class Step>
 CATENA_HD_IN_PLACE void step_of_part(Team const& team, Step const& step) {

@@ -1,11 +1,11 @@
-// A step of chains of point beads, part by part, for whatever carries it out: loop after loop over
-// all chains (BeadDynamics), or a block of threads that takes whole chains through everything, so
-// that a step is one launch.
+// A step of chains of point beads as a sequence of parts. An execution policy runs them: loop after
+// loop over all chains (BeadDynamics), or one block of threads that takes whole chains through the
+// step in one launch.
 //
-// A `Way` has each_bead(action) and each_bead(make, take) for take(k, make(k)), where make is long,
-// each_link(action) and each_tip(action), from_inboard() and from_outboard() for the positions of
-// neighbours elsewhere, assemble() for the matrices of the directions of now, project(momentum,
-// out) and close(bias, tip_bias, out), which solve for them.
+// A policy `Way` has these members. each_bead(action), each_link(action) and each_tip(action) run
+// loops; each_bead(make, take) runs take(k, make(k)) with a long make(). from_inboard() and
+// from_outboard() fetch neighbours' positions. assemble() assembles the matrices for the current
+// directions; project(momentum, out) and close(bias, tip_bias, out) solve with them.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -15,11 +15,13 @@
 
 namespace catena {
 
+/// The parts of a step, as take_step() calls them (constrained_step.hpp).
 template <class Way, class Fields = BeadFields>
 struct BeadStep {
     BeadChainsIn<Fields> c;
     Way way;
 
+    /// Computes link directions at the current positions.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void update_configuration() const {
         way.from_inboard();
@@ -30,8 +32,8 @@ struct BeadStep {
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void assemble_matrices() const { way.assemble(); }
 
-    /// out = P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in
-    /// the place of accelerations.
+    /// Constraint projection out = P (v + h M^-1 f): with momenta instead of forces, the solver
+    /// returns velocities instead of accelerations.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void project(double h, typename Fields::template Found<3> out) const {
         way.each_bead([c = c, h] CATENA_LAMBDA(std::int64_t k) { c.set_momentum(k, h); });
@@ -40,11 +42,13 @@ struct BeadStep {
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void kick(double h) const { project(h, c.velocity); }
 
+    /// Moves the beads for time h, then closes the links in `sweeps` sweeps.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void drift(double h, int sweeps) const {
         way.each_bead([c = c, h] CATENA_LAMBDA(std::int64_t k) { c.drift(k, h); });
         for (int sweep = 0; sweep < sweeps; ++sweep) close(h);
     }
+    /// One quasi-Newton sweep that closes the links at the end of a drift of length h.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void close(double h) const {
         way.from_inboard();
@@ -54,6 +58,7 @@ struct BeadStep {
         way.each_bead(
             [c = c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
     }
+    /// Mixes velocities with the thermostat's noise.
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void thermalise(Thermostat const& t, std::uint64_t step) const {
         way.each_bead(
@@ -64,7 +69,8 @@ struct BeadStep {
     }
 };
 
-/// The way of a block of whole chains.
+/// Execution policy of a block of threads that holds whole chains; it needs no exchange with
+/// neighbours.
 template <class Block, class Leaf>
 struct WayOfBlock {
     Block const& block;
@@ -106,15 +112,16 @@ struct WayOfBlock {
     }
 };
 
-/// A whole step on one block's chains, or (bead_part.hpp) on those that a team of threads keeps in
-/// registers.
+/// A whole step of the chains of one block. If a team of threads keeps them in registers, it calls
+/// step_of_part() (bead_part.hpp).
 template <class Leaf>
 struct StepOfChains {
     static constexpr int K = Leaf::K;
     dca::TreeSweeps<Leaf> sweeps;
     BeadChains chains;
     ConstrainedStep step;
-    bool forces_are_ahead = false;  // `forces` are to be taken; else they are in the chains' array
+    /// True if `forces` have not been summed into the chains' force array yet.
+    bool forces_are_ahead = false;
     BeadForces forces;
 
     CATENA_EITHER_SIDE

@@ -1,3 +1,4 @@
+// Collects the loads of local bodies from the scene.
 #include "dynamics/body_loads.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ bool any(std::vector<Vec3> const& values) {
                        [](Vec3 const& v) { return v[0] != 0 || v[1] != 0 || v[2] != 0; });
 }
 
-/// Copies one optional array of every local body.
+/// Copies one array of the scene for every local body.
 template <int D, class Get>
 Field<D> field_of(ChainGroup const& group, Scene const& scene, Get const& get) {
     Field<D> field(group.size);
@@ -21,10 +22,12 @@ Field<D> field_of(ChainGroup const& group, Scene const& scene, Get const& get) {
     return field;
 }
 
+/// Entry i of an optional array; zero if the array is empty.
 Vec3 entry(std::vector<Vec3> const& values, std::int64_t i) {
     return values.empty() ? Vec3::zero() : values[i];
 }
 
+/// Adds drag: a chain's own values, else the scene's.
 void add_drag(ChainGroup const& group, Scene const& scene, BodyLoads& loads) {
     std::array<double, 2> const everywhere{scene.forces.linear_drag, scene.forces.angular_drag};
     loads.dragged = everywhere[0] > 0 || everywhere[1] > 0;
@@ -43,7 +46,7 @@ void add_drag(ChainGroup const& group, Scene const& scene, BodyLoads& loads) {
 BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
     BodyLoads loads;
     loads.gravity = scene.forces.gravity;
-    if (group.linked) return loads;  // these have gravity and the forces on their beads
+    if (group.linked) return loads;  // Bodies on links have gravity and the forces on their beads.
     for (int const chain : group.chain) {
         BodyArrays const& b = scene.chains[chain].bodies;
         loads.springs = loads.springs || any(b.stiffness);

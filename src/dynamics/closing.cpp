@@ -1,3 +1,4 @@
+// The stopping rule of further sweeps.
 #include "dynamics/closing.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 namespace catena {
 namespace {
 
+// Number of consecutive sweeps that do not halve the error, after which a small error counts as
+// rounding.
 constexpr int in_vain_at_rounding = 5;
 
 [[noreturn]] void fail(int sweeps, double error, double tolerance) {
@@ -32,8 +35,8 @@ int Closing::close(int done, std::function<double()> const& error,
         in_vain = open > 0.5 * best ? in_vain + 1 : 0;
         best = std::min(best, open);
         if (in_vain > 0 && open <= tolerance) return more;
-        if (in_vain >= in_vain_at_rounding && open <= rounding)
-            return more;  // of coordinates far from the origin: the run's verdict says so
+        // Coordinates are far from the origin; the run's verdict reports the error.
+        if (in_vain >= in_vain_at_rounding && open <= rounding) return more;
         if (!std::isfinite(open) || (done + more >= most && more >= in_vain_at_rounding)) {
             if (open <= tolerance) return more;
             fail(done + more, open, tolerance);

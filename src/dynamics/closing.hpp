@@ -1,5 +1,5 @@
-// Further sweeps of a drift that left its joints open: the number learnt before is a start, not a
-// verdict.
+// Further sweeps of a drift whose joints are still open. The number of sweeps that the integrator
+// has learnt is only a starting value.
 #pragma once
 
 #include <functional>
@@ -9,44 +9,52 @@
 
 namespace catena {
 
-/// When sweeps go on and where they end. All ranks see the same errors, so that they do the same.
+/// Rules for further sweeps: when to add them and when to stop. All ranks see the same errors and
+/// therefore decide alike.
 struct Closing {
-    double tolerance = 1e-10;  // sweeps go on where the error exceeds it
-    double enough = 1e-12;     // they end below that, or where rounding is all that is left
-    int most = 30;             // sweeps of a drift in all, or the few that tell rounding
-    double rounding = 1e-7;    // the most that coordinates' rounding leaves of an error
+    /// Sweeps are added if the error (AbsoluteDynamics::constraint_error()) exceeds this.
+    double tolerance = 1e-10;
+    /// Sweeps stop below this, or when only rounding is left.
+    double enough = 1e-12;
+    /// Largest number of sweeps of one drift. The few further sweeps that detect rounding are
+    /// always permitted.
+    int most = 30;
+    /// Largest error that rounding of coordinates may explain.
+    double rounding = 1e-7;
 
-    /// Calls `sweep` while `error()` asks for it, after `done` sweeps. Returns the number of calls.
-    /// Throws ComputationError where the joints stay open after `most` sweeps or come apart.
+    /// Calls sweep() while error() requires it; `done` sweeps were made before. Returns the number
+    /// of calls. Throws StaysOpen (a ComputationError) if the joints stay open after `most` sweeps
+    /// or the error is not finite.
     int close(int done, std::function<double()> const& error,
               std::function<void()> const& sweep) const;
 };
 
-/// Chains in absolute coordinates (AbsoluteDynamics) as ClosedSteps and
-/// ConstrainedIntegrator::step_closing() see them.
+/// Interface of chains in absolute coordinates (AbsoluteDynamics) for ClosedSteps and
+/// ConstrainedIntegrator::step_closing().
 class ClosingDrifts {
   public:
     virtual ~ClosingDrifts() = default;
-    /// As AbsoluteDynamics::drift(), with further sweeps where `closing` asks for them. Returns how
-    /// many these were. Collective.
+    /// Drift as AbsoluteDynamics::drift(), with further sweeps as `closing` requires. Returns the
+    /// number of further sweeps. Collective.
     virtual int drift_closing(double h, int sweeps, Closing const& closing) = 0;
-    /// AbsoluteDynamics::constraint_error() of this rank's joints, after step(). Collective,
-    /// without an agreement of the ranks.
+    /// Constraint error of this rank's joints after step() (AbsoluteDynamics::constraint_error()).
+    /// Collective for the exchange of neighbours' ends, but not reduced over ranks.
     virtual double own_error() = 0;
-    /// own_error(), or 0 where it is known to be no more than `tolerance`, which takes less time to
-    /// find out. Collective, as own_error().
+    /// Returns own_error(), or 0 if that is known to be at most `tolerance`, which takes less time
+    /// to establish. Collective like own_error().
     virtual double own_error_beyond(double tolerance) = 0;
-    /// AbsoluteDynamics::constraint_error() whatever became of matrices: where these are lost on
-    /// one rank, all ranks come back. Collective.
+    /// Constraint error over all ranks, even after a pivot failure. If matrices are invalid on one
+    /// rank, the call still returns on all ranks. Collective.
     virtual double agreed_error() = 0;
-    /// What is wrong with matrices on this rank since the state was set last; empty: nothing.
+    /// Text of a pivot failure on this rank since the state was last set; empty if there was none.
     virtual std::string trouble() = 0;
 };
 
-/// What a rank finds wrong within a step, kept until all ranks look: thrown at once it would leave
-/// the others waiting, and no step could be taken again.
+/// Keeps an error that one rank finds within a step until all ranks check. If it were thrown at
+/// once, the other ranks would wait forever, and the step could not be repeated.
 class DeferredError {
   public:
+    /// Runs `action` and keeps its ComputationError, unless there is an earlier one.
     template <class Action>
     void hold(Action const& action) {
         try {
@@ -55,6 +63,7 @@ class DeferredError {
             if (text_.empty()) text_ = error.what();
         }
     }
+    /// Throws the kept error, if any.
     void check() const {
         if (!text_.empty()) throw ComputationError(text_);
     }

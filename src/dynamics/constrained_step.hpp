@@ -1,5 +1,5 @@
-// One step of RATTLE or g-BAOAB (constrained_integrator.hpp), for whatever does its parts, on the
-// host or a GPU.
+// One step of RATTLE or g-BAOAB (constrained_integrator.hpp), composed of parts that a host or GPU
+// implementation supplies.
 #pragma once
 
 #include <cmath>
@@ -9,36 +9,43 @@
 
 namespace catena {
 
-/// v <- keep v + spread M^-1/2 noise, to be projected.
+/// Parameters of the thermostat v <- keep v + spread M^-1/2 noise, which a projection follows.
 struct Thermostat {
     double keep = 1, spread = 0;
     std::uint64_t seed = 0;
 };
-/// The variance of velocities tends to kt / M.
+/// Thermostat under which the variance of velocities tends to kt / M. `keep` is the factor per
+/// step, exp(-friction step); kt is in kJ/mol.
 inline Thermostat thermostat_of(double keep, double kt, std::uint64_t seed) {
     return {keep, std::sqrt((1.0 - keep * keep) * kt), seed};
 }
 
+/// Parameters of one step, as plain data for kernels. Lengths of time are in ps.
 struct ConstrainedStep {
     bool langevin = false;
-    double kick = 0;   // of the forces at its beginning
-    double drift = 0;  // of all of it
-    int sweeps = 0;    // a drift
-    int parts =
-        1;  // of a drift, each with its own matrices: geodesic steps (Leimkuhler & Matthews 2016)
+    double kick = 0;   // Duration of the kick by the forces at the start.
+    double drift = 0;  // Total duration of all drifts.
+    int sweeps = 0;    // Sweeps per drift.
+    /// Parts that a drift is divided into, each with its own matrices: geodesic steps (Leimkuhler &
+    /// Matthews 2016).
+    int parts = 1;
     Thermostat thermostat;
+    /// Number of the step, which keys the noise.
     std::uint64_t number = 0;
+    /// Number of drifts in the step; two halves under a thermostat, each in `parts` parts.
     int drifts() const { return (langevin ? 2 : 1) * parts; }
+    /// Matrix sweeps within the step; the one at its start is made before it.
     int matrix_sweeps() const { return drifts() - 1; }
+    /// Bias sweeps within the step: one projection and `sweeps` sweeps per drift.
     int bias_sweeps() const { return drifts() * (1 + sweeps); }
 };
 
-/// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration
-/// is.
+/// Takes a step from x_n to x_n+1. At x_n configuration, matrices and forces must be up to date; at
+/// x_n+1 only the configuration is.
 CATENA_EITHER_SIDE
 template <class Parts>
 CATENA_HD_IN_PLACE void take_step(Parts&& parts, ConstrainedStep const& s) {
-    // One loop, not one part after the other: written out, a GPU would spend its time fetching
+    // One loop instead of straight-line code: written out, a GPU would spend its time fetching
     // instructions.
     int const drifts = (s.langevin ? 2 : 1) * s.parts;
     CATENA_NO_UNROLL

@@ -1,3 +1,4 @@
+// Force and energy of the Fixman potential.
 #include "dynamics/fixman.hpp"
 
 #include <cmath>
@@ -7,7 +8,8 @@
 namespace catena {
 namespace {
 
-/// What turns a link of this length along u towards s.
+/// Force at the outboard end of a link along u that rotates it towards s. `strength` is kT /
+/// length.
 Vec3 turning(double strength, Vec3 const& s, Vec3 const& u) {
     return strength * plus_scaled(s, -dot(s, u), u);
 }
@@ -37,8 +39,8 @@ Vec3 FixmanPotential::outboard(ConfigurationView const& at, std::int64_t k) cons
     return group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : at.direction.load(k + 1);
 }
 
-/// kT sum_k w_k grad(u_k . u_k+1), w_k = (T^-1)_k,k+1 / m_k: link k is turned towards w_k-1 u_k-1 +
-/// w_k u_k+1.
+/// Force -grad U_F = kT sum_k w_k grad(u_k . u_k+1), w_k = (T^-1)_k,k+1 / m_k. It rotates link k
+/// towards w_k-1 u_k-1 + w_k u_k+1.
 void FixmanPotential::add_forces(ConfigurationView const& at, View<3> force) {
     solver_.invert({pivot_.view(), tip_pivot_.view(), beside_.view()});
     View<1> const beside = beside_.view();

@@ -1,6 +1,6 @@
-// The Fixman potential of chains of point beads on links, U_F = 1/2 kT log det T
-// (src/dca/README.md, "Statistics of constrained chains"). Under it rigid links sample what stiff
-// springs in their places would.
+// Fixman potential of chains of point beads on links, U_F = 1/2 kT log det T (src/dca/README.md,
+// "Statistics of constrained chains"). With it, rigid links sample the ensemble of stiff springs in
+// their place.
 #pragma once
 
 #include <vector>
@@ -10,22 +10,25 @@
 
 namespace catena {
 
+/// Computes the force and the energy from entries of T^-1 (ChainSolver::invert()).
 class FixmanPotential {
   public:
-    /// `solver`: of the group's links, on the host. All of them must outlive this.
+    /// `solver` is the solver of the group's links, on the host. All arguments must outlive this
+    /// object.
     FixmanPotential(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
                     ChainSolver& solver);
-    /// Adds its force on each bead, at the configuration that matrices were assembled for last.
+    /// Adds its force on each bead (W) at the configuration of the last assembled matrices.
     /// Collective.
     void add_forces(ConfigurationView const&, View<3> force);
-    /// Of the links on the inboard side of each bead (the tip's link belongs to the last bead), as
-    /// add_forces() found it last.
+    /// Energy by bead, kJ/mol: that of the link on its inboard side, from the last add_forces().
+    /// The energy of a tip's link is added to the last bead.
     std::vector<double> energy() const;
 
   private:
     bool has_link(std::int64_t k) const {
         return group_.joint[static_cast<std::size_t>(k)] == JointType::link;
     }
+    /// Direction of the outboard link of bead k; zero if it has none.
     Vec3 outboard(ConfigurationView const&, std::int64_t k) const;
 
     ChainGroup const& group_;
@@ -34,7 +37,9 @@ class FixmanPotential {
     ChainSolver& solver_;
     double kt_;
     std::vector<HeldTip> tips_;
+    /// Entries of T^-1 and its pivots, as InverseView.
     Field<1> pivot_, tip_pivot_, beside_;
+    /// Weighted link directions, and the forces that rotate each link.
     Field<3> pull_, turn_;
 };
 

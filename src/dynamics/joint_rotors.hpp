@@ -1,8 +1,9 @@
-// Implicit springs of spherical joints in absolute coordinates, for every Space: within a step of
-// length h a spring K acts on a chain with a rotor in every joint, of inertia B = c h^2 K along the
-// body's axes, that turns as the joint does (c: rotor_of_spring()). A rotor has a velocity of its
-// own, as bodies have theirs, and the sweeps that close joints make both agree: kicks so that it is
-// the joint's, drifts so that it is the joint's mean one.
+// Implicit springs of spherical joints in absolute coordinates, in any Space. Within a step of
+// length h, a spring K acts as a rotor in the joint, with inertia B = c h^2 K along the body's axes
+// (c: rotor_of_spring()). The rotor rotates with the joint.
+//
+// A rotor has its own velocity, as bodies do, and the sweeps that close joints keep it consistent.
+// A kick makes it equal to the joint's velocity, a drift to the joint's mean velocity.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -13,33 +14,42 @@
 
 namespace catena {
 
+/// Rotors of a group's implicit joints, with the operations of one joint.
 struct JointRotors {
-    double of_stiffness = 0;                 // what of K is B
-    std::uint8_t const* implicit = nullptr;  // whether joint k is; null where none is
-    std::uint8_t const* is_first = nullptr;  // of its chain
+    double of_stiffness = 0;  // B / K, that is c h^2.
+    /// True for joint k if it is implicit; null if no joint is.
+    std::uint8_t const* implicit = nullptr;
+    /// True for body k if it begins its chain.
+    std::uint8_t const* is_first = nullptr;
     ConstView<3> stiffness;
-    ConstView<4>
-        orientation;     // of bodies; entry -1: of the neighbour's last body, as in what follows
-    View<3> rate;        // of the rotor against the inboard body, B
-    View<3> torque;      // of the spring, B
-    View<4> flown;       // orientations at the end of a drift's flight
-    View<6> compliance;  // ConfigurationView::compliance, W
+    /// Quaternion of B in W, by body. Entry -1, here and in the fields below, is the inboard
+    /// neighbour's last body.
+    ConstView<4> orientation;
+    /// Angular velocity of the rotor relative to the inboard body, B.
+    View<3> rate;
+    View<3> torque;      // Torque of the spring, B.
+    View<4> flown;       // Orientations at the end of a drift's free flight.
+    View<6> compliance;  // Compliance B^-1 in W (ConfigurationView::compliance).
 
+    /// True if joint k is implicit.
     CATENA_HD bool has(std::int64_t k) const { return implicit && implicit[k] != 0; }
+    /// Inertia B of the rotor about body axis i, amu nm^2.
     CATENA_HD double inertia(std::int64_t k, int i) const {
         return of_stiffness * stiffness.at(k, i);
     }
+    /// Rotation matrix of B in W.
     CATENA_HD Mat3 axes(std::int64_t k) const {
         return to_matrix(as_quaternion(orientation.load(k)));
     }
-    /// What body k turns by against its inboard body, of what bodies turn by; all in their own
-    /// axes.
+    /// Angular velocity of body k relative to its inboard body, B. `turning` holds the angular
+    /// velocities (or accelerations) of bodies in their own axes.
     CATENA_HD Vec3 relative(ConstView<3> const& turning, std::int64_t k) const {
         Vec3 const own = turning.load(k);
         return is_first[k] ? own
                            : own - transposed_times(axes(k), axes(k - 1) * turning.load(k - 1));
     }
 
+    /// Sets the compliance of joint k, in W; zero if it is not implicit.
     CATENA_HD void set_compliance(std::int64_t k) const {
         auto c = Symmetric<double, 3>::zero();
         if (has(k)) {
@@ -60,7 +70,8 @@ struct JointRotors {
                                         Vec3 const& value) {
         for (int i = 0; i < 3; ++i) bias.at(k, 3 + i) = value[i];
     }
-    /// For a kick: the rotor's momentum with h times the spring's torque.
+    /// Sets the bias of joint k for a kick: the rotor's rate after its own kick h by the spring's
+    /// torque.
     CATENA_HD void set_kick(DirectionsView const& bias, std::int64_t k, double h) const {
         for (int i = 0; i < 6; ++i) bias.at(k, i) = 0;
         if (!has(k)) return;
@@ -69,13 +80,16 @@ struct JointRotors {
         for (int i = 0; i < 3; ++i) wanted[i] += h * by[i] / inertia(k, i);
         store_angular(bias, k, -(axes(k) * wanted));
     }
+    /// Sets the rotor's rate to the joint's, after a projection.
     CATENA_HD void take(std::int64_t k, ConstView<3> const& omega) const {
         if (has(k)) rate.store(k, relative(omega, k));
     }
+    /// Rotation of a body during the drift's flight, in its axes at the start.
     CATENA_HD Quat gone(std::int64_t body) const {
         return conjugate(as_quaternion(orientation.load(body))) * as_quaternion(flown.load(body));
     }
-    /// For a drift: how far the joint has turned beyond what its rotor has, `scale` times.
+    /// Sets the bias of joint k for a drift: `scale` times the joint's rotation vector, less the
+    /// rotor's rate.
     CATENA_HD void set_opening(DirectionsView const& bias, std::int64_t k, double scale) const {
         if (!has(k)) return;
         Quat const own = gone(k);
@@ -87,16 +101,17 @@ struct JointRotors {
         }
         store_angular(bias, k, axes(k) * (scale * rotation_vector(turned) - rate.load(k)));
     }
-    /// What the sweep that closed them adds.
+    /// Adds a sweep's correction to the rotor's rate.
     CATENA_HD void add(DirectionsView const& bias, std::int64_t k,
                        ConstView<3> const& alpha) const {
         if (!has(k)) return;
         Vec3 const opening{{bias.at(k, 3), bias.at(k, 4), bias.at(k, 5)}};
         rate.store(k, rate.load(k) + relative(alpha, k) + transposed_times(axes(k), opening));
     }
-    /// Harmonic springs sample exactly at any step (BAOAB). In the middle of drifts velocities u
-    /// have the covariance kt (M + B)^-1; where forces are, at whole steps, kt (M + B)^-1 (M + B /
-    /// 2) (M + B)^-1: rotors have half the variance there.
+    /// Mixes the rotor's rate with noise. BAOAB samples harmonic springs exactly at any step. In
+    /// the middle of drifts, velocities u have the covariance kt (M + B)^-1. At whole steps, where
+    /// forces are computed, it is kt (M + B)^-1 (M + B / 2) (M + B)^-1: rotors have half the
+    /// variance there.
     CATENA_HD void add_noise(std::int64_t k, Thermostat const& t, std::uint64_t step,
                              std::uint64_t body, bool between_drifts) const {
         if (!has(k)) return;

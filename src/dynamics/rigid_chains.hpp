@@ -1,5 +1,6 @@
-// What a step does to one body of chains of rigid bodies in absolute coordinates, for every Space.
-// Positions, velocities and forces in ground axes, angular velocities and torques in the body's.
+// Operations of a step on one body of chains of rigid bodies in absolute coordinates, in any Space.
+// Positions, velocities and forces are in ground axes (W), angular velocities and torques in body
+// axes (B). Units: nm, ps, amu, kJ/mol, unless the scene has `units: si`.
 #pragma once
 
 #include <cmath>
@@ -16,36 +17,39 @@
 
 namespace catena {
 
-/// One of the sweeps that close the joints at a drift's end.
+/// Parameters of one of the sweeps that close the joints at a drift's end.
 struct DriftSweep {
-    double time = 0;  // of the drift
+    double time = 0;  // Duration of the drift.
     bool first = false, last = false;
 };
 
-/// What of a thermostat's noise goes into velocities, and into angular ones.
+/// Thermostat, and the streams of its noise for linear and angular velocities.
 struct RigidNoise {
     Thermostat thermostat;
     std::uint64_t step = 0;
     NoiseStage linear = NoiseStage::start, angular = NoiseStage::start_angular;
-    bool between_drifts = false;  // not where forces are: there rotors have half the variance
-                                  // (JointRotors::add_noise)
+    /// True in the middle of drifts. Elsewhere, at whole steps, rotors have half the variance
+    /// (JointRotors::add_noise).
+    bool between_drifts = false;
 };
 
-/// Of body k relative to the joint frame (`frame`, in the inboard body).
+/// Rotation of body k relative to its joint frame, whose rotation in the inboard body is `frame`.
 CATENA_HD Quat turn_of_joint(Quat const& inboard, Quat const& frame, Quat const& orientation) {
     return conjugate(inboard * frame) * orientation;
 }
 
-/// Handle 1 of body k lies at x + R r1, handle 2 at x + R r2 (x: centre of mass). Joints hold
-/// handles together; links keep them their length apart. A point bead is a body without inertia
-/// that never turns.
+/// State and operations of bodies. Handle 1 of body k lies at x + R r1 and handle 2 at x + R r2,
+/// with x the centre of mass and R the body's rotation matrix. Joints hold two handles together;
+/// links keep them at the link's length. A point bead is a body without inertia that never rotates.
 struct RigidChains {
     bool linked = false;
-    double reach = 1;  // that openings of joints are measured by
-    std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // of its chain
+    double reach = 1;  // Length that openings of joints are divided by, nm.
+    /// True for body k if it begins or ends its chain.
+    std::uint8_t const *is_first = nullptr, *is_last = nullptr;
     JointType const* joint = nullptr;
-    std::int32_t const* jointed_tip =
-        nullptr;  // of its last body: index in `tip`, else -1; absent where there is none
+    /// Index of each body in `tip` if it is a last body with a jointed tip, else -1. Null if the
+    /// group has no tips.
+    std::int32_t const* jointed_tip = nullptr;
     HeldTip const* tip = nullptr;
     RingEndsView ring_ends;
     LocalPiece const* piece = nullptr;
@@ -53,30 +57,39 @@ struct RigidChains {
     ConstView<1> mass, inverse_mass, length;
     ConstView<6> inertia;
     ConstView<3> r1, r2;
-    ConstView<4> joint_frame;       // ChainGroup::joint_rotation
-    ConstView<4> principal_axes;    // in B
-    ConstView<3> principal_moment;  // a bead: 0
+    ConstView<4> joint_frame;  // Quaternion of J in the inboard body (ChainGroup::joint_rotation).
+    ConstView<4> principal_axes;  // Quaternion of P in B.
+    /// Principal moments of inertia; 0 for a bead.
+    ConstView<3> principal_moment;
     BodyLoadsView given;
     JointRotors rotors;
     CarriedBeadsView beads;
     View<3> position, velocity, omega;
     View<4> orientation;
     View<3> observed_velocity, observed_omega, force, torque;
-    View<3> momentum, moment;     // linear and angular momenta; for accelerations `moment` is the
-                                  // torque less the gyroscopic one
-    View<3> acceleration, alpha;  // or what a sweep changes velocities by
-    View<3> inboard_end, outboard_end;  // the handles, or their velocities, W
-    View<3> joint_torque;               // of joint k on body k, W
-    View<3> direction, tip_direction;   // of links
-    DirectionsView bias,
-        tip_bias;  // a link's direction comes first; full handles' other directions stay 0
+    /// Linear (W) and angular momenta (B). For accelerations, `moment` is the torque less the
+    /// gyroscopic torque.
+    View<3> momentum, moment;
+    /// Accelerations, or a sweep's corrections of velocities.
+    View<3> acceleration, alpha;
+    /// Handles 1 and 2 of bodies, W: their positions, or their velocities during an evaluation.
+    View<3> inboard_end, outboard_end;
+    View<3> joint_torque;  // Torque of joint k on body k, W.
+    /// Unit directions of links, W.
+    View<3> direction, tip_direction;
+    /// Biases of inboard joints and tips; for a link, component 0 along its direction. The other
+    /// directions of full handles stay 0.
+    DirectionsView bias, tip_bias;
 
+    /// Rotation matrix of B in W.
     CATENA_HD Mat3 axes(std::int64_t k) const {
         return to_matrix(as_quaternion(orientation.load(k)));
     }
+    /// True if body k is a point bead.
     CATENA_HD bool is_bead(std::int64_t k) const { return principal_moment.at(k, 0) == 0; }
+    /// True if body k has an inboard joint or link.
     CATENA_HD bool is_joined(std::int64_t k) const { return joint[k] != JointType::free; }
-    /// Of the chain that body k ends; null where it ends none or nothing holds it.
+    /// Attachment of the tip of body k; null if body k is not a last body or its tip is free.
     CATENA_HD HeldTip const* tip_of(std::int64_t k) const {
         return jointed_tip && jointed_tip[k] >= 0 ? tip + jointed_tip[k] : nullptr;
     }
@@ -84,23 +97,25 @@ struct RigidChains {
         return catena::piece_of(piece, pieces, k);
     }
 
-    // Joints.
+    // Geometry of joints and links.
 
+    /// Sets the positions of both handles of body k at the given pose.
     CATENA_HD void set_ends(std::int64_t k, Vec3 const& centre, Mat3 const& turn) const {
         inboard_end.store(k, centre + turn * r1.load(k));
         outboard_end.store(k, centre + turn * r2.load(k));
     }
     CATENA_HD void set_ends(std::int64_t k) const { set_ends(k, position.load(k), axes(k)); }
-    /// Handle 1 of body k from handle 2 of its inboard neighbour, or from the ground.
+    /// Handle 1 of body k from handle 2 of its inboard neighbour, or from its anchor on the ground.
     CATENA_HD Vec3 apart(std::int64_t k) const {
         return inboard_end.load(k) - (is_first[k] ? piece_of(k).anchor : outboard_end.load(k - 1));
     }
-    /// What a tip is joined to from where it ends; `at_ground`: of the ground.
+    /// The attachment of a tip from handle 2 of its last body. `at_ground` is used if the tip is
+    /// attached to the ground.
     CATENA_HD Vec3 apart(HeldTip const& t, Vec3 const& at_ground) const {
         return (t.ring < 0 ? at_ground : ring_ends.first.load(t.ring)) - outboard_end.load(t.body);
     }
     CATENA_HD Vec3 apart(HeldTip const& t) const { return apart(t, t.anchor); }
-    /// Along what it acts and how long it is; a joint: zero.
+    /// Direction and length of a link; both are zero for a joint.
     struct Link {
         Vec3 direction;
         double length;
@@ -112,6 +127,7 @@ struct RigidChains {
         return {linked ? tip_direction.load(t.body) : Vec3::zero(), t.length};
     }
 
+    /// Sets the directions of the links of body k: inboard, and of its tip.
     CATENA_HD void set_directions(std::int64_t k) const {
         Vec3 const d = is_joined(k) ? apart(k) : Vec3::zero();
         direction.store(k, is_joined(k) ? (1.0 / norm(d)) * d : d);
@@ -120,44 +136,50 @@ struct RigidChains {
         Vec3 const at_tip = apart(*t);
         tip_direction.store(k, (1.0 / norm(at_tip)) * at_tip);
     }
-    /// Of the link that closes a ring, as that of its first body.
+    /// Sets the direction of the link that closes a ring, as the inboard direction of the ring's
+    /// first body.
     CATENA_HD void set_first_direction(LocalRing const& ring, std::int64_t i) const {
         if (ring.first < 0) return;
         Vec3 const d = ring_ends.first.load(i) - ring_ends.last.load(i);
         direction.store(ring.first, (1.0 / norm(d)) * d);
     }
+    /// Relative error of a link or joint with opening d.
     CATENA_HD double error_of(Vec3 const& d, double l) const {
         return linked ? std::fabs(norm(d) - l) / l : norm(d) / reach;
     }
-    /// Of the inboard joint of body k and of its tip's.
+    /// Constraint error of the inboard joint of body k and of its tip; the larger one.
     CATENA_HD double error(std::int64_t k) const {
         double const own = is_joined(k) ? error_of(apart(k), linked ? length.at(k, 0) : 0.0) : 0.0;
         HeldTip const* const t = tip_of(k);
         double const at_tip = t ? error_of(apart(*t), t->length) : 0.0;
         return at_tip > own || at_tip != at_tip ? at_tip : own;
     }
-    /// The biases of a joint along its directions.
+    /// Stores the bias of a joint along its directions.
     CATENA_HD void set_bias(DirectionsView const& out, std::int64_t k, Vec3 const& value) const {
         if (linked)
             out.at(k, 0) = value[0];
         else
             out.store<3>(k, value);
     }
+    /// Opening of a joint, or length error of a link as component 0.
     CATENA_HD Vec3 opening(Vec3 const& d, Link const& l) const {
         return linked ? Vec3{{excess(d, l.length, 0.5 / l.length), 0, 0}} : d;
     }
-    /// For a drift that ended with the handles here: `scale` times how far joints are open.
+    /// Sets the biases for a drift's sweep, after a flight has set the handles: `scale` times the
+    /// openings of joints.
     CATENA_HD void set_openings(std::int64_t k, double scale) const {
         set_bias(bias, k, is_joined(k) ? scale * opening(apart(k), link(k)) : Vec3::zero());
         rotors.set_opening(bias, k, scale);
         if (HeldTip const* const t = tip_of(k))
             set_bias(tip_bias, k, scale * opening(apart(*t), link(*t)));
     }
-    /// For accelerations: what the joints' velocities add, less the centripetal terms of the
-    /// bodies, which are all there is but on links.
+    /// Velocity bias of a joint for accelerations, without the bodies' centripetal terms, which the
+    /// solver adds. It is nonzero for links only.
     CATENA_HD Vec3 turning(Vec3 const& v, Link const& l) const {
         return linked ? Vec3{{swing(v, l.direction, l.length), 0, 0}} : Vec3::zero();
     }
+    /// Sets the velocity biases of body k's joints. Precondition for links: handles hold
+    /// velocities.
     CATENA_HD void set_turnings(std::int64_t k) const {
         Vec3 const before = is_first[k] || !linked ? Vec3::zero() : outboard_end.load(k - 1);
         set_bias(bias, k,
@@ -166,9 +188,10 @@ struct RigidChains {
             set_bias(tip_bias, k, turning(apart(*t, Vec3::zero()), link(*t)));
     }
 
-    // Forces.
+    // Forces and torques on bodies.
 
-    /// Precondition: given.joint_loads.
+    /// Sets the torque of joint k, including its spring; that of an implicit joint is applied to
+    /// its rotor. Precondition: given.joint_loads.
     CATENA_HD void set_joint_torque(std::int64_t k) const {
         Vec3 torque_on_body = Vec3::zero();
         if (joint[k] == JointType::spherical) {
@@ -189,8 +212,10 @@ struct RigidChains {
         }
         joint_torque.store(k, axes(k) * torque_on_body);
     }
+    /// Sets the force and the torque on body k from gravity, wrenches and joint torques; clears the
+    /// forces on its beads.
     CATENA_HD void set_forces(std::int64_t k) const {
-        Vec3 f = mass.at(k, 0) * given.gravity, t = Vec3::zero();  // t in W
+        Vec3 f = mass.at(k, 0) * given.gravity, t = Vec3::zero();  // t is in W.
         if (given.wrenches) {
             f = f + given.wrench_force.load(k);
             t = given.wrench_torque.load(k);
@@ -203,7 +228,9 @@ struct RigidChains {
         torque.store(k, transposed_times(axes(k), t));
         if (beads) beads.clear_forces(k);
     }
+    /// Updates the positions of the beads on body k.
     CATENA_HD void put_beads(std::int64_t k) const { beads.put(k, position.load(k), axes(k)); }
+    /// Adds the wrench of the beads on body k to its force and torque.
     CATENA_HD void take_bead_forces(std::int64_t k) const {
         Mat3 const turn = axes(k);
         Wrench const w = beads.on_body(k, turn);
@@ -211,16 +238,17 @@ struct RigidChains {
         torque.store(k, torque.load(k) + transposed_times(turn, w.torque));
     }
 
-    // Steps.
+    // Parts of a step.
 
+    /// Computes the momenta after a kick of duration h, the right-hand side of a projection.
     CATENA_HD void set_momenta(std::int64_t k, double h) const {
         momentum.store(k, plus_scaled(mass.at(k, 0) * velocity.load(k), h, force.load(k)));
         moment.store(k,
                      plus_scaled(as_symmetric(inertia.load(k)) * omega.load(k), h, torque.load(k)));
         if (rotors.implicit) rotors.set_kick(bias, k, h);
     }
-    /// A free flight from the drift's start, with what the sweep before it found added to the
-    /// velocities there.
+    /// Free flight from the drift's start, with the corrections of the previous sweep added to the
+    /// velocities there. The last sweep stores the new pose.
     CATENA_HD void fly(std::int64_t k, DriftSweep const& sweep) const {
         Vec3 v = velocity.load(k);
         RotorState turning{as_quaternion(orientation.load(k)), omega.load(k)};
@@ -242,6 +270,7 @@ struct RigidChains {
         orientation.store(k, as_vector(turning.orientation));
         omega.store(k, turning.omega);
     }
+    /// Mixes the velocities of body k with the thermostat's noise.
     CATENA_HD void add_noise(std::int64_t k, RigidNoise const& n) const {
         std::uint64_t const body = piece_of(k).body_of(k);
         Thermostat const& t = n.thermostat;
@@ -257,11 +286,14 @@ struct RigidChains {
             k, t.keep * omega.load(k) + to_matrix(as_quaternion(principal_axes.load(k))) * turning);
     }
 
-    // Evaluations, at the velocities observed last.
+    // Evaluation of accelerations at the last observed velocities.
 
+    /// Observed velocity of the point of body k at r (B) from its centre, W.
     CATENA_HD Vec3 velocity_of(std::int64_t k, Vec3 const& r) const {
         return observed_velocity.load(k) + axes(k) * cross(observed_omega.load(k), r);
     }
+    /// Sets the torque less the gyroscopic torque of body k; on links, also the velocities of its
+    /// handles.
     CATENA_HD void set_moment(std::int64_t k) const {
         Vec3 const w = observed_omega.load(k);
         moment.store(k, torque.load(k) - cross(w, as_symmetric(inertia.load(k)) * w));

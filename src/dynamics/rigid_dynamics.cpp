@@ -1,3 +1,4 @@
+// Starting poses of rigid chains and the principal axes of their bodies.
 #include "dynamics/rigid_dynamics.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -8,6 +9,7 @@
 namespace catena {
 namespace {
 
+/// Start of bodies on links: their poses are in the scene.
 void place_linked(ChainGroup const& group, Scene const& scene, RigidStart& start) {
     for (dca::Piece const& piece : group.pieces) {
         LinkedArrays const& linked = scene.chains[group.chain[piece.chain]].linked;
@@ -23,6 +25,7 @@ void place_linked(ChainGroup const& group, Scene const& scene, RigidStart& start
     }
 }
 
+/// Start of bodies on joints: the forward kinematics of their joint coordinates.
 void place_jointed(ChainGroup const& group, Scene const& scene, Communicator const& communicator,
                    RigidStart& start) {
     auto const executor = serial_executor();
@@ -39,6 +42,7 @@ void place_jointed(ChainGroup const& group, Scene const& scene, Communicator con
     }
 }
 
+/// Principal axes and moments of one inertia; identity and zero for a point bead.
 PrincipalFrame principal_frame(Sym3 const& inertia) {
     if (inertia.data[0] == 0) return {Quat::identity(), Vec3::zero()};
     Eigen::Matrix3d j;

@@ -1,5 +1,6 @@
-// Chains of rigid bodies in absolute coordinates, on spherical joints or on links among point
-// beads, in any Space: their state stays there.
+// Dynamics of chains of rigid bodies in absolute coordinates, in any Space, which holds the state.
+// Bodies are on spherical joints, or on links together with point beads. Frames and units:
+// rigid_chains.hpp.
 #pragma once
 
 #include <cmath>
@@ -14,6 +15,7 @@
 
 namespace catena {
 
+/// State, arrays and operations of rigid chains; the per-body operations are in RigidChains.
 template <class Space>
 class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     template <int D>
@@ -24,7 +26,8 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     using List = typename Space::template List<T>;
 
   public:
-    /// `solver` takes views of the same space.
+    /// `solver` must read and write views of the same Space. `implicit_step` is the step length of
+    /// implicit joint springs; 0 if there are none.
     RigidDynamics(ChainGroup const& group, Scene const& scene, Space const& space,
                   Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
                   double implicit_step = 0)
@@ -139,8 +142,8 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     void observe(double h) override {
         project(h, observed_velocity_.view(), observed_omega_.view());
     }
-    /// Impulses along the joints at the start enter momenta before the drift, and the free rotor
-    /// runs again in every sweep (src/dca/README.md, "Rigid bodies under RATTLE").
+    /// Drift with the constraint impulses in the momenta at its start, as RATTLE requires. The free
+    /// rotor runs again in every sweep (src/dca/README.md, "Rigid bodies under RATTLE").
     void drift(double h, int sweeps) override {
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             fly({h, sweep == 0, false});
@@ -196,9 +199,9 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
             to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host()),
             to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
             to_array<3>("omega", space_.read(omega_).view(), space_.on_host())};
+        // Stored on ranks without implicit joints too.
         if (of_stiffness_ > 0)
-            all.push_back(to_array<3>("rotor", space_.read(rotor_).view(),
-                                      space_.on_host()));  // also on ranks that have none
+            all.push_back(to_array<3>("rotor", space_.read(rotor_).view(), space_.on_host()));
         return all;
     }
     void set_state(std::vector<StateArray> const& arrays) override {
@@ -259,9 +262,9 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
-    // Not private: nvcc takes lambdas for kernels from public members alone.
-    /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the
-    /// place of accelerations.
+    // Members below are public because nvcc accepts device lambdas in public members only.
+    /// Constraint projection P (v + h M^-1 f): with momenta instead of forces, the solver returns
+    /// velocities instead of accelerations.
     void project(double h, View<3> velocity, View<3> omega) {
         space_.for_each(group_.size,
                         [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
@@ -272,13 +275,15 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
                         {}},
                        {omega, velocity, {}, {}});
     }
-    /// A drift's flight from its start; but for the last one, neighbours see where it ends.
+    /// Free flight of all bodies from the drift's start. Unless it is the last one, the new handles
+    /// are exchanged with neighbours.
     void fly(DriftSweep const& s) {
         space_.for_each(group_.size,
                         [c = chains(), s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
         if (!s.last) show_ends();
     }
-    /// What velocities at the drift's start lack so that the joints close where fly() ended.
+    /// Finds the corrections of velocities at the drift's start that close the joints at the end of
+    /// the last fly().
     void correct(double h) {
         space_.for_each(group_.size, [c = chains(), scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) {
             c.set_openings(k, scale);
@@ -287,7 +292,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
                        {alpha_.view(), acceleration_.view(), {}, {}});
         if (rotors() > 0) add_to_rotors();
     }
-    /// Velocities have it already.
+    /// Clears the corrections that the velocities already include.
     void forget_correction() {
         space_.for_each(group_.size, [a = acceleration_.view(),
                                       t = alpha_.view()] CATENA_LAMBDA(std::int64_t k) {
@@ -295,39 +300,45 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
             t.store(k, Vec3::zero());
         });
     }
+    /// Largest constraint error on this rank at the handles of the last fly() or set_ends().
     double error_at_ends() {
         return space_.largest(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) -> double {
             return c.error(k);
         });
     }
+    /// Sets the rotors' rates to those of their joints.
     void take_rotors(View<3> omega) {
         exchange_from_inboard(communicator_, group_, omega, space_);
         space_.for_each(group_.size, [c = chains(), omega] CATENA_LAMBDA(std::int64_t k) {
             c.rotors.take(k, omega);
         });
     }
+    /// Adds a sweep's corrections to the rotors' rates.
     void add_to_rotors() {
         exchange_from_inboard(communicator_, group_, alpha_.view(), space_);
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) {
             c.rotors.add(c.bias, k, c.alpha);
         });
     }
+    /// Mixes the velocities of bodies [first, first + count) with noise.
     void add_noise(RigidNoise const& noise, std::int64_t first, std::int64_t count) {
         space_.for_each(count, [c = chains(), noise, first] CATENA_LAMBDA(std::int64_t i) {
             c.add_noise(first + i, noise);
         });
     }
+    /// Computes all handles at the current poses and exchanges them.
     void set_ends() {
         space_.for_each(group_.size,
                         [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_ends(k); });
         show_ends();
     }
-    /// To neighbours, on whatever rank.
+    /// Exchanges the handles that neighbours need, within and across ranks.
     void show_ends() {
         exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
         if (rotors() > 0) exchange_from_inboard(communicator_, group_, flown_.view(), space_);
         ring_ends_.take(inboard_end_.view(), outboard_end_.view());
     }
+    /// Sets moments and velocity biases for an evaluation.
     void set_loads() {
         RigidChains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_moment(k); });
@@ -336,8 +347,8 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
   private:
-    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that
-    /// itself.
+    /// Runs `action`. On the host it keeps a pivot failure until the next check(); on a GPU the
+    /// solver keeps it.
     template <class Action>
     void held(Action const& action) {
         if constexpr (Space::answers_at_once)
@@ -345,11 +356,12 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         else
             action();
     }
+    /// Throws ComputationError if a pivot failure is pending on this rank.
     void check() const {
         solver_->check();
         trouble_.check();
     }
-    /// Sets the state where the scene starts. Returns where the tips are held there.
+    /// Sets the state to the scene's start. Returns the attachments of tips there.
     std::vector<HeldTip> start(Scene const& scene) {
         RigidStart const at = place_bodies(group_, scene, communicator_);
         fill(space_, position_, at.position);
@@ -371,11 +383,13 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
                 {},
                 {}};
     }
+    /// Loads of an evaluation.
     LoadsView loads() {
         return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(),
                 of_tips(group_, tip_bias_)};
     }
-    /// The solver adds what follows from angular velocities.
+    /// Loads for assemble_and_solve(): the solver adds the gyroscopic torque and the centripetal
+    /// terms.
     LoadsView loads_at_once() {
         LoadsView l = loads();
         if (group_.linked) return l;
@@ -384,10 +398,12 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         l.bias = {};
         return l;
     }
+    /// Output arrays of an evaluation.
     AccelerationsView found() {
         return {alpha_.view(), acceleration_.view(), joint_force_.view(),
                 of_tips(group_, tip_force_)};
     }
+    /// Views of all arrays for loops over bodies.
     RigidChains chains() {
         RigidChains c;
         c.linked = group_.linked;
@@ -436,8 +452,9 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         c.tip_bias = tip_bias_.view();
         return c;
     }
-    /// As many as bodies, or none.
+    /// Size of the rotors' arrays: one entry per body if any joint is implicit, else 0.
     std::int64_t rotors() const { return std::ssize(group_.implicit_joint); }
+    /// Calls use() with the results of the last evaluation, copied to the host.
     template <class Use>
     auto with_solution(Use const& use) const {
         auto const& orientation = space_.read(orientation_);
@@ -478,7 +495,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     FieldOf<4> orientation_;
     FieldOf<3> observed_velocity_, observed_omega_, force_, torque_, momentum_, moment_,
         acceleration_, alpha_, inboard_end_, outboard_end_, joint_torque_;
-    FieldOf<3> rotor_, spring_;  // JointRotors: rate, torque
+    FieldOf<3> rotor_, spring_;  // JointRotors::rate and JointRotors::torque.
     FieldOf<4> flown_;
     FieldOf<6> compliance_;
     FieldOf<3> direction_, tip_direction_;

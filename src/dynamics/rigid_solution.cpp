@@ -1,3 +1,4 @@
+// Results, residual and potential energy of rigid chains.
 #include "dynamics/rigid_solution.hpp"
 
 #include "dynamics/rigid_chains.hpp"
@@ -42,15 +43,16 @@ std::vector<Vector<double, 4>> RigidSolution::beyond_tips(Communicator const& co
 }
 
 double RigidSolution::residual(Communicator const& communicator) const {
-    // How far a joint is from closing, given the accelerations of its handles, over the size of its
-    // own terms.
+    // Closing error of a joint at the accelerations of its handles, relative to the size of its own
+    // terms.
     auto const closing = [&](Vec3 const& difference, double terms, ConstView<3> along,
                              ConstDirectionsView turning, std::int64_t k) {
         if (!group.linked) return relative(norm(difference), terms);
         double const s = turning.load<1>(k)[0];
         return relative(dot(along.load(k), difference) + s, terms + s);
     };
-    Field<4> point(group.size);  // acceleration of handle 2, W, and the size of its terms
+    /// Acceleration of handle 2, W, and the size of its terms.
+    Field<4> point(group.size);
     for (std::int64_t k = 0; k < group.size; ++k) {
         HandleAcceleration const a = handle_acceleration(k, group.r2[k]);
         point.set(k, {{a.value[0], a.value[1], a.value[2], a.terms}});
@@ -87,8 +89,8 @@ Vec3 RigidSolution::outboard_force(std::int64_t k) const {
     return group.is_last[k] ? Vec3::zero() : inboard_force(k + 1);
 }
 
-/// With the size of what each force and moment on the body, and its turning, adds (chapter,
-/// eqs 2.1-2.2).
+/// Acceleration of a handle. `terms` sums the sizes of the contributions of each force, each moment
+/// and the rotation of the body (chapter, eqs 2.1-2.2).
 RigidSolution::HandleAcceleration RigidSolution::handle_acceleration(std::int64_t k,
                                                                      Vec3 const& r) const {
     Mat3 const to_ground = axes(k);
@@ -109,7 +111,7 @@ double RigidSolution::newton_euler_residual(std::int64_t k) const {
     double const newton =
         relative(norm(ma - f - f1 + f2), norm(ma) + norm(f) + norm(f1) + norm(f2));
     Sym3 const inertia = as_symmetric(group.inertia[k]);
-    if (inertia.data[0] == 0) return newton;  // a bead
+    if (inertia.data[0] == 0) return newton;  // A bead has no rotation.
     Vec3 const w = omega.load(k), t = torque.load(k), j_alpha = inertia * alpha.load(k),
                gyroscopic = cross(w, inertia * w);
     Vec3 const t1 = cross(group.r1[k], transposed_times(to_ground, f1)),

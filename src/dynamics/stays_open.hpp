@@ -1,11 +1,11 @@
-// What Closing::close() throws.
+// Exception of Closing::close().
 #pragma once
 
 #include "error.hpp"
 
 namespace catena {
 
-/// No number of sweeps closes a drift's joints. On all ranks alike.
+/// Thrown on all ranks alike if no number of sweeps closes a drift's joints.
 class StaysOpen : public ComputationError {
   public:
     using ComputationError::ComputationError;

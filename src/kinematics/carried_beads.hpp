@@ -1,5 +1,6 @@
-// Beads that rigid bodies carry: where they are, and what forces on them do to the bodies, for
-// every Space.
+// Beads carried by rigid bodies, in any Space: their positions follow from the body's pose, and the
+// forces on them add up to a wrench on the body. Ground axes are W, body axes are B. Positions are
+// in nm and forces in kJ/mol/nm, unless the scene has `units: si`.
 #pragma once
 
 #include <utility>
@@ -9,26 +10,32 @@
 
 namespace catena {
 
+/// Wrench on one body or, with vector lanes as `Real`, on several bodies.
 template <class Real>
 struct WrenchOf {
-    Vector<Real, 3> torque, force;  // about the centre of mass; W
+    Vector<Real, 3> torque, force;  // About the centre of mass, W.
 };
 using Wrench = WrenchOf<double>;
 
-/// `centre`: the centre of mass of body k, W; `axes`: its axes in W.
+/// View of a group's carried beads for loops over bodies. In its members, `centre` is the centre of
+/// mass of body k (W) and `axes` is the rotation matrix of B in W.
 struct CarriedBeadsView {
-    std::int64_t const* offset = nullptr;  // absent where no body of the group carries any
-    Vec3 const* place = nullptr;           // from the centre of mass, B
-    View<3> position, force;               // W
+    /// Body k carries beads [offset[k], offset[k + 1]). Null if no body of the group carries any.
+    std::int64_t const* offset = nullptr;
+    Vec3 const* place = nullptr;  // Offset from the centre of mass, B.
+    View<3> position, force;      // Indexed by carried bead, W.
 
     CATENA_HD explicit operator bool() const { return offset != nullptr; }
+    /// Stores the positions of the beads of body k.
     CATENA_HD void put(std::int64_t k, Vec3 const& centre, Mat3 const& axes) const {
         for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i)
             position.store(i, centre + axes * place[i]);
     }
+    /// Sets the forces on the beads of body k to zero.
     CATENA_HD void clear_forces(std::int64_t k) const {
         for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i) force.store(i, Vec3::zero());
     }
+    /// Sum of the forces on the beads of body k, and their torque about its centre of mass (W).
     CATENA_HD Wrench on_body(std::int64_t k, Mat3 const& axes) const {
         Wrench w{Vec3::zero(), Vec3::zero()};
         for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i) {
@@ -40,10 +47,12 @@ struct CarriedBeadsView {
     }
 };
 
+/// Arrays of a group's carried beads in a Space, with host copies for force fields that run on the
+/// host.
 template <class Space>
 class CarriedBeadsIn {
   public:
-    /// The group must outlive it.
+    /// The group must outlive this object.
     CarriedBeadsIn(ChainGroup const& group, Space const& space)
         : any_(group.carried_beads() > 0),
           in_scene_(group.carried_in_scene),
@@ -53,15 +62,17 @@ class CarriedBeadsIn {
           position_(group.carried_beads()),
           force_(group.carried_beads()) {}
 
-    /// On this rank; in the group.
+    /// True if this rank has carried beads.
     bool any() const { return any_; }
+    /// True if any rank's part of the group has carried beads.
     bool in_scene() const { return in_scene_; }
     CarriedBeadsView view() {
         return {in_scene_ ? offset_.data() : nullptr, place_.data(), position_.view(),
                 force_.view()};
     }
+    /// Forces by carried bead, W, in the Space.
     typename Space::template FieldOf<3> const& force() const { return force_; }
-    // What BeadHost's members of these names promise.
+    // Implement BeadHost's members of the same names.
     ConstView<3> bead_positions() {
         return any_ ? space_.pull(position_, position_mirror_) : View<3>{};
     }
@@ -82,18 +93,21 @@ class CarriedBeadsIn {
     typename Space::template Mirror<3> position_mirror_, force_mirror_;
 };
 
-/// Chains whose beads, or beads on whose bodies, feel forces from outside.
+/// Interface of chains that receive external forces on beads: the chain's own beads, or beads
+/// carried by its rigid bodies.
 class BeadHost {
   public:
     virtual ~BeadHost() = default;
     virtual ChainGroup const& group() const = 0;
-    /// At the configuration of now, W; absent where there are none.
+    /// Positions at the current configuration, on the host, W. The view has no origin if the group
+    /// has no beads.
     virtual ConstView<3> bead_positions() = 0;
-    /// For others to add to, W; absent where there are none.
+    /// Force accumulator on the host, W; force fields add to it. The view has no origin if the
+    /// group has no beads.
     virtual View<3> bead_forces() = 0;
-    /// What was added there since the forces were set counts from here on.
+    /// Applies the forces that were added to bead_forces() since the forces were last set.
     virtual void take_bead_forces() = 0;
-    /// The same where a GPU holds them; nullptr where it does not.
+    /// Interface for a force field on the same GPU; null if positions and forces are not on a GPU.
     virtual DeviceBeads* on_device() { return nullptr; }
 };
 

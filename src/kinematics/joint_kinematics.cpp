@@ -1,3 +1,4 @@
+// Initial states in joint coordinates, and the index lists that the kinematics needs.
 #include "kinematics/joint_kinematics.hpp"
 
 namespace catena {

@@ -1,4 +1,5 @@
-// Forward kinematics of chains in joint coordinates, in any Space.
+// Forward kinematics of chains in joint coordinates, in any Space. A scan along the canonical tree
+// composes the joints' motions, in parallel over runs of bodies and across ranks.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,7 @@
 
 namespace catena {
 
-/// State of body chains in joint coordinates (StateView).
+/// Storage behind StateView: the state of body chains in joint coordinates.
 template <class Space>
 struct JointCoordinates {
     typename Space::template FieldOf<4> q;
@@ -26,10 +27,10 @@ struct JointCoordinates {
     StateView view() { return {q.view(), qd.view(), base_position.view(), base_velocity.view()}; }
 };
 using JointState = JointCoordinates<HostSpace>;
-/// At the scene's start, time 0.
+/// State at the scene's start (time 0). Joints with prescribed motion start on their course.
 JointState make_joint_state(ChainGroup const&, Scene const&);
 
-/// What MotionView shows.
+/// Storage behind MotionView: the motion of bodies.
 template <class Space>
 struct MotionFields {
     typename Space::template FieldOf<4> joint_turn, orientation;
@@ -37,6 +38,8 @@ struct MotionFields {
     typename Space::template FieldOf<6> axes2;
 
     MotionFields() = default;
+    /// Handle 2 of bodies (r2, axes2) is stored only for groups in which it depends on the joint
+    /// coordinates.
     MotionFields(ChainGroup const& group, Space const& space)
         : joint_turn(group.size),
           orientation(group.size),
@@ -56,21 +59,26 @@ struct MotionFields {
 };
 using BodyMotion = MotionFields<HostSpace>;
 
-/// First bodies of the group's pieces; of every body the slot of its run.
+/// First body (local) of each of the group's pieces.
 std::vector<std::int64_t> first_bodies(ChainGroup const&);
+/// Storage slot of each body's run.
 std::vector<std::int32_t> run_slots(ChainGroup const&);
 
+/// Computes the motion of every body from the state. Chains that span several ranks make its
+/// operations collective: all ranks must call them.
 template <class Space>
 class JointKinematics {
     template <int D>
     using FieldOf = typename Space::template FieldOf<D>;
 
   public:
-    /// Of a rank's first body, or none, along with what ranks tell each other of motions: its
-    /// joint's loads (RevoluteLoads), and where that joint lies on the body before.
+    /// Messages to the inboard neighbour about this rank's first body, sent together with the
+    /// exchange of motions; either may be empty. LoadsForNeighbour holds the loads of its inboard
+    /// joint (RevoluteLoads). MeetingForNeighbour holds that joint's meeting point and axes on the
+    /// body before.
     using LoadsForNeighbour = BodyExchange<4>;
     using MeetingForNeighbour = BodyExchange<9>;
-    /// The group and the communicator must outlive it.
+    /// The group and the communicator must outlive this object.
     JointKinematics(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
           space_(space),
@@ -107,6 +115,7 @@ class JointKinematics {
         begin_at_ground();
     }
 
+    /// View of the group's joints.
     JointsView joints() const {
         return {group_.size,
                 joint_.data(),
@@ -125,8 +134,10 @@ class JointKinematics {
                 drive_.data(),
                 std::ssize(group_.drives)};
     }
-    /// Of bodies against their inboard ones, where a scan leaves them (JointScan::rotation).
+    /// Rotation of each body relative to its inboard body, as a scan leaves it
+    /// (JointScan::rotation).
     ConstView<4> rotations() { return rotation_.view(); }
+    /// The scan that reads `state` and writes `motion`.
     JointScan scan(StateView const& state, MotionView const& motion) {
         return {joints(),
                 state,
@@ -141,13 +152,14 @@ class JointKinematics {
                 next_meeting_.view()};
     }
 
-    /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and
-    /// velocity as well.
+    /// Computes the motion of all bodies. `with_positions`: fills origin and velocity as well.
+    /// Collective if ranks share a chain.
     void evaluate(StateView const& state, bool with_positions, MotionView const& motion) {
         with_positions ? evaluate<true>(scan(state, motion)) : evaluate<false>(scan(state, motion));
     }
-    /// Up and down the tree, after set_relative() of every body, and then last(k) for every body,
-    /// with set_motion(). Collective where a chain is shared by ranks.
+    /// Runs the inward and the outward pass of the scan, then last(k) for every body, which must
+    /// include set_motion(). Precondition: set_relative() of every body. Collective if ranks share
+    /// a chain.
     template <bool positions, class Last>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
         if (group_.schedule.shared.empty())
@@ -155,19 +167,21 @@ class JointKinematics {
         sweep<positions>(s, loads);
         space_.for_each(group_.size, last);
     }
+    /// Overload without an action per body.
     template <bool positions>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads) {
         sweep<positions>(s, tree_, loads);
     }
-    /// `tree`: the group's, without runs that JointScan::follow was called of.
+    /// Overload over another tree: `tree` is the group's tree less the runs that JointScan::follow
+    /// has already finished.
     template <bool positions>
     void sweep(JointScan const& s, typename Space::ScanTree const& tree,
                LoadsForNeighbour const& loads) {
         sweep_with(MotionScan<positions>{s}, tree, loads);
     }
 
-    /// By a scan that may do more with runs than MotionScan, and leaves `loads` there. `tree`: as
-    /// sweep().
+    /// Sweep with a scan that may do more per run than MotionScan, such as computing the joints'
+    /// loads. These are then sent to the inboard neighbour as `loads`.
     template <class Scan>
     void sweep_with(Scan const& scan, typename Space::ScanTree const& tree,
                     LoadsForNeighbour const& loads) {
@@ -175,13 +189,13 @@ class JointKinematics {
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
         pass(scan, tree, meeting, loads);
     }
-    /// Whether sweep_runs() takes runs by threads that have a body each.
+    /// True if sweep_runs() uses one thread per body instead of one thread per run.
     bool has_threads_for_bodies() const {
         return space_.has_threads_for_bodies(tree_) &&
                (group_.schedule.shared.empty() ||
                 (shared_.is_direct() && space_.has_threads_for_bodies(top_)));
     }
-    /// By one over all runs; then last(run) for each.
+    /// Runs `scan` over all runs, then last(run) for each run; where possible in one launch.
     template <class Scan, class Last>
     void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
         if (group_.schedule.shared.empty())
@@ -194,7 +208,7 @@ class JointKinematics {
         space_.over(runs_, last);
     }
 
-    // Not private: nvcc takes lambdas for kernels from public members alone.
+    // Members below are public because nvcc accepts device lambdas in public members only.
     template <bool positions>
     void evaluate(JointScan const& s) {
         space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) {
@@ -204,7 +218,8 @@ class JointKinematics {
             s.template set_motion<positions>(k);
         });
     }
-    /// Joint k's from body k - 1, across the ranks, where it moves.
+    /// Prepares the message with the meeting point and axes of this rank's first joint. The message
+    /// is empty unless meeting frames move and a neighbour shares the chain.
     MeetingForNeighbour shown_meeting(JointScan const& s) {
         View<9> const meeting = next_meeting_.view();
         MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard,
@@ -213,11 +228,12 @@ class JointKinematics {
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
         return shown;
     }
+    /// Sets the motion before each chain's first body to rest relative to the ground.
     void begin_at_ground() {
         MotionRecords const before = before_.view();
         JointsView const all = joints();
-        // Scans bring the same bits there; what comes after them may ask earlier
-        // (RevoluteScan::begins_at_ground).
+        // Scans later store the same bits here. Code that runs before the scan has ended may
+        // already read them (RevoluteScan::begins_at_ground).
         space_.over(runs_, [before, all] CATENA_LAMBDA(dca::Run const& run) {
             if (all.starts_chain(run.body)) before.store(run.slot, Motion::none());
         });
@@ -230,11 +246,14 @@ class JointKinematics {
     }
 
   private:
+    /// Motions of this rank's units, as the frontier exchange between ranks reads and writes them.
     template <class Scan>
     dca::RecordNumbers<Motion> shown(Scan const& scan) {
         return {scan.motions().s.whole, shared_.own_units(), shared_.units()};
     }
-    /// sweep_with() among ranks.
+    /// Implements sweep_with() for chains that ranks share. The exchange runs with the scan in one
+    /// launch if the Space can do so; otherwise inward pass, exchange, tree above the units,
+    /// outward pass.
     template <class Scan>
     void pass(Scan const& scan, typename Space::ScanTree const& tree,
               MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
@@ -261,14 +280,20 @@ class JointKinematics {
     typename Space::template Fixed<4> joint_rotation_;
     typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
     std::vector<dca::Run> no_runs_;
+    /// tree_ holds this rank's units; top_ holds the tree above the units of chains that ranks
+    /// share.
     typename Space::ScanTree tree_, top_;
     typename Space::template List<dca::Run> runs_;
     typename Space::template List<dca::Root> roots_, top_roots_;
     typename Space::template List<std::int32_t> slot_;
+    /// Relative motions of bodies, as JointScan stores them.
     FieldOf<4> rotation_;
     FieldOf<3> omega_, translation_, velocity_;
+    /// Entry 0 is sent to the inboard neighbour, entry 1 is received from the outboard one.
     FieldOf<9> next_meeting_;
     dca::FrontierExchange<Space> shared_;
+    /// Motions of each slot: that across the segment, and that of the body before it relative to
+    /// the ground.
     typename Space::template Records<Motion, dca::Order::plain> whole_, before_;
 };
 

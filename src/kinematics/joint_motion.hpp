@@ -1,5 +1,9 @@
-// How joints move their bodies, host and device. A joint's motion (rotation, translation, angular
-// and linear velocity) composes associatively along the chain, so the way along it is a scan.
+// Motion of one joint, on host and device. A joint's motion (rotation, translation, angular and
+// linear velocity) composes associatively, so the motion along the chain is a parallel scan.
+//
+// Frames: W ground axes; B a body's axes; J the joint frame, fixed in the inboard body; M the
+// meeting frame, in which the two bodies of a joint meet (ChainGroup). Units: nm, ps and rad,
+// unless the scene has `units: si`.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -12,25 +16,28 @@ namespace catena {
 using dca::is_one_body, dca::Mat3At, dca::QuatAt, dca::read, dca::RealAt, dca::Screw, dca::Vec3At,
     dca::write, dca::write_directions;
 
-/// The motion of a frame B against a frame A.
+/// Motion of a frame B relative to a frame A.
 template <class Real>
 struct MotionOf {
-    Quaternion<Real> rotation;    // Q_AB
-    Vector<Real, 3> omega;        // of B against A, B
-    Vector<Real, 3> translation;  // of B's origin from A's, A
-    Vector<Real, 3> velocity;     // of B's origin against A, B
+    Quaternion<Real> rotation;    // Quaternion Q_AB of B in A.
+    Vector<Real, 3> omega;        // Angular velocity of B relative to A, B axes.
+    Vector<Real, 3> translation;  // Origin of B from the origin of A, A axes.
+    Vector<Real, 3> velocity;     // Velocity of the origin of B relative to A, B axes.
+    /// Motion of a frame relative to itself.
     static CATENA_HD MotionOf none() {
         return {Quaternion<Real>::identity(), Vector<Real, 3>::zero(), Vector<Real, 3>::zero(),
                 Vector<Real, 3>::zero()};
     }
 };
 using Motion = MotionOf<double>;
-/// As numbers, for storage and messages.
+/// The 13 components of a motion (quaternion w x y z, omega, translation, velocity), for storage
+/// and messages.
 CATENA_HD Vector<double, 13> as_numbers(Motion const& m) {
     Quat const q = m.rotation;
     Vec3 const w = m.omega, x = m.translation, v = m.velocity;
     return {{q.w, q.x, q.y, q.z, w[0], w[1], w[2], x[0], x[1], x[2], v[0], v[1], v[2]}};
 }
+/// Inverse of as_numbers().
 template <class Real>
 CATENA_HD MotionOf<Real> as_motion(Vector<Real, 13> const& n) {
     return {{n[0], n[1], n[2], n[3]},
@@ -38,13 +45,14 @@ CATENA_HD MotionOf<Real> as_motion(Vector<Real, 13> const& n) {
             {{n[7], n[8], n[9]}},
             {{n[10], n[11], n[12]}}};
 }
-/// Angular velocity of C against A, C, from that of B against A and the motion of C against B.
+/// Angular velocity of C relative to A, C axes. `omega` is that of B relative to A (B axes), and
+/// `bc` is the motion of C relative to B.
 template <class Real>
 CATENA_HD Vector<Real, 3> compose(Vector<Real, 3> const& omega, MotionOf<Real> const& bc) {
     return transposed_times(to_matrix(bc.rotation), omega) + bc.omega;
 }
-/// Motion of C against A from those of B against A and C against B. Without `positions` translation
-/// and velocity stay zero.
+/// Motion of C relative to A, from those of B relative to A and of C relative to B. If `positions`
+/// is false, translation and velocity are zero.
 template <bool positions, class Real>
 CATENA_HD MotionOf<Real> compose(MotionOf<Real> const& ab, MotionOf<Real> const& bc) {
     using Vector3 = Vector<Real, 3>;
@@ -59,44 +67,49 @@ CATENA_HD MotionOf<Real> compose(MotionOf<Real> const& ab, MotionOf<Real> const&
     return ac;
 }
 
-/// The coordinates' rates as a relative motion of a joint: angular and linear velocity of the
-/// outboard side against the inboard one, M.
+/// Relative motion that a joint's rates q' produce: angular and linear velocity of the outboard
+/// side relative to the inboard side, M axes.
 template <class Real>
 struct JointRate {
     Vector<Real, 3> angular, linear;
 };
 
-/// State of bodies in joint coordinates (rules of BodyArrays).
+/// State of bodies in joint coordinates: q and its rates qd, with the conventions of BodyArrays.
 struct StateView {
     View<4> q;
     View<3> qd;
-    View<3> base_position, base_velocity;  // one a piece; counts where the piece starts on a free
-                                           // base: origin of body 1, W
+    /// Position and velocity of the origin of body 1, W, by piece. They are used if the piece
+    /// begins on a free base.
+    View<3> base_position, base_velocity;
 };
 
-/// What a pass over the chain finds. Without poses where nobody asks for them.
+/// Result of the forward kinematics. Origins and velocities are left unset unless they are
+/// requested.
 struct MotionView {
-    View<4> joint_turn;   // quaternion of B in the meeting frame M of its inboard joint
-    View<4> orientation;  // of B in W; of chains' first bodies alone where `orients_first_alone`
-    View<3> omega;        // of B, B
-    View<3> origin;       // of B, W
-    View<3> velocity;     // of B's origin, B
-    // Where the meeting frames of outboard joints move in their inboard body (else absent): as
-    // ConfigurationView.
+    View<4> joint_turn;  // Quaternion of B in the meeting frame M of the inboard joint.
+    /// Quaternion of B in W. If `orients_first_alone`, it is set for the first body of each chain
+    /// only.
+    View<4> orientation;
+    View<3> omega;     // Angular velocity of B, B axes.
+    View<3> origin;    // Origin of B, W.
+    View<3> velocity;  // Velocity of the origin of B, B axes.
+    // Handle 2 of bodies (ConfigurationView::r2, axes2), B axes. Present only in groups whose
+    // meeting frames move in the inboard body.
     View<3> r2;
     View<6> axes2;
     bool orients_first_alone = false;
 };
 
-/// The inboard side of a joint, seen from the body it is in.
+/// Inboard side of a joint, in the axes of the inboard body.
 template <class Real>
 struct MeetingOf {
-    Vector<Real, 3> point;  // from the origin
+    Vector<Real, 3> point;  // Meeting point from the body's origin.
     Matrix<Real, 3, 3> axes;
 };
 using Meeting = MeetingOf<double>;
 
-/// The inboard joints of a group's bodies, as plain pointers (ChainGroup says what they hold).
+/// Inboard joints of a group's bodies, as plain pointers for loops over bodies. ChainGroup
+/// documents the arrays.
 struct JointsView {
     std::int64_t size = 0;
     JointType const* joint = nullptr;
@@ -106,12 +119,13 @@ struct JointsView {
     ConstView<6> axes1;
     ConstView<4> joint_rotation;
     ConstView<3> joint_translation, first_axis, screw;
-    std::int64_t const* piece = nullptr;  // first bodies of the pieces
+    std::int64_t const* piece = nullptr;  // First bodies (local) of the pieces.
     std::int64_t pieces = 0;
     LocalDrive const* drive = nullptr;
     std::int64_t drives = 0;
 
-    // Of one body, or of several next to each other whose joints are of one type and none of which
+    // Members below take a place k: the index of one body, or several consecutive bodies side by
+    // side in vector lanes. The bodies of such a place have joints of one type, and none of them
     // begins a chain.
     CATENA_HD JointType type(std::int64_t k) const { return joint[k]; }
     template <dca::SeveralBodies Place>
@@ -128,30 +142,36 @@ struct JointsView {
     CATENA_HD bool ends_chain(Place const&) const {
         return false;
     }
+    /// Axes of the inboard joint in M, as columns.
     template <class Place>
     CATENA_HD Mat3At<Place> axes(Place k) const {
         return axes_of(read(axes1, k));
     }
+    /// The joint's axis, the last column of axes(). The axis of a universal joint here is the
+    /// second one.
     template <class Place>
     CATENA_HD Vec3At<Place> axis(Place k) const {
         return {{read(axes1, k, 3), read(axes1, k, 4), read(axes1, k, 5)}};
     }
-    /// {c, s, rate} of ChainGroup::screw: the joint turns by c rate q and slides by s rate q.
+    /// {c, s, rate} of ChainGroup::screw: a coordinate q rotates the joint by c rate q about its
+    /// axis and slides it by s rate q.
     template <class Place>
     CATENA_HD Vec3At<Place> screw_of(Place k) const {
         using Real = RealAt<Place>;
         return has_screws ? read(screw, k) : Vec3At<Place>{{Real(1), Real(0), Real(1)}};
     }
+    /// c and s of screw_of().
     template <class Place>
     CATENA_HD Screw<RealAt<Place>> direction_of_screw(Place k) const {
         auto const s = screw_of(k);
         return {s[0], s[1]};
     }
+    /// True if the coordinates of joint k are a unit quaternion.
     template <class Place>
     CATENA_HD bool has_quaternion(Place k) const {
         return type(k) == JointType::free || type(k) == JointType::spherical;
     }
-    /// The piece that body k is in.
+    /// Index of the piece that contains body k; a binary search.
     CATENA_HD std::int64_t piece_of(std::int64_t k) const {
         std::int64_t low = 0, high = pieces;
         while (high - low > 1) {
@@ -163,7 +183,7 @@ struct JointsView {
         }
         return low;
     }
-    /// What drives joint k; null: nothing.
+    /// Prescribed motion of joint k; null if it has none. A binary search.
     CATENA_HD LocalDrive const* drive_of(std::int64_t k) const {
         std::int64_t low = 0, high = drives;
         while (low < high) {
@@ -176,7 +196,7 @@ struct JointsView {
         return low < drives && drive[low].body == k ? drive + low : nullptr;
     }
 
-    /// Of B in M.
+    /// Rotation of B in M that the coordinates of joint k describe.
     template <class Place>
     CATENA_HD QuatAt<Place> turn_of(StateView const& state, Place k) const {
         switch (type(k)) {
@@ -193,14 +213,16 @@ struct JointsView {
                 return from_axis_angle(axis(k), s[0] * s[2] * read(state.q, k, 0));
         }
     }
-    /// Of the meeting frame M of joint k in the inboard body's axes.
+    /// Rotation of the meeting frame M of joint k in the inboard body's axes. It differs from the
+    /// joint frame's rotation only in universal joints.
     template <class Place>
     CATENA_HD QuatAt<Place> meeting_rotation(StateView const& state, Place k) const {
         QuatAt<Place> const frame = as_quaternion(read(joint_rotation, k));
         if (type(k) != JointType::universal) return frame;
         return frame * from_axis_angle(read(first_axis, k), read(state.q, k, 0));
     }
-    /// Of the meeting point from the inboard body's origin, its axes.
+    /// Meeting point of joint k from the inboard body's origin, in the inboard body's axes. In a
+    /// prismatic or helical joint it slides along the axis.
     template <class Place>
     CATENA_HD Vec3At<Place> meeting_point(StateView const& state, Place k) const {
         Vec3At<Place> const point = read(joint_translation, k);
@@ -209,10 +231,12 @@ struct JointsView {
         Mat3At<Place> const frame = to_matrix(as_quaternion(read(joint_rotation, k)));
         return point + frame * ((s[1] * s[2] * read(state.q, k, 0)) * axis(k));
     }
+    /// True if joint k slides along its axis.
     template <class Place>
     CATENA_HD bool slides(Place k) const {
         return has_screws && (type(k) == JointType::prismatic || type(k) == JointType::helical);
     }
+    /// Velocity of body k relative to the inboard side of its joint, M axes.
     template <class Place>
     CATENA_HD JointRate<RealAt<Place>> rate(StateView const& state, Place k) const {
         using Vector3 = Vec3At<Place>;
@@ -231,7 +255,8 @@ struct JointsView {
                 return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
         }
     }
-    /// Of body k against its inboard body. `turn`: turn_of().
+    /// Motion of body k relative to its inboard body; on a free base, relative to the ground.
+    /// `turn` must be turn_of().
     template <class Place>
     CATENA_HD MotionOf<RealAt<Place>> motion(StateView const& state, Place k,
                                              QuatAt<Place> const& turn) const {
@@ -248,7 +273,7 @@ struct JointsView {
             case JointType::spherical:
                 m.omega = read(state.qd, k);
                 break;
-            case JointType::revolute:  // B's axis is M's
+            case JointType::revolute:  // The axis has the same components in B and M.
                 m.omega = read(state.qd, k, 0) * axis(k);
                 break;
             case JointType::weld:
@@ -261,23 +286,27 @@ struct JointsView {
         }
         return m;
     }
+    /// Meeting point and joint axes of joint k in its inboard body.
     template <class Place>
     CATENA_HD MeetingOf<RealAt<Place>> meeting(StateView const& state, Place k) const {
         return {meeting_point(state, k), to_matrix(meeting_rotation(state, k)) * axes(k)};
     }
-    /// Of the chain's plane, the same in M and B.
+    /// Normal of the chain's plane, with the same components in M and B; zero if the chains are not
+    /// planar.
     template <class Place>
     CATENA_HD Vec3At<Place> normal(Place k) const {
         return planar ? axis(k) : Vec3At<Place>::zero();
     }
-    /// In a plane bodies turn about its normal alone: composing rounds a part across it, which
-    /// grows with the chain.
+    /// Removes the component of an angular velocity across the normal of a planar chain. Bodies
+    /// rotate about the normal only; rounding in compose() adds other components, which grow with
+    /// the length of the chain.
     template <class Real>
     CATENA_HD Vector<Real, 3> kept_in_plane(Vector<Real, 3> const& plane,
                                             Vector<Real, 3> const& omega) const {
         return planar ? dot(plane, omega) * plane : omega;
     }
-    /// Sets q and qd of a driven joint to its courses' at a time.
+    /// Sets q and qd of a joint with prescribed motion to their values at `time`. Does nothing for
+    /// other joints.
     CATENA_HD void follow_course(StateView const& state, std::int64_t k, double time) const {
         LocalDrive const* const d = drives > 0 ? drive_of(k) : nullptr;
         if (!d) return;

@@ -1,9 +1,10 @@
-// The scan over the canonical tree that gives every body its motion against the ground, item by
-// item, host and device.
+// Scan over the canonical tree that computes the motion of every body relative to the ground; each
+// member handles one item (body, run or slot) on host or device.
 //
-// Bodies against the body before their run; runs and pairs of segments as wholes, up the tree; what
-// lies before each segment, down the tree; bodies against the ground. Motions are those of a
-// segment's last body.
+// Order: (1) bodies relative to their inboard bodies; (2) bodies of a run relative to the body
+// before the run; (3) whole runs and pairs of segments, in the inward pass; (4) the motion before
+// each segment, in the outward pass; (5) bodies relative to the ground. The motion of a segment is
+// that of its last body.
 #pragma once
 
 #include "kinematics/joint_motion.hpp"
@@ -13,12 +14,14 @@
 namespace catena {
 
 using MotionRecords = dca::RecordsView<Motion, dca::Order::plain>;
-constexpr int first_of_omega = 4;  // among a motion's numbers
-/// Of a motion what is not zero.
+constexpr int first_of_omega = 4;  // Index of omega in as_numbers() of a motion.
+/// Number of components of as_numbers() that are kept. Without positions these are rotation and
+/// omega, because the others are zero.
 template <bool positions>
 constexpr int numbers_of_motion = positions ? 13 : 7;
 template <bool positions>
 using MotionNumbers = Vector<double, numbers_of_motion<positions>>;
+/// Components of a motion for storage.
 template <bool positions>
 CATENA_HD MotionNumbers<positions> packed(Motion const& m) {
     auto const all = as_numbers(m);
@@ -27,6 +30,7 @@ CATENA_HD MotionNumbers<positions> packed(Motion const& m) {
     for (int i = 0; i < numbers_of_motion<positions>; ++i) numbers[i] = all[i];
     return numbers;
 }
+/// Inverse of packed(). If `positions` is false, translation and velocity are zero.
 template <bool positions>
 CATENA_HD Motion unpacked(MotionNumbers<positions> const& numbers) {
     auto all = Vector<double, 13>::zero();
@@ -34,6 +38,7 @@ CATENA_HD Motion unpacked(MotionNumbers<positions> const& numbers) {
     for (int i = 0; i < numbers_of_motion<positions>; ++i) all[i] = numbers[i];
     return as_motion(all);
 }
+/// Reads the stored components of slot `slot`.
 template <bool positions>
 CATENA_HD MotionNumbers<positions> numbers_at(MotionRecords const& records, std::int64_t slot) {
     MotionNumbers<positions> numbers;
@@ -41,23 +46,32 @@ CATENA_HD MotionNumbers<positions> numbers_at(MotionRecords const& records, std:
     for (int i = 0; i < numbers_of_motion<positions>; ++i) numbers[i] = records.number(slot, i);
     return numbers;
 }
+/// Stores the components of slot `slot`.
 template <bool positions>
 CATENA_HD void put_numbers(MotionRecords const& records, std::int64_t slot, MotionNumbers<positions> const& numbers) {
     CATENA_UNROLL
     for (int i = 0; i < numbers_of_motion<positions>; ++i) records.number(slot, i) = numbers[i];
 }
 
+/// State, joints and storage of the scan, with one function per item.
 struct JointScan {
     JointsView joints;
     StateView state;
     MotionView motion;
-    View<4> rotation;  // of body k against its inboard body, then against the body before its run
+    /// Motion of body k: relative to its inboard body at first; after follow(), relative to the
+    /// body before its run.
+    View<4> rotation;
     View<3> omega, translation, velocity;
-    std::int32_t const* slot = nullptr;  // of the run of body k
-    MotionRecords whole;                  // by slot: against the body before the segment
-    MotionRecords before;                 // by slot: of the body before the segment, against the ground
-    View<9> next_meeting;                // {point, axes}: entry 1 of the joint after this rank's last body
+    /// Slot of the run of body k.
+    std::int32_t const* slot = nullptr;
+    /// Motion of each slot's segment relative to the body before it.
+    MotionRecords whole;
+    /// Motion of the body before each slot's segment, relative to the ground.
+    MotionRecords before;
+    /// {point, axes} of a meeting: entry 1 is that of the joint after this rank's last body.
+    View<9> next_meeting;
 
+    /// Reads the relative motion of body k.
     template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> load(Place k) const {
         using Vector3 = Vec3At<Place>;
@@ -68,6 +82,7 @@ struct JointScan {
         }
         return m;
     }
+    /// Writes the relative motion of body k.
     template <bool positions, class Place>
     CATENA_HD void store(Place k, MotionOf<RealAt<Place>> const& m) const {
         write(rotation, k, as_vector(m.rotation));
@@ -77,13 +92,16 @@ struct JointScan {
             write(velocity, k, m.velocity);
         }
     }
+    /// Computes the motion of body k relative to its inboard body from the state. Also sets
+    /// MotionView::joint_turn.
     template <bool positions, class Place>
     CATENA_HD void set_relative(Place k) const {
         QuatAt<Place> const turn = joints.turn_of(state, k);
         write(motion.joint_turn, k, as_vector(turn));
         store<positions>(k, joints.motion(state, k, turn));
     }
-    /// A few bodies at a time, so that their loads are under way together.
+    /// Composes the motions along a run, stores them relative to the body before the run, and
+    /// returns the last one. Four bodies are loaded at a time so that their loads overlap.
     template <bool positions>
     CATENA_HD Motion follow(dca::Run const& run) const {
         constexpr int few = 4;
@@ -105,6 +123,7 @@ struct JointScan {
         m.rotation = normalized(m.rotation);
         return m;
     }
+    /// Motion of body k from that of the body before it; stores and returns it.
     template <bool positions>
     CATENA_HD Motion go_on(Motion const& before_it, Motion const& next, Vec3 const& normal, std::int64_t k) const {
         Motion m = compose<positions>(before_it, next);
@@ -112,7 +131,7 @@ struct JointScan {
         store<positions>(k, m);
         return m;
     }
-    /// Of the body before the run of body k, against the ground.
+    /// Motion of the body before the run of body k, relative to the ground.
     template <bool positions>
     CATENA_HD Motion before_run(std::int64_t k) const {
         return unpacked<positions>(numbers_at<positions>(before, slot[k]));
@@ -121,7 +140,7 @@ struct JointScan {
     CATENA_HD MotionOf<RealAt<Place>> before_run(Place const& several) const {
         return as_motion(pick<MotionRecords::numbers>(before.origin, slot, several, Vector<RealAt<Place>, MotionRecords::numbers>{}));
     }
-    /// Its angular velocity.
+    /// Angular velocity of before_run().
     CATENA_HD Vec3 omega_before_run(std::int64_t k) const {
         std::int64_t const s = slot[k];
         return {{before.number(s, first_of_omega), before.number(s, first_of_omega + 1), before.number(s, first_of_omega + 2)}};
@@ -130,10 +149,12 @@ struct JointScan {
     CATENA_HD Vec3At<Place> omega_before_run(Place const& several) const {
         return pick<MotionRecords::numbers>(before.origin + first_of_omega, slot, several, Vec3At<Place>{});
     }
+    /// Computes the motion of body k relative to the ground, and its handle 2 where that moves.
     template <bool positions, class Place>
     CATENA_HD void set_motion(Place k) const {
         auto const own = load<positions>(k);
-        auto const omega_before = omega_before_run(k);  // a GPU reads it while it waits for what decides
+        // Loaded here so that on a GPU the load overlaps with that of the data of the branch below.
+        auto const omega_before = omega_before_run(k);
         if (positions || !motion.orients_first_alone || joints.starts_chain(k)) {
             auto const m = compose<positions>(before_run<positions>(k), own);
             write(motion.orientation, k, as_vector(normalized(m.rotation)));
@@ -148,6 +169,8 @@ struct JointScan {
         if (motion.axes2.origin && !joints.ends_chain(k)) set_meeting(k);
     }
 
+    /// Packs the meeting of this rank's first joint into entry 0 of next_meeting, for the inboard
+    /// neighbour.
     CATENA_HD void show_first_meeting() const {
         Meeting const m = joints.meeting(state, std::int64_t{0});
         auto const axes = kept_axes(m.axes);
@@ -156,6 +179,8 @@ struct JointScan {
         for (int i = 0; i < 9; ++i) numbers[i] = i < 3 ? m.point[i] : axes[i - 3];
         next_meeting.store(0, numbers);
     }
+    /// Sets r2 and axes2 of a body from its outboard joint. After this rank's last body they come
+    /// from the outboard neighbour.
     CATENA_HD void set_meeting(std::int64_t inboard_body) const {
         if (inboard_body + 1 < joints.size) return put_meeting(inboard_body, joints.meeting(state, inboard_body + 1));
         Vector<double, 9> const n = next_meeting.load(1);
@@ -165,6 +190,7 @@ struct JointScan {
     CATENA_HD void set_meeting(Place const& inboard_bodies) const {
         put_meeting(inboard_bodies, joints.meeting(state, inboard_bodies + 1));
     }
+    /// Stores a meeting as handle 2 of the inboard body; r2 counts from the centre of mass.
     template <class Place>
     CATENA_HD void put_meeting(Place inboard_body, MeetingOf<RealAt<Place>> const& m) const {
         write(motion.r2, inboard_body, m.point + read(joints.r1, inboard_body));
@@ -172,7 +198,8 @@ struct JointScan {
     }
 };
 
-/// As a space's scans want it (HostSpace::ScanTree).
+/// The scan's interface for a Space's tree passes (HostSpace::ScanTree): values of runs, their
+/// composition, and storage by slot.
 template <bool positions>
 struct MotionScan {
     using Value = MotionNumbers<positions>;

@@ -1,5 +1,5 @@
-// Where chains closed on themselves begin and end, in any Space. Rings on two ranks show each other
-// their ends.
+// First and last bodies of rings (chains closed on themselves), in any Space. If the two ends of a
+// ring are on different ranks, the ranks exchange them.
 #pragma once
 
 #include "dca/host_space.hpp"
@@ -7,8 +7,8 @@
 
 namespace catena {
 
-/// What `of_first(k)` says of the body that each of the group's tips is joined to: a ring's first
-/// body k, on whatever rank it is; the ground: zero. Collective where a ring is on two ranks.
+/// For each of the group's tips, of_first(k) of the ring's first body k, on whatever rank that body
+/// is. Tips joined to the ground have zero. Collective if a ring spans two ranks.
 template <int D, class Of>
 std::vector<Vector<double, D>> beyond_tips_of(ChainGroup const& group,
                                               Communicator const& communicator,
@@ -26,15 +26,17 @@ std::vector<Vector<double, D>> beyond_tips_of(ChainGroup const& group,
     return all;
 }
 
-/// By ring (ChainGroup::rings): something of its first body, and something of its last.
+/// Vectors of rings' end bodies, such as positions: one of the first body and one of the last.
+/// Indexed as ChainGroup::rings.
 struct RingEndsView {
     View<3> first, last;
 };
 
+/// Copies of vectors of rings' end bodies, on each rank that holds one of the ends.
 template <class Space>
 class RingEnds {
   public:
-    /// The group and the communicator must outlive it.
+    /// The group and the communicator must outlive this object.
     RingEnds(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
           space_(space),
@@ -44,7 +46,8 @@ class RingEnds {
           last_(std::ssize(group.rings)) {}
 
     RingEndsView view() { return {first_.view(), last_.view()}; }
-    /// From fields over bodies. Collective where a ring is on two ranks.
+    /// Copies the vectors of end bodies from fields over bodies, and exchanges them between ranks.
+    /// Collective if a ring spans two ranks.
     void take(View<3> of_first, View<3> of_last) {
         if (group_.rings.empty()) return;
         space_.for_each(std::ssize(group_.rings), [ring = rings_.data(), ends = view(), of_first,
@@ -59,6 +62,7 @@ class RingEnds {
     }
 
   private:
+    /// Sends this rank's end of ring i and receives the other end.
     void exchange(std::int64_t i, LocalRing const& ring) {
         View<3> const own = (ring.first >= 0 ? first_ : last_).view(),
                       other = (ring.first >= 0 ? last_ : first_).view();

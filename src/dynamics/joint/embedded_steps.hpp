@@ -1,5 +1,5 @@
-// A step of the Dormand-Prince pair for the coordinates of one body of chains in joint coordinates,
-// and how far its two orders are apart, for every Space.
+// Step of the Dormand-Prince pair for the coordinates of one body in joint coordinates, and the
+// difference of its two orders, in any Space.
 #pragma once
 
 #include "dynamics/joint/joint_dynamics.hpp"
@@ -7,9 +7,9 @@
 
 namespace catena {
 
-/// Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980, RK5(4)7M: six stages make a step of fifth
-/// order; the rates after it, which are the next step's first, tell how far that of fourth order
-/// would be.
+/// Coefficients of RK5(4)7M (Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980). Six stages make
+/// a step of fifth order. The rates after it, which are the first of the next step, complete the
+/// embedded solution of fourth order.
 struct DormandPrince {
     static constexpr int stages = 6;
     static constexpr double weight[stages][stages] = {
@@ -20,31 +20,37 @@ struct DormandPrince {
         {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0},
         {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
     static constexpr double time[stages] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-    /// Of the difference, the rates after the step last.
+    /// Weights of the difference of the two orders; the last one belongs to the rates after the
+    /// step.
     static constexpr double difference[stages + 1] = {
         71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 };
 
-/// Times the step's length. Device code does not reach DormandPrince itself.
+/// Coefficients of one stage, times the length of the step. Device code cannot access DormandPrince
+/// itself.
 struct EmbeddedStage {
     int number = 0;
-    bool again = false;  // from where the step before began, whose first rates are known
+    /// Repeats from the start of the previous step, whose first rates are known.
+    bool again = false;
     double weight[DormandPrince::stages] = {};
-    double time = 0;  // of the state that comes out
+    double time = 0;  // Time of the resulting state, ps.
 };
+/// Weights of the difference, times the length of the step.
 struct EmbeddedDifference {
     double weight[DormandPrince::stages + 1] = {};
 };
 
+/// Rates of all stages, with the operations on one body.
 struct EmbeddedSteps {
-    /// Of q and of qd; of a base's position and velocity.
+    /// Numbers kept per stage: rates of q and qd of a body; rates of position and velocity of a
+    /// base.
     static constexpr int rates = 7, base_rates = 6;
     JointSteps steps;
-    View<DormandPrince::stages * rates> kept;  // stage after stage
+    View<DormandPrince::stages * rates> kept;  // Stages one after the other.
     View<DormandPrince::stages * base_rates> kept_base;
 
-    /// Keeps the rates of now and takes the state to the next stage, after the last one to the end
-    /// of the step.
+    /// Keeps the current rates and moves the state to the next stage; after the last stage, to the
+    /// end of the step.
     template <bool positions, class Place>
     CATENA_HD void advance(Place k, EmbeddedStage const& s) const {
         using Real = RealAt<Place>;
@@ -75,6 +81,7 @@ struct EmbeddedSteps {
         }
         if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
+    /// Counterpart of advance() for the free base of a piece.
     CATENA_HD void advance_base(std::int64_t piece, std::int64_t k, EmbeddedStage const& s) const {
         StateView const &state = steps.chains.scan.state, &start = steps.start;
         bool const first = s.number == 0;
@@ -101,9 +108,10 @@ struct EmbeddedSteps {
         state.base_velocity.store(piece, v);
     }
 
-    /// 1 or more where a stage is so far from where a step of any use leads that its equations may
-    /// have no solution; NaN where it is not finite. Orientations count by how far they are from
-    /// unit length, speeds by a thousand radians in the step.
+    /// Measure of how implausible a stage is: 1 or more if it is so far from any useful step that
+    /// its equations may have no solution. NaN if it is not finite. Orientations are measured by
+    /// the deviation of the quaternion's length from 1, and velocities relative to 1000 rad per
+    /// step.
     CATENA_HD double wildness(std::int64_t k, double length) const {
         StateView const& state = steps.chains.scan.state;
         Vector<double, 4> const q = state.q.load(k);
@@ -112,7 +120,8 @@ struct EmbeddedSteps {
             return worse(is_angular(k) ? fast : 0.0, 0.0 * size + 0.0 * fast);
         return worse(fast, worse(0.25 * size, 0.25 / size));
     }
-    /// The faster of the step's ends.
+    /// Velocity of body k, or of its base: the larger one of the step's two ends. `angular` selects
+    /// the kind.
     CATENA_HD double speed(std::int64_t k, bool angular) const {
         JointChains const& chains = steps.chains;
         StateView const &state = chains.scan.state, &start = steps.start;
@@ -123,9 +132,9 @@ struct EmbeddedSteps {
         std::int64_t const p = chains.joints().piece_of(k);
         return worse(norm(start.base_velocity.load(p)), norm(state.base_velocity.load(p)));
     }
-    /// The largest difference of the two orders over what is allowed, after the rates at the step's
-    /// end were solved for. Orientations differ by a rotation vector. What is prescribed has no
-    /// error.
+    /// Largest difference of the two orders relative to the tolerances. Precondition: the rates at
+    /// the step's end have been solved for. Differences of orientations are rotation vectors.
+    /// Prescribed motion has no error.
     CATENA_HD double error(std::int64_t k, EmbeddedDifference const& d,
                            AllowedErrors const& allowed) const {
         JointChains const& chains = steps.chains;
@@ -146,6 +155,7 @@ struct EmbeddedSteps {
                   norm(of_speed) / (angular ? allowed.speed.angular : allowed.speed.linear));
         return chains.on_free_base(k) ? worse(worst, base_error(k, d, allowed)) : worst;
     }
+    /// Counterpart of error() for a free base.
     CATENA_HD double base_error(std::int64_t k, EmbeddedDifference const& d,
                                 AllowedErrors const& allowed) const {
         std::int64_t const p = steps.chains.joints().piece_of(k);
@@ -161,10 +171,11 @@ struct EmbeddedSteps {
     }
 
   private:
+    /// True unless joint k is prismatic.
     CATENA_HD bool is_angular(std::int64_t k) const {
         return steps.chains.joints().joint[k] != JointType::prismatic;
     }
-    /// NaN stays.
+    /// Maximum that keeps NaN.
     CATENA_HD static double worse(double a, double b) { return b > a || b != b ? b : a; }
     CATENA_HD View<rates> of_stage(int i) const {
         return kept.template components<rates>(i * rates);
@@ -172,6 +183,7 @@ struct EmbeddedSteps {
     CATENA_HD View<base_rates> base_of_stage(int i) const {
         return kept_base.template components<base_rates>(i * base_rates);
     }
+    /// Rates of q and qd of body k, given its second derivatives.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, rates> rates_of(Place k, Vec3At<Place> const& qdd) const {
         using Real = RealAt<Place>;
@@ -185,7 +197,7 @@ struct EmbeddedSteps {
     }
 };
 
-/// What the stages keep.
+/// Storage of the stages' rates.
 template <class Space>
 struct EmbeddedRates {
     typename Space::template FieldOf<DormandPrince::stages * EmbeddedSteps::rates> kept;

@@ -1,23 +1,28 @@
-// Dynamics of one body of chains in joint coordinates: its loads and what these make of its
-// velocities, for every Space.
+// Dynamics of one body of chains in joint coordinates, in any Space: its loads (JointLoads), and
+// the rates that follow from its acceleration.
 #pragma once
 
 #include "dynamics/joint/joint_loads.hpp"
 
 namespace catena {
 
-/// Time derivatives of StateView's velocities.
+/// Time derivatives of the velocities of StateView.
 struct RatesView {
-    View<3> qdd;  // second derivatives of q; spherical, free: derivative of the components of qd, B
-    View<3> base_acceleration;  // one a piece: of a free base's origin, W
+    /// Second derivatives of q. For spherical and free joints: derivatives of the components of qd,
+    /// B.
+    View<3> qdd;
+    /// Acceleration of a free base's origin by piece, W.
+    View<3> base_acceleration;
 };
 
+/// Loads and solution of bodies, with the operations that turn accelerations into rates.
 struct JointChains : JointLoads {
-    ConstView<2> revolute_acceleration;  // AccelerationsView's, of `in_run`; absent: bodies'
-                                         // accelerations are known
+    /// AccelerationsView::revolute_acceleration for the joints of `in_run`. Without origin, the
+    /// accelerations of all bodies are known.
+    ConstView<2> revolute_acceleration;
 
-    /// Of body k along the axes of its outboard joint: angular acceleration; that of handle 2 along
-    /// the last axis.
+    /// Acceleration of the outboard end of body k along the axes of its outboard joint. Components
+    /// 0-2 are the angular acceleration, component 3 is that of handle 2 along the last axis.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> outboard_end_of(Place k) const {
         auto const e2 = axes2(k);
@@ -30,6 +35,7 @@ struct JointChains : JointLoads {
         }
         return {{along[0], along[1], along[2], slide}};
     }
+    /// Acceleration of the inboard side of joint k; zero on the ground.
     CATENA_HD Vector<double, 4> inboard_end_of(std::int64_t k) const {
         if (joints().is_first[k]) return Vector<double, 4>::zero();
         return k == 0 ? outboard_end.load(-1) : outboard_end_of(k - 1);
@@ -38,9 +44,9 @@ struct JointChains : JointLoads {
     CATENA_HD Vector<RealAt<Place>, 4> inboard_end_of(Place const& several) const {
         return outboard_end_of(several - 1);
     }
-    /// Second derivatives of joint k's coordinates. `relative_alpha`: outboard less inboard angular
-    /// acceleration along the joint's axes. `relative_slide`: the same of the meeting points along
-    /// the last axis.
+    /// Second derivatives of joint k's coordinates. `relative_alpha` is the outboard minus the
+    /// inboard angular acceleration along the joint's axes. `relative_slide` is that of the meeting
+    /// points along the last axis.
     template <class Place>
     CATENA_HD Vec3At<Place> rate_of_joint(Place k, Vec3At<Place> const& relative_alpha,
                                           RealAt<Place> const& relative_slide) const {
@@ -52,8 +58,8 @@ struct JointChains : JointLoads {
                 Vector3 linear;
                 Vector3 const relative =
                     relative_alpha - transposed_times(axes, joint_velocity_term(k, linear));
-                Vector3 const first = transposed_times(
-                    axes, read(joints().first_axis, k));  // (0, y, z); the second axis is (0, 0, 1)
+                // First axis, (0, y, z) in the joint's axes, where the second axis is (0, 0, 1).
+                Vector3 const first = transposed_times(axes, read(joints().first_axis, k));
                 auto const u1 = relative[1] / first[1];
                 return {{u1, relative[2] - first[2] * u1, none}};
             }
@@ -66,11 +72,12 @@ struct JointChains : JointLoads {
                 return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], none, none}};
         }
     }
+    /// True if the solver returned the acceleration of joint k itself.
     template <class Place>
     CATENA_HD bool goes_by_revolute(Place k) const {
         return revolute_acceleration.origin && in_run.has(k);
     }
-    /// Precondition: goes_by_revolute().
+    /// Second derivative of a revolute joint's angle. Precondition: goes_by_revolute().
     template <class Place>
     CATENA_HD RealAt<Place> rate_of_revolute(Place k) const {
         auto const own = read(revolute_acceleration, k, 0);
@@ -102,7 +109,7 @@ struct JointChains : JointLoads {
         RealAt<Place> slide(0);
         if (joints().has_screws) {
             Vector3 const r = r1(k), w = omega(k),
-                          axis = axes1.column(2);  // the axis is the same in B
+                          axis = axes1.column(2);  // The axis has the same components in B.
             slide = dot(axis, read(acceleration, k) + cross(turning, r) + cross(w, cross(w, r))) -
                     before[3];
             if constexpr (is_one_body<Place>)
@@ -111,21 +118,23 @@ struct JointChains : JointLoads {
         }
         return rate_of_joint(k, transposed_times(axes1, to_meeting * turning) - inboard, slide);
     }
-    /// Of the origin of body k on a free base.
+    /// Acceleration of the origin of body k on a free base, W.
     CATENA_HD Vec3 base_rate(std::int64_t k) const {
         Vec3 const w = omega(k), r = r1(k);
         return orientation(k) *
                    (acceleration.load(k) + cross(alpha.load(k), r) + cross(w, cross(w, r))) +
                given.gravity;
     }
+    /// True if body k is the base of a free chain.
     CATENA_HD bool on_free_base(std::int64_t k) const {
         return joints().joint[k] == JointType::free;
     }
+    /// Stores the rates of body k, and of its base if that is free.
     template <class Place>
     CATENA_HD void set_rates(Place k, RatesView const& out) const {
+        // The other components are 0 and never change.
         if constexpr (is_one_body<Place>)
-            if (joints().drives == 0 &&
-                goes_by_revolute(k)) {  // whose other components are 0 and stay so
+            if (joints().drives == 0 && goes_by_revolute(k)) {
                 out.qdd.at(k, 0) = rate_of_revolute(k);
                 return;
             }

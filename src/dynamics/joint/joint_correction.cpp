@@ -1,3 +1,4 @@
+// The error estimate of iterative refinement.
 #include "dynamics/joint/joint_correction.hpp"
 
 #include <algorithm>
@@ -19,6 +20,7 @@ double trace_of(Vector<double, 6> const& inertia) {
     return all(0, 0) + all(1, 1) + all(2, 2);
 }
 
+/// change / size, with 0 / 0 = 0.
 double ratio(double change, double size) { return change == 0 ? 0.0 : change / size; }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Factory of JointDynamics on the host.
 #include "dynamics/joint/joint_dynamics_in.hpp"
 
 namespace catena {

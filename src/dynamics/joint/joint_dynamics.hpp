@@ -1,5 +1,6 @@
-// Forward dynamics of body chains in joint coordinates: state -> accelerations, by one matrix and
-// one bias sweep. The state is within, wherever that is.
+// Forward dynamics of body chains in joint coordinates: accelerations from the state by one matrix
+// sweep and one bias sweep. The object holds the state, on the host or on a GPU. Frames: W ground
+// axes, B body axes. Units: nm, ps, amu, kJ/mol, rad, unless the scene has `units: si`.
 #pragma once
 
 #include <memory>
@@ -11,121 +12,137 @@
 
 namespace catena {
 
-/// Time derivatives of JointState's velocities (RatesView), on the host.
+/// Time derivatives of the velocities of JointState, on the host. RatesView documents the fields.
 struct JointRates {
     Field<3> qdd, base_acceleration;
 };
 
-/// A step within one whose length is given.
+/// A substep of an adaptive integrator, within a step of given length.
 struct InnerStep {
-    double length = 0, end = 0;  // end: the time there
-    bool again = false;          // from where the one before began, which was rejected
+    /// Length of the substep, and the time at its end, ps.
+    double length = 0, end = 0;
+    bool again = false;  // Repeats from the start of the last substep, which was rejected.
 };
-/// The largest of each kind. Bases' and sliding joints' are linear.
+/// Largest velocities of each kind, rad/ps and nm/ps. Those of free bases and sliding joints are
+/// linear.
 struct Speeds {
     double angular = 0, linear = 0;
 };
-/// Of a step.
+/// Error tolerances of a substep: coordinates (angles and lengths) and velocities.
 struct AllowedErrors {
     double angle = 0, length = 0;
     Speeds speed;
 };
 
+/// State and equations of motion of a group of chains in joint coordinates. An integrator builds a
+/// step from its operations; observers read results.
 class JointDynamics : public BeadHost {
   public:
-    /// Of bodies and free bases, on the host.
+    /// Coordinates and velocities of bodies and free bases, copied to the host.
     virtual JointState state() const = 0;
     virtual void set_state(JointState const&) = 0;
+    /// Time of the state, ps; prescribed motions depend on it.
     double time() const { return time_; }
     void set_time(double time) { time_ = time; }
 
-    /// What the state alone decides, and where carried beads are. Clears their forces. Collective.
+    /// Computes the motion, the loads that depend on the state alone and the positions of carried
+    /// beads. Clears the forces on these beads. Collective.
     virtual void update_configuration() = 0;
-    /// The same where solve_once() follows, which leaves out what its solver needs not be told.
+    /// Variant of update_configuration() before solve_once(). It omits what the solver can compute
+    /// itself. Collective.
     virtual void update_to_solve_once() = 0;
-    /// At the configuration updated last. Needs no forces. Collective.
+    /// Assembles the matrices at the last updated configuration. Needs no forces. Collective.
     virtual void assemble_matrices() = 0;
-    /// Accelerations of bodies with the forces of now, at the configuration updated last.
+    /// Computes accelerations of bodies at the last updated configuration with the current forces.
     /// Collective.
     virtual void solve() = 0;
-    /// assemble_matrices() and solve() together, where nothing is to be hidden between them: the
-    /// matrices are not kept, and the last bits may be others. Collective.
+    /// Fuses assemble_matrices() and solve(), for use when there is no force computation to overlap
+    /// with. The matrices are not kept, and the last bits of the result may differ. Collective.
     virtual void solve_once() = 0;
-    /// solve() at the same coordinates with the velocities of now; matrices and forces on carried
-    /// beads are those of before. Collective.
+    /// Solves at the same coordinates with the current velocities. The matrices and the forces on
+    /// carried beads are reused. Collective.
     virtual void solve_again() = 0;
-    /// Those of coordinates, after solve(); and as they were set last, on the host.
+    /// Computes the rates (second derivatives of coordinates) after solve().
     virtual void set_rates() = 0;
-    /// Seconds of update_to_solve_once(), solve_once() and set_rates() together, `repeat` times the
-    /// mean of `chained` of them one after the other. Precondition: they were called before.
-    /// Collective.
+    /// Measures update_to_solve_once(), solve_once() and set_rates() together, in seconds. Returns
+    /// `repeat` means over `chained` consecutive evaluations. Precondition: all three have been
+    /// called before. Collective.
     virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
-    /// One step of iterative refinement of what solve() found last: what the equations of bodies
-    /// and joints lack is solved for with the same matrices and added. Digits come back that were
-    /// lost where a body's forces are far larger than what they leave of them: accelerations are
-    /// carried apart from the forces they came from. `executor`: of the host, which looks for what
-    /// is lacking. Collective.
+    /// One step of iterative refinement of the last solve(): the residual of the equations of
+    /// bodies and joints is solved for with the same matrices and added. It restores digits that
+    /// are lost where the forces on a body nearly cancel, because accelerations are stored
+    /// separately from forces. `executor` computes the residual on the host. Collective.
     virtual void refine(Executor const& executor) = 0;
-    /// How much the last refine() changed bodies' accelerations, over their size: an estimate of
-    /// the relative error of what it was given. Turning and linear accelerations apart, the larger
-    /// of both. Where accelerations all but vanish, they count as what gravity and the loads would
-    /// give the chains as a whole. NaN where something is not finite. Precondition: refine() was
-    /// called. Collective.
+    /// Change of bodies' accelerations by the last refine(), relative to their size: an estimate of
+    /// the relative error before it. Returns the larger value of angular and linear accelerations.
+    /// Accelerations near zero are compared with those that gravity and the loads would give the
+    /// chains as a whole. NaN if anything is not finite. Precondition: refine() was called.
+    /// Collective.
     virtual double correction() = 0;
+    /// Copies the last set rates to the host.
     virtual JointRates rates() const = 0;
 
-    // Steps, stage by stage: each but the first half of Verlet's follows a solve().
+    // Steps, stage by stage. Each stage except the first half of a Verlet step follows a solve().
     /// Stage 0, 1, 2 or 3 of a Runge-Kutta step of length h.
     virtual void runge_kutta(int stage, double h) = 0;
-    /// Stage 0 to 5 of a step of the Dormand-Prince pair (embedded_steps.hpp), from the carried
-    /// accelerations on; what the stages began with is kept until the next step that is not taken
-    /// `again`.
+    /// Stage 0 to 5 of a step of the Dormand-Prince pair (embedded_steps.hpp), which starts from
+    /// the carried accelerations. The start of the step is kept, so that a step with `again` can
+    /// repeat it.
     virtual void embedded_stage(int stage, InnerStep const&) = 0;
-    /// Of the stage that comes next: below 1 where it is worth a solution. On this rank.
+    /// Measure of how implausible the next stage is, for a step of this length, on this rank. Its
+    /// equations are worth solving if it is below 1.
     virtual double wildness(double length) = 0;
-    /// At the ends of that step, and after another solve() its largest error over what is allowed;
-    /// NaN where something is not finite. On this rank.
+    /// Largest velocities at the two ends of the last substep, on this rank.
     virtual Speeds fastest() = 0;
+    /// Largest error of the last substep relative to the tolerances, on this rank; NaN if anything
+    /// is not finite. Precondition: another solve() at the substep's end.
     virtual double embedded_error(double length, AllowedErrors const&) = 0;
-    /// A length that lengths are measured by, the same on every rank: of the longest chain.
+    /// Characteristic length: contour length of the longest chain plus the size of a body, nm.
+    /// Returns the same value on every rank.
     virtual double reach() const = 0;
-    /// The accelerations that velocity Verlet and the Dormand-Prince pair carry from step to step:
-    /// those solved for last; others.
+    /// Carries the accelerations of the last solve(). Velocity Verlet and the Dormand-Prince pair
+    /// carry accelerations from step to step.
     virtual void carry_rates() = 0;
+    /// Carries the given accelerations instead, such as those of a checkpoint.
     virtual void carry_rates(JointRates const&) = 0;
     virtual JointRates carried_rates() const = 0;
-    /// Positions and a first guess of velocities after h, and then the velocities.
+    /// First half of a velocity Verlet step of length h: coordinates, and a first guess of
+    /// velocities.
     virtual void verlet_move(double h) = 0;
+    /// Second half: final velocities, after a solve() with the guess.
     virtual void verlet_finish(double h) = 0;
 
-    /// Coordinates after h of the velocities, which are kept as the start of kicks.
+    /// Drift: advances coordinates by h at the current velocities. These are kept as the start of
+    /// kick().
     virtual void drift(double h) = 0;
-    /// Velocities after h of the accelerations solved for last, from those at the start; and from
-    /// those of now, of the carried ones.
+    /// Kick: sets velocities to those kept by drift() plus h times the last solved accelerations.
     virtual void kick(double h) = 0;
+    /// Kick: adds h times the carried accelerations to the current velocities.
     virtual void kick_by_carried(double h) = 0;
-    /// Velocities keep u + spread xi: xi normal, its covariance the inverse of the matrix at the
-    /// coordinates of now, springs' and dampers' part included. `step` numbers the noise.
-    /// Collective.
+    /// Thermostat: velocities become keep u + spread xi, with xi normal noise. The covariance of xi
+    /// is the inverse of the mass matrix at the current coordinates, including the parts of springs
+    /// and dampers. `step` keys the noise. Collective.
     virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
 
-    /// Motion at the present state, positions included, on the host. Collective.
+    /// Computes the motion at the current state, positions included, and copies it to the host.
+    /// Collective.
     virtual BodyMotion motion() = 0;
-    /// Of the solution evaluated last; nothing may have changed since, here and in residual() and
-    /// refine(). Collective.
+    /// Results of the last solution, W. Precondition, as for residual() and refine(): nothing has
+    /// changed since. Collective.
     virtual BodyResults results() = 0;
-    /// Largest local backward residual of the solution evaluated last (JointSolution). Over all
-    /// ranks; collective.
+    /// Largest local backward residual of the last solution over all ranks
+    /// (JointSolution::residual()). Collective.
     virtual double residual(Executor const&) = 0;
-    /// At the present state. Collective.
+    /// Potential energy at the current state. Collective.
     virtual PotentialEnergy potential() = 0;
-    /// Corrects positions by so many Newton steps and velocities by one, each by the least in the
-    /// metric of the masses, so that jointed tips close again; nothing happens where there are
-    /// none. Collective.
+    /// Default number of Newton steps that close tips.
     static constexpr int usual_corrections = 2;
+    /// Closes jointed tips again: `corrections` Newton steps for positions, then one for
+    /// velocities. Each correction is the smallest in the metric of the masses. Does nothing
+    /// without jointed tips. Collective.
     virtual void close_tips(int corrections = usual_corrections) = 0;
-    /// Largest opening of a jointed tip over the chains' reach, over all ranks; NaN where the state
-    /// is not finite. Collective.
+    /// Largest opening of a jointed tip over all ranks, relative to reach(); NaN if the state is
+    /// not finite. Collective.
     virtual double closure_error() = 0;
     virtual ChainSolver& solver() const = 0;
 
@@ -133,6 +150,8 @@ class JointDynamics : public BeadHost {
     double time_ = 0;
 };
 
+/// Dynamics on the host. `implicit_step`: the step length h of implicit joint springs; 0 for
+/// explicit ones.
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&,
                                                    Communicator const&,
                                                    std::unique_ptr<ChainSolver>,

@@ -1,4 +1,5 @@
-// Members of JointDynamicsIn for steps of an embedded pair. Included by joint_dynamics_in.hpp.
+// Members of JointDynamicsIn for steps of an embedded Runge-Kutta pair. Included by
+// joint_dynamics_in.hpp.
 #pragma once
 
 #include "dynamics/joint/joint_dynamics_in.hpp"

@@ -1,4 +1,4 @@
-// JointDynamics in any Space: state, kinematics, loads and steps stay there.
+// Implementation of JointDynamics in any Space, which holds state, kinematics, loads and steps.
 #pragma once
 
 #include <optional>
@@ -16,12 +16,14 @@
 
 namespace catena {
 
-/// The jointed tips of the group on this rank where the scene starts. Collective.
+/// Jointed tips of the group on this rank at the scene's start. Collective.
 std::vector<JointedTip> tips_at_start(ChainGroup const&, Scene const&, Communicator const&);
 
 template <class Space>
 struct JointRefinement;
 
+/// Drives kinematics, loads, solver and steps. On hosts with SIMD, bodies and runs are processed
+/// side by side in vector lanes (JointLanes).
 template <class Space>
 class JointDynamicsIn final : public JointDynamics {
     template <int D>
@@ -33,7 +35,8 @@ class JointDynamicsIn final : public JointDynamics {
     static constexpr bool has_lanes = requires(Space const& space) { space.simd(); };
 
   public:
-    /// `solver` takes views of the same space.
+    /// `solver` must read and write views of the same Space. `implicit_step` is the step length of
+    /// implicit joint springs; 0 if there are none.
     JointDynamicsIn(ChainGroup const& group, Scene const& scene, Space const& space,
                     Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
                     double implicit_step = 0)
@@ -155,7 +158,7 @@ class JointDynamicsIn final : public JointDynamics {
             set_rates();
         });
     }
-    /// What is lacking is looked for on the host.
+    /// The residual is computed on the host.
     void refine(Executor const& executor) override;
     double correction() override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
@@ -242,8 +245,8 @@ class JointDynamicsIn final : public JointDynamics {
     ChainSolver& solver() const override { return *solver_; }
     ChainGroup const& group() const override { return group_; }
 
-    /// one(k) for every body; where several go side by side, some(loops, their first bodies and
-    /// which of these) for them.
+    /// Calls one(k) for every body. Bodies that are side by side in vector lanes are passed to
+    /// some(loops, first bodies, range) instead.
     template <bool positions, class Some, class One>
     void each_body(Some const& some, One const& one) const {
         if constexpr (has_lanes)
@@ -251,19 +254,21 @@ class JointDynamicsIn final : public JointDynamics {
         space_.for_each(group_.size, one);
     }
 
-    // Not private: nvcc takes lambdas for kernels from public members alone.
+    // Members below are public because nvcc accepts device lambdas in public members only.
     void set_carried_loads() {
         if (group_.carried_in_scene) set_loads();
     }
+    /// Computes the loads of all bodies from the current motion.
     void set_loads() {
         space_.for_each(group_.size,
                         [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
     }
-    /// Loads that were the solver's to find. Precondition: motions are known.
+    /// Computes the loads that had been left to the solver. Precondition: the motion is known.
     void leave_nothing() {
         leaves_motions_ = false;
         if (std::exchange(leaves_loads_, false)) set_loads();
     }
+    /// Updates motion and loads; `leaves_loads` leaves to the solver what it can compute itself.
     void go_to_configuration(bool leaves_loads) {
         leaves_loads_ = leaves_loads;
         has_matrices_ = false;
@@ -272,13 +277,15 @@ class JointDynamicsIn final : public JointDynamics {
             follow_revolutes();
         else
             update(false);
-        has_orientations_ = false;  // as on ranks that follow: to find them is collective
+        // Cleared also on ranks that have just computed them, because computing them is collective.
+        has_orientations_ = false;
     }
+    /// Computes motion and loads of all bodies.
     void update(bool again) {
         leaves_motions_ = false;
         needs_positions_ ? update<true>(again) : update<false>(again);
     }
-    /// `again`: the forces on carried beads stay.
+    /// `again`: keeps the forces on carried beads.
     template <bool positions>
     void update(bool again) {
         JointChains c = chains();
@@ -312,7 +319,7 @@ class JointDynamicsIn final : public JointDynamics {
             t.set_acceleration_bias(i, gravity, out);
         });
     }
-    /// update() where motions within runs are the solver's to find.
+    /// Variant of update() that leaves the motion within runs to the solver.
     void follow_revolutes() {
         leaves_motions_ = has_rotations_ = true;
         JointChains c = chains();
@@ -322,26 +329,30 @@ class JointDynamicsIn final : public JointDynamics {
             if (solver_->has_runs_side_by_side()) return follow_by_lanes(c);
         follow_by_runs(c, relative);
     }
+    /// Computes the joints' relative motions.
     void set_relative() {
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) {
             c.template set_relative<false>(k);
         });
     }
-    /// Of revolute joints, where the solver asks for them and another scan has been there.
+    /// Computes the rotations of revolute joints for the solver, if another scan has overwritten
+    /// them.
     void find_rotations() {
         if (leaves_motions_ && !has_rotations_) set_relative();
         has_rotations_ = leaves_motions_;
     }
+    /// Scan with one item per run. `relative`: the relative motions are already known.
     void follow_by_runs(JointChains const& c, bool relative) {
         RevoluteScan const scan{c, joint_by_joint(), refinement_.has_value()};
         if (scan.joint_by_joint && !relative) set_relative();
         kinematics_.sweep_runs(scan, shown_joint_loads(),
                                [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
     }
+    /// Scan with runs side by side in vector lanes.
     void follow_by_lanes(JointChains const& c) {
         RevoluteScan const scan{c, false, refinement_.has_value()};
-        // Of bodies that begin a chain, on whatever joint; where others meet is as fixed as it was
-        // at first.
+        // First bodies of chains may have any joint. Their handles stay as set at the start,
+        // because no meeting frame moves here.
         space_.over(lanes_->chains_begin(),
                     [c](std::int64_t k) { c.template set_relative<false>(k); });
         lanes_->follow_revolutes(space_, c);
@@ -351,11 +362,12 @@ class JointDynamicsIn final : public JointDynamics {
                     [c](std::int64_t k) { c.template set_motion<false>(k, false); });
         space_.over(lanes_->other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
     }
-    /// Of first bodies, to the rank before.
+    /// Message with the joint loads of this rank's first body, to the inboard neighbour.
     BodyExchange<4> shown_joint_loads() {
         return given_.joint_loads ? from_outboard(group_, joint_load_.view())
                                   : BodyExchange<4>::none();
     }
+    /// Applies one stage to all bodies, and sets relative motions unless the next update does so.
     template <bool positions>
     void runge_kutta(RungeKuttaStage const& stage) {
         JointSteps const s = steps();
@@ -396,36 +408,40 @@ class JointDynamicsIn final : public JointDynamics {
             [&](JointLoops const& loops, auto... bodies) { loops.set_rates(c, out, bodies...); },
             [c, out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
     }
-    /// The kinematics alone, positions included.
+    /// Computes the motion alone, positions included.
     void move() {
         relative_ = has_rotations_ = false;
         has_orientations_ = true;
         kinematics_.evaluate(state_.view(), true, motion_.view());
         if (group_.has_tips()) set_ends();
     }
-    /// What jointed tips join, and where they meet: after the motion. Rings on two ranks show each
-    /// other their ends.
+    /// Sets the ends of jointed tips from the motion, and where the two bodies meet. Rings on two
+    /// ranks exchange their ends.
     void set_ends();
-    /// One Newton step: the solver with openings in the place of accelerations.
+    /// One Newton step of close_tips(): the solver with openings instead of velocity terms.
     void correct(bool velocities);
+    /// Adds `found` to `to` for entries [0, count).
     void add(std::int64_t count, DirectionsView const& found, DirectionsView const& to);
+    /// Sends the acceleration of the last body's outboard end to the outboard neighbour.
     void exchange_ends() { exchange_ends(chains()); }
     void exchange_ends(JointChains const&);
 
   private:
+    /// Configuration for the solver.
     ConfigurationView configuration() {
         MotionView const m = motion_.view();
         return {{},   m.joint_turn, {},
                 m.r2, m.axes2,      has_implicit() ? compliance_.view() : View<6>{}};
     }
     bool has_implicit() const { return !group_.implicit_joint.empty(); }
-    /// What only thermostats need.
+    /// Allocates the arrays that only thermostats need.
     void need_for_noise() {
         if (has_noise_) return;
         has_noise_ = true;
         noise_force_ = FieldOf<3>(group_.size);
         if (!group_.has_tips()) zero_ = FieldOf<3>(group_.size);
     }
+    /// Loads for the solver; views without origin are left to it.
     LoadsView loads() {
         LoadsView all{torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(),
                       bias_.view(), of_tips(group_, tip_bias_)};
@@ -437,6 +453,7 @@ class JointDynamicsIn final : public JointDynamics {
         if (leaves_motions_) all.revolutes = loads_of_revolutes();
         return all;
     }
+    /// Loads from which the solver computes torques within runs itself.
     RevoluteLoads loads_of_revolutes() {
         RevoluteLoads all{true, kinematics_.rotations(), {}, {}, {}, {}, {}};
         View<4> const joint = joint_load_.view();
@@ -449,31 +466,37 @@ class JointDynamicsIn final : public JointDynamics {
         }
         return all;
     }
-    /// Nothing but gyration turns bodies, on whatever rank.
+    /// True if the gyroscopic torque is the only torque on bodies, on any rank, so that the solver
+    /// can compute it.
     bool leaves_torques() const {
         return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged &&
                !group_.carried_in_scene;
     }
-    /// Whether a rank may follow_revolutes(): where nothing acts by bodies' positions. The same on
-    /// all ranks, not all of which do; lanes are those of the solver's.
+    /// True if ranks may call follow_revolutes(), that is, if no load depends on positions. All
+    /// ranks agree, although some of them may not do so.
     bool may_follow_revolutes() const { return leaves_loads_ && !needs_positions_; }
+    /// True if this rank leaves the motion within runs to the solver. If the solver has runs side
+    /// by side, this needs lanes with the same runs.
     bool follows_revolutes() const {
         if constexpr (has_lanes)
             if (space_.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
         return goes_by_revolutes_ && group_.drives.empty() && !has_implicit() &&
                (lanes_ || !solver_->has_runs_side_by_side());
     }
-    /// Whether motions joint by joint, which steps may leave, are found before those of runs.
+    /// True if joints' relative motions, which the preceding step may leave undone, are computed in
+    /// a loop before those of runs.
     bool joint_by_joint() const {
         return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)) &&
                !kinematics_.has_threads_for_bodies();
     }
+    /// Output arrays of a full solution.
     AccelerationsView all() {
         return {alpha_.view(), acceleration_.view(), joint_force_.view(),
                 of_tips(group_, tip_force_)};
     }
-    /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to
-    /// be refined. `revolute joints`: their accelerations instead, where that is enough.
+    /// Output arrays of the next solution. Joint forces, which no step needs, are included only if
+    /// the solution will be refined. `revolutes`: accelerations of revolute joints replace those of
+    /// bodies where they suffice.
     AccelerationsView found(bool revolutes) {
         has_all_ = refinement_.has_value();
         has_revolutes_ = revolutes && !has_all_;
@@ -484,7 +507,9 @@ class JointDynamicsIn final : public JointDynamics {
                 {},
                 has_revolutes_ ? revolute_acceleration_.view() : View<2>{}};
     }
+    /// Completes the last solution: orientations, loads, accelerations and joint forces.
     void find_all();
+    /// Codes of RevolutesInRuns for all bodies.
     static std::vector<std::uint8_t> revolutes_in_runs(ChainGroup const& group) {
         std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
         for (dca::Run const& run : group.schedule.runs)
@@ -501,6 +526,7 @@ class JointDynamicsIn final : public JointDynamics {
                 motion_.view(), last_end_.view(), other_end_.view()};
     }
     RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
+    /// Views of all arrays for loops over bodies.
     JointChains chains() {
         JointChains c;
         c.scan = kinematics_.scan(state_.view(), motion_.view());
@@ -529,7 +555,7 @@ class JointDynamicsIn final : public JointDynamics {
         if (has_revolutes_) c.revolute_acceleration = revolute_acceleration_.view();
         return c;
     }
-    /// With nothing but what was solved for last.
+    /// Views with zero velocities and gravity, so that rates contain the last solution only.
     JointSteps at_rest() {
         JointSteps still = steps();
         still.chains.scan.state.qd = zero_.view();
@@ -537,8 +563,10 @@ class JointDynamicsIn final : public JointDynamics {
         still.chains.given.gravity = Vec3::zero();
         return still;
     }
+    /// Views for steps of the Dormand-Prince pair.
     EmbeddedSteps embedded() { return {steps(), pair_->kept.view(), pair_->kept_base.view()}; }
     JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
+    /// Calls use() with the last solution, completed and copied to the host.
     template <class Use>
     auto with_solution(Use const& use);
 
@@ -551,21 +579,31 @@ class JointDynamicsIn final : public JointDynamics {
     List<std::uint8_t> implicit_list_;
     std::vector<LocalPiece> pieces_list_;
     List<LocalPiece> pieces_in_scene_;
+    /// Jointed tips on the host; tips_ is their copy in the Space.
     std::vector<JointedTip> tip_;
     double reach_;
     bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_revolutes_;
-    std::vector<std::uint8_t> in_run_;  // as RevolutesInRuns
+    /// Codes of RevolutesInRuns by body.
+    std::vector<std::uint8_t> in_run_;
     List<std::uint8_t> in_run_list_;
-    bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
-    bool has_rotations_ = false;    // of revolute joints, joint by joint (RevoluteLoads)
-    bool leaves_loads_ =
-        false;  // some of those of the configuration updated last are the solver's to find
-    bool leaves_motions_ = false;  // and angular velocities within runs
-    bool has_matrices_ = false;    // of the configuration updated last
-    bool has_all_ = true;  // bodies' accelerations and joints' forces of the solution found last
-    bool has_revolutes_ = false;  // revolute_acceleration_ of that
+    /// Orientations of all bodies are known, not only those of first bodies.
+    bool has_orientations_ = true;
+    /// Rotations of revolute joints are known joint by joint (RevoluteLoads).
+    bool has_rotations_ = false;
+    /// Some loads of the last updated configuration are left to the solver.
+    bool leaves_loads_ = false;
+    /// Angular velocities within runs are left to the solver as well.
+    bool leaves_motions_ = false;
+    /// Matrices of the last updated configuration are assembled.
+    bool has_matrices_ = false;
+    /// The last solution includes all accelerations and joint forces.
+    bool has_all_ = true;
+    /// The last solution includes revolute_acceleration_.
+    bool has_revolutes_ = false;
     bool has_noise_ = false;
-    bool relative_ = false;  // the state's motions joint by joint are known
+    /// The relative motions of the joints are known at the current state.
+    bool relative_ = false;
+    /// Time at the start of the current step.
     double start_time_ = 0;
     JointKinematics<Space> kinematics_;
     BodyLoadsIn<Space> loads_;
@@ -575,6 +613,7 @@ class JointDynamicsIn final : public JointDynamics {
     Fixed<6> inertia_;
     Fixed<3> r2_;
     Fixed<6> axes2_;
+    /// State, state at the step's start, and weighted sum of a Runge-Kutta step.
     JointCoordinates<Space> state_, start_, sum_;
     MotionFields<Space> motion_;
     FieldOf<4> joint_load_;
@@ -585,7 +624,7 @@ class JointDynamicsIn final : public JointDynamics {
         carried_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;
-    FieldOf<13> last_end_, other_end_;  // by tip
+    FieldOf<13> last_end_, other_end_;  // Motions of tips' two sides.
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     std::optional<EmbeddedRates<Space>> pair_;
     std::optional<JointRefinement<Space>> refinement_;

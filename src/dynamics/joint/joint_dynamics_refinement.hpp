@@ -1,6 +1,5 @@
-// Members of JointDynamicsIn that go beyond a step's own solution: the motion as the host sees it,
-// noise, refinement, tips that are closed, and what chains' ends tell each other for these.
-// Included by joint_dynamics_in.hpp.
+// Members of JointDynamicsIn beyond the solution of a step: motion on the host, noise, refinement,
+// closing of tips, and the exchange of chains' ends for these. Included by joint_dynamics_in.hpp.
 #pragma once
 
 #include "dynamics/joint/joint_correction.hpp"
@@ -8,7 +7,7 @@
 
 namespace catena {
 
-/// What a solution lacks, and the solver's answer to it.
+/// Residual of a solution, and the correction that the solver computes from it.
 template <class Space>
 struct JointRefinement {
     explicit JointRefinement(ChainGroup const& group)
@@ -122,8 +121,8 @@ void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found
                     });
 }
 
-/// What no step has asked for: orientations, loads, and what was solved for last once more.
-/// Precondition: nothing has changed since.
+/// Completes the last solution by what no step has requested: orientations, loads, and all
+/// accelerations and joint forces. Precondition: nothing has changed since.
 template <class Space>
 void JointDynamicsIn<Space>::find_all() {
     if (!std::exchange(has_orientations_, true)) {
@@ -165,7 +164,8 @@ auto JointDynamicsIn<Space>::with_solution(Use const& use) {
 
 template <class Space>
 void JointDynamicsIn<Space>::refine(Executor const& executor) {
-    find_all();  // by what the accelerations were found by
+    /// Done first, with the same matrices that produced the accelerations.
+    find_all();
     has_revolutes_ = false;
     if (!has_matrices_) assemble_matrices();
     auto const lacking = with_solution(

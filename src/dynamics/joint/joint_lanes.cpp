@@ -1,11 +1,12 @@
+// The choice of bodies and runs to place side by side in vector lanes.
 #include "dynamics/joint/joint_lanes.hpp"
 
 namespace catena {
 namespace {
 
-/// Whether bodies k to k + lanes - 1 go side by side: what they are asked for is the same of each,
-/// and found without a decision that depends on numbers. Their neighbours are of the same chain on
-/// this rank: none is the chain's first or last body, so none makes a run by itself.
+/// True if bodies k to k + lanes - 1 may be placed side by side. They need the same operations,
+/// without branches on their data. Their neighbours are in the same chain on this rank: none is the
+/// chain's first or last body, so none is a run by itself.
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
     if (k == 0 || k + lanes >= group.size) return false;
     JointType const type = group.joint[static_cast<std::size_t>(k)];
@@ -22,14 +23,15 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
             return false;
     }
     for (std::int64_t i = k; i <= k + lanes;
-         ++i) {  // the joint after them too, which moves where they meet it
+         // Includes the joint after them, whose motion moves their handle 2.
+         ++i) {
         auto const at = static_cast<std::size_t>(i);
         if (group.joint[at] != type || group.is_first[at]) return false;
     }
     return true;
 }
 
-/// Of bodies [begin, end).
+/// Sorts bodies [begin, end) into groups and others.
 template <class Bodies>
 void deal_out(ChainGroup const& group, bool springs, std::int64_t begin, std::int64_t end,
               int lanes, Bodies& bodies) {

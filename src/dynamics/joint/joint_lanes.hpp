@@ -1,5 +1,5 @@
-// Loops over the bodies of chains in joint coordinates, and over their runs, as many at a time as a
-// vector has lanes: which ones, and the loops of an instruction set. What these do is in
+// Loops over bodies, and over runs of bodies, in vector lanes: the choice of bodies and runs to
+// place side by side, and the loops of an instruction set. The arithmetic is that of
 // joint_chains.hpp, joint_steps.hpp and embedded_steps.hpp.
 #pragma once
 
@@ -13,28 +13,31 @@
 
 namespace catena {
 
-/// Those at first[i], first[i] + 1, ... fill a vector. `asks_ahead`: as dca::asks_ahead().
+/// Groups of consecutive bodies: first[i], first[i] + 1, ... fill a vector. `asks_ahead`: prefetch,
+/// as dca::asks_ahead() advises.
 struct BodiesAbreast {
     std::int64_t const* first;
     bool asks_ahead;
 };
+/// Groups of runs, one run per lane.
 struct RunsAbreast {
     dca::RunsInLanes const* items;
     bool asks_ahead;
 };
-/// For i in [begin, end) of these. With or without positions, as JointChains says.
+/// Loops of one instruction set over groups [begin, end). There is one table with and one without
+/// positions.
 struct JointLoops {
     void (*set_relative)(JointChains const&, BodiesAbreast const&, std::int64_t begin,
                          std::int64_t end);
-    /// JointScan::follow of the runs of items [begin, end), whose wholes it shows.
+    /// Runs JointScan::follow on runs, and stores the motion across each run (JointScan::whole).
     void (*follow)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
-    /// The same of runs on revolute joints from their coordinates: turns and torques of their
-    /// joints, wholes, and motions against the bodies inboard of them of first bodies alone. Of
-    /// chains' first bodies all but the wholes is known. `constants`: revolute_constants of every
-    /// body, as RunWork::constants.
+    /// Runs the same scan for revolute joints directly from their coordinates. It stores rotations
+    /// and torques of the joints, motions across runs, and relative motions of the runs' first
+    /// bodies only. Relative motions of chains' first bodies must be known. `constants`:
+    /// revolute_constants of every body, laid out as RunWork::constants.
     void (*follow_revolutes)(JointLoads const&, RunsAbreast const&, double const* constants,
                              std::int64_t begin, std::int64_t end);
-    /// After the scan, angular velocities of these runs' first bodies.
+    /// Computes angular velocities of the runs' first bodies, after the scan.
     void (*begin_runs)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
     void (*set_motion)(JointChains const&, BodiesAbreast const&, std::int64_t begin,
                        std::int64_t end);
@@ -45,24 +48,25 @@ struct JointLoops {
     void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodiesAbreast const&,
                            std::int64_t begin, std::int64_t end);
 };
-/// The revolute joint's axis, and the rotation of its meeting frame.
+/// Numbers per body: the axis of the revolute joint, and the rotation of its meeting frame.
 inline constexpr int revolute_constants = 7;
-/// Precondition: simd_levels() has them.
+/// Loops of an instruction set. Precondition: simd_levels() includes it.
 JointLoops avx2_joint_loops(bool positions);
 JointLoops avx512_joint_loops(bool positions);
 
+/// Decides which bodies and runs of a group are placed side by side, and executes their loops.
 class JointLanes {
   public:
-    /// `springs`: whether joints have any. `revolute joints`: whether the solver
-    /// goes_by_revolutes(), side by side. The group must outlive it.
+    /// `springs`: some joint has one. `revolutes`: the solver goes_by_revolutes() with runs side by
+    /// side. The group must outlive this object.
     JointLanes(ChainGroup const&, bool springs, bool revolutes, SimdLevel);
-    // A copy's tree would be of the original's runs.
+    // Moves only: the tree of a copy would refer to the original's runs.
     JointLanes(JointLanes&&) = default;
     JointLanes& operator=(JointLanes&&) = default;
 
-    /// Whether any bodies or runs go side by side. Precondition of all that follows.
+    /// True if any bodies or runs are side by side. Precondition of all other members.
     bool any() const { return !bodies_.first.empty() || !runs_.items.empty(); }
-    /// some(loops, bodies, begin, end) for those, one(k) for the others.
+    /// Calls some(loops, bodies, begin, end) for groups of bodies and one(k) for the other bodies.
     template <class Space, class Some, class One>
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
@@ -72,8 +76,8 @@ class JointLanes {
         space.over(std::span(bodies_.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
 
-    /// JointScan::follow of the runs that go side by side; tree() has the others, and what is above
-    /// all of them.
+    /// Runs JointScan::follow on the runs that are side by side. tree() contains the other runs and
+    /// all levels above.
     template <class Space>
     void follow(Space const& space, bool positions, JointScan const& scan) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
@@ -83,19 +87,21 @@ class JointLanes {
     }
     HostSpace::ScanTree const& tree() const { return *tree_; }
 
-    // Chains whose solver goes_by_revolutes(), none of whose positions is asked for. Precondition:
-    // `revolute joints`.
+    // Members for chains whose solver goes_by_revolutes() and whose positions are not requested.
+    // Precondition: `revolutes`.
 
-    /// Runs that do not go side by side; bodies of the others that begin a chain.
+    /// Runs that are not side by side.
     std::span<dca::Run const> other_runs() const { return runs_.others; }
+    /// Bodies that begin a chain, in runs that are side by side.
     std::span<std::int64_t const> chains_begin() const { return chains_begin_; }
-    /// After set_relative() of those.
+    /// Runs JointLoops::follow_revolutes. Precondition: set_relative() of chains_begin().
     template <class Space>
     void follow_revolutes(Space const& space, JointLoads const& loads) const {
         over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
             loops_[0].follow_revolutes(loads, runs, constants_.data(), begin, end);
         });
     }
+    /// Runs JointLoops::begin_runs, after the scan.
     template <class Space>
     void begin_runs(Space const& space, JointScan const& scan) const {
         over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
@@ -105,7 +111,8 @@ class JointLanes {
 
   private:
     struct Bodies {
-        std::vector<std::int64_t> first, others;  // of those that fill a vector; all that do not
+        // First bodies of groups that fill a vector; all bodies outside such groups.
+        std::vector<std::int64_t> first, others;
     };
     template <class Space, class Action>
     void over_runs(Space const& space, Action const& action) const {
@@ -114,6 +121,7 @@ class JointLanes {
                               action({runs_.items.data(), asks_ahead_}, begin, end);
                           });
     }
+    /// Loops without and with positions.
     JointLoops loops_[2]{};
     bool asks_ahead_ = false;
     dca::RunsDealtOut runs_;

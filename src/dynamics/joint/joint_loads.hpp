@@ -1,4 +1,6 @@
-// What bodies of chains in joint coordinates feel at a configuration, for every Space.
+// Loads and velocity biases of bodies in joint coordinates at a configuration, in any Space.
+// Frames: W ground axes, B body axes, J joint frame, M meeting frame. The axes of a joint are the
+// columns of ChainGroup::axes1 in M.
 #pragma once
 
 #include "dynamics/body_loads.hpp"
@@ -9,51 +11,63 @@
 
 namespace catena {
 
-/// Springs K and dampers C within a step of length h: B = c h^2 K + h C / 2 in P^T phi = tau - B
-/// u', c by rotor_of_spring(). The joint's force then is unknown along every direction, and its
-/// sides part by u' = B^-1 (tau - P^T phi).
+/// Springs K and dampers C that act implicitly within a step of length h. With B = c h^2 K + h C /
+/// 2 (c: rotor_of_spring()), the joint obeys P^T phi = tau - B u'. The joint's force then is
+/// unknown along every direction, and its two sides accelerate relative to each other by u' = B^-1
+/// (tau - P^T phi).
 struct ImplicitJoints {
-    double of_stiffness = 0, of_damping = 0;  // what of K and of C is in B
-    std::uint8_t const* joint = nullptr;      // whether joint k is one; null where none is
-    View<6> compliance;  // P B^-1 P^T along the joint's axes (a sliding one's: its free direction
-                         // is the last)
-    View<3> yielding;    // P B^-1 tau, along the same
-    View<3> start;       // velocities by which dampers act: B has what a step adds
+    /// B / K = c h^2, and B / C = h / 2.
+    double of_stiffness = 0, of_damping = 0;
+    /// True for joint k if it is implicit; null if no joint is.
+    std::uint8_t const* joint = nullptr;
+    /// Compliance P B^-1 P^T along the joint's axes. In a sliding joint, its free direction is the
+    /// last one.
+    View<6> compliance;
+    /// Acceleration P B^-1 tau, along the same axes.
+    View<3> yielding;
+    /// Velocities at the step's start, on which dampers act; B covers what the step adds to them.
+    View<3> start;
 
+    /// True if joint k is implicit.
     CATENA_HD bool has(std::int64_t k) const { return joint && joint[k] != 0; }
-    /// Several bodies next to each other have none.
+    /// False for several bodies side by side, because implicit joints are never placed there.
     template <dca::SeveralBodies Place>
     CATENA_HD bool has(Place const&) const {
         return false;
     }
 };
 
-/// Revolute joints that a solver which goes_by_revolutes() knows by itself: of runs of several
-/// bodies, but of no body that begins a chain. Those of bodies side by side are such
-/// (joint_lanes.cpp).
+/// Revolute joints whose motion a solver that goes_by_revolutes() computes itself. They are in runs
+/// of several bodies, and their body does not begin a chain. All joints of bodies side by side are
+/// such (joint_lanes.cpp).
 struct RevolutesInRuns {
-    static constexpr std::uint8_t within = 1,
-                                  first = 2;  // of a run's first body; 0: no such revolute joint
+    /// Codes of joints: 0 is no such revolute joint, `first` is that of a run's first body,
+    /// `within` is any other.
+    static constexpr std::uint8_t within = 1, first = 2;
     std::uint8_t const* joint = nullptr;
+    /// True if joint k is such a revolute joint.
     CATENA_HD bool has(std::int64_t k) const { return joint[k] != 0; }
+    /// True if body k is the first of its run.
     CATENA_HD bool begins_run(std::int64_t k) const { return joint[k] == first; }
     template <dca::SeveralBodies Place>
     CATENA_HD bool has(Place const&) const {
         return true;
     }
-    /// Or may.
+    /// True, because one of several bodies side by side may begin a run.
     template <dca::SeveralBodies Place>
     CATENA_HD bool begins_run(Place const&) const {
         return true;
     }
 };
-/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the
-/// torques, revolute_rate; and RevoluteLoads, where the update that needs motions joint by joint
-/// finds them, and no step before (JointDynamicsIn::follow_revolutes).
+/// Terms that the solver computes from velocities itself. gyroscopic: the gyroscopic torque, if it
+/// is the only torque (LoadsView::gyroscopic). biases: those of revolute joints
+/// (LoadsView::revolute_rate). motions: those within runs (RevoluteLoads); the update computes the
+/// joints' relative motions, and steps need not (JointDynamicsIn::follow_revolutes).
 struct LeftToSolver {
     bool gyroscopic = false, biases = false, motions = false;
 };
 
+/// Motion, given loads and resulting loads of a group's bodies, with the operations on one body.
 struct JointLoads {
     JointScan scan;
     RevolutesInRuns in_run;
@@ -68,41 +82,54 @@ struct JointLoads {
     ConstView<3> fixed_r2;
     ConstView<6> fixed_axes2;
     CarriedBeadsView beads;
-    // What a solution needs and finds.
-    View<4> joint_load;  // known load of joint k on body k: torque along the joint's axes and force
-                         // along its last one
+    // Input and output of the solver.
+    /// Known load of joint k on body k: torque along the joint's axes, and force along the last
+    /// axis.
+    View<4> joint_load;
+    /// Torque and force on bodies and their accelerations, B. The accelerations are relative to a
+    /// frame that falls with gravity.
     View<3> torque, force, alpha, acceleration;
     DirectionsView bias;
-    View<4> outboard_end;  // entry -1: outboard_end_of() of the body before this rank's first
+    /// Value of outboard_end_of() by body. Entry -1 is that of the body before this rank's first
+    /// one.
+    View<4> outboard_end;
 
     CATENA_HD JointsView const& joints() const { return scan.joints; }
-    // A place k: one body, or several next to each other (dca/lane_access.hpp, JointsView::type).
+    // Members below take a place k: one body, or several consecutive bodies side by side
+    // (dca/lane_access.hpp, JointsView::type).
+    /// Rotation of B in M.
     template <class Place>
     CATENA_HD Mat3At<Place> turn(Place k) const {
         return to_matrix(as_quaternion(read(scan.motion.joint_turn, k)));
     }
+    /// Rotation of B in W.
     template <class Place>
     CATENA_HD Mat3At<Place> orientation(Place k) const {
         return to_matrix(as_quaternion(read(scan.motion.orientation, k)));
     }
+    /// Angular velocity of body k, B.
     template <class Place>
     CATENA_HD Vec3At<Place> omega(Place k) const {
         return read(scan.motion.omega, k);
     }
+    /// Handle 1 of body k from its centre of mass, B.
     template <class Place>
     CATENA_HD Vec3At<Place> r1(Place k) const {
         return read(joints().r1, k);
     }
+    /// Axes of the outboard joint of body k, B.
     template <class Place>
     CATENA_HD Mat3At<Place> axes2(Place k) const {
         return axes_of(scan.motion.axes2.origin ? read(scan.motion.axes2, k)
                                                 : read(fixed_axes2, k));
     }
+    /// Handle 2 of body k from its centre of mass, B.
     template <class Place>
     CATENA_HD Vec3At<Place> r2(Place k) const {
         return scan.motion.r2.origin ? read(scan.motion.r2, k) : read(fixed_r2, k);
     }
-    /// What drives joint k; null: nothing. Of several bodies none is driven.
+    /// Prescribed motion of joint k; null if it has none. Joints of several bodies side by side
+    /// have none.
     CATENA_HD LocalDrive const* drive_of(std::int64_t k) const {
         return joints().drives > 0 ? joints().drive_of(k) : nullptr;
     }
@@ -113,12 +140,14 @@ struct JointLoads {
 
     // Configuration.
 
+    /// Computes the relative motion of joint k, and its known load.
     template <bool positions, class Place>
     CATENA_HD void set_relative(Place k) const {
         scan.set_relative<positions>(k);
         if (given.joint_loads) set_joint_load(k);
     }
-    /// With the loads, but where these wait for forces from outside.
+    /// Computes the motion of body k and its loads. If it carries beads, the loads have to wait for
+    /// external forces on these; `keeps_forces` keeps the forces of before.
     template <bool positions, class Place>
     CATENA_HD void set_motion(Place k, bool keeps_forces) const {
         scan.set_motion<positions>(k);
@@ -133,7 +162,7 @@ struct JointLoads {
 
     // Loads.
 
-    /// Along the joint's free directions: given, spring and damper.
+    /// Sets the load of joint k along its free directions: given torque, spring and damper.
     template <class Place>
     CATENA_HD void set_joint_load(Place k) const {
         using Real = RealAt<Place>;
@@ -161,7 +190,7 @@ struct JointLoads {
             if (implicit.has(k)) return set_implicit(k, along);
         write(joint_load, k, load_along_axes(k, along));
     }
-    /// The same of a revolute joint that is neither driven nor implicit: about its axis.
+    /// Torque about the axis of a revolute joint that has no prescribed motion and is not implicit.
     CATENA_HD double torque_about_revolute(std::int64_t k) const {
         double along = given.torque.at(k, 0);
         if (given.springs)
@@ -170,14 +199,14 @@ struct JointLoads {
         if (given.dampers) along = along - given.damping.at(k, 0) * scan.state.qd.at(k, 0);
         return along;
     }
-    /// B along a joint's coordinate i.
+    /// Inertia B along coordinate i of joint k.
     CATENA_HD double implicit_inertia(std::int64_t k, int i) const {
         double const stiffness = given.springs ? given.stiffness.at(k, i) : 0,
                      damping = given.dampers ? given.damping.at(k, i) : 0;
         return fused(implicit.of_stiffness, stiffness, implicit.of_damping * damping);
     }
-    /// P of an implicit joint: what a unit rate of each coordinate is along the joint's axes.
-    /// Returns how many there are.
+    /// Columns of P of an implicit joint: motion along the joint's axes per unit rate of each
+    /// coordinate. Returns the number of coordinates.
     CATENA_HD int free_motions(std::int64_t k, Mat3& motions) const {
         Mat3 const axes = joints().axes(k);
         motions = Mat3::zero();
@@ -194,13 +223,15 @@ struct JointLoads {
                 return 1;
         }
     }
+    /// Sets compliance and acceleration of implicit joint k from the torque along its coordinates.
     CATENA_HD void set_implicit(std::int64_t k, Vec3 const& torque_along) const {
         Mat3 motions;
         int const count = free_motions(k, motions);
         Vec3 along = torque_along, b = Vec3::zero();
         for (int i = 0; i < count; ++i) b[i] = implicit_inertia(k, i);
-        if (count == 3 &&
-            given.springs) {  // their part of B is a rotor's, whose axes are the outboard body's
+        // The springs' part of B is the inertia of a rotor in the axes of the outboard body, which
+        // has a gyroscopic torque.
+        if (count == 3 && given.springs) {
             Vec3 const qd = scan.state.qd.load(k), stiffness = given.stiffness.load(k);
             Vec3 momentum;
             for (int i = 0; i < 3; ++i) momentum[i] = implicit.of_stiffness * stiffness[i] * qd[i];
@@ -222,8 +253,9 @@ struct JointLoads {
         implicit.yielding.store(k, yielding);
         joint_load.store(k, Vector<double, 4>::zero());
     }
-    /// On the outboard body, from the moments along the coordinates: torque along the joint's axes
-    /// (universal: within the plane of its axes) and force along the last one.
+    /// Load on the outboard body from the moments along the coordinates. Components 0-2 are the
+    /// torque along the joint's axes (in a universal joint it lies in the plane of its two axes).
+    /// Component 3 is the force along the last axis.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> load_along_axes(Place k, Vec3At<Place> const& along) const {
         using Real = RealAt<Place>;
@@ -250,7 +282,8 @@ struct JointLoads {
                 return {{none, none, s[0] / s[2] * along[0], s[1] / s[2] * along[0]}};
         }
     }
-    /// Adds what the joints at both ends of body k do along their free directions; B.
+    /// Adds the known loads of the joints at both ends of body k, along their free directions, to
+    /// its moment and force, B.
     template <class Place>
     CATENA_HD void add_joint_loads(Place k, Mat3At<Place> const& inboard_turn,
                                    Vec3At<Place>& moment, Vec3At<Place>& push) const {
@@ -273,7 +306,7 @@ struct JointLoads {
             moment = moment - cross(r2(k), f);
         }
     }
-    /// From outside the chain and from carried beads.
+    /// Wrench on body k from outside the chain and from carried beads, W.
     CATENA_HD Wrench wrench(std::int64_t k) const {
         Wrench w = beads ? beads.on_body(k, orientation(k)) : Wrench{Vec3::zero(), Vec3::zero()};
         if (given.wrenches)
@@ -284,22 +317,23 @@ struct JointLoads {
     CATENA_HD WrenchOf<RealAt<Place>> wrench(Place const& several) const {
         return {read(given.wrench_torque, several), read(given.wrench_force, several)};
     }
-    /// omega x J omega.
+    /// Gyroscopic torque omega x J omega, B.
     template <class Place>
     CATENA_HD Vec3At<Place> gyroscopic_torque(Place k) const {
         return cross(omega(k), as_symmetric(read(inertia, k)) * omega(k));
     }
 
-    /// The velocity-dependent part c of joint k's relative acceleration (src/dca/README.md, "Joint
-    /// bias"), with what a drive prescribes; M.
+    /// Velocity-dependent part c of joint k's relative acceleration, including prescribed
+    /// accelerations; M (src/dca/README.md, "Joint bias"). Returns the angular part and sets
+    /// `linear`.
     template <class Place>
     CATENA_HD Vec3At<Place> joint_velocity_term(Place k, Vec3At<Place>& linear) const {
         using Real = RealAt<Place>;
         using Vector3 = Vec3At<Place>;
         Vector3 const w = turn(k) * omega(k);
         auto const rate = joints().rate(scan.state, k);
-        Vector3 angular =
-            cross(w, rate.angular);  // the outboard body's w does as well as the inboard one's
+        // The inboard or the outboard body's angular velocity: both give the same product.
+        Vector3 angular = cross(w, rate.angular);
         linear = Real(2) * cross(w - rate.angular, rate.linear);
         bool const universal = joints().type(k) == JointType::universal;
         auto const axes = joints().axes(k);
@@ -321,6 +355,7 @@ struct JointLoads {
         return angular;
     }
 
+    /// Sets torque, force and bias of body k, unless they are left to the solver.
     template <class Place>
     CATENA_HD void set_loads(Place k) const {
         set_torque(k);
@@ -334,11 +369,13 @@ struct JointLoads {
     CATENA_HD void set_biases(Place k) const {
         if (!left.biases || !in_run.has(k)) set_bias(k, turn(k), joints().axes(k));
     }
+    /// Sets the total torque and force on body k, except joint constraint forces.
     template <class Place>
     CATENA_HD void set_wrench(Place k) const {
         using Vector3 = Vec3At<Place>;
         Vector3 const w = omega(k);
-        // In a plane the gyroscopic torque is across it, and large: only its rounding would count.
+        // The gyroscopic torque of a planar chain is perpendicular to its axis and has no effect on
+        // the motion. It may be large, so that its rounding would have one.
         Vector3 moment = joints().planar ? Vector3::zero() : -gyroscopic_torque(k),
                 push = Vector3::zero();
         if (given.joint_loads) add_joint_loads(k, turn(k), moment, push);
@@ -354,25 +391,29 @@ struct JointLoads {
             moment = plus_scaled(moment, -drag[1], w);
         }
         write(torque, k, moment);
-        if (joints().planar && has_forces) {  // nothing moves across the plane
+        // Motion across the plane is impossible.
+        if (joints().planar && has_forces) {
             Vector3 const axis = joints().axes(k).column(2);
             push = plus_scaled(push, -dot(axis, push), axis);
         }
         if (has_forces) write(force, k, push);
     }
+    /// Sets the bias of joint k along the directions of its handles.
     template <class Place>
     CATENA_HD void set_bias(Place k, Mat3At<Place> const& to_meeting,
                             Mat3At<Place> const& axes1) const {
         using Vector3 = Vec3At<Place>;
-        Vector3 linear = Vector3::zero(), angular = Vector3::zero();  // -c along the joint's axes
+        // Velocity terms -c along the joint's axes.
+        Vector3 linear = Vector3::zero(), angular = Vector3::zero();
         JointType const type = joints().type(k);
         bool const any_axis = type == JointType::spherical && !implicit.has(k);
         if (type != JointType::free && !any_axis && type != JointType::weld && !joints().planar) {
             angular = -transposed_times(axes1, joint_velocity_term(k, linear));
             linear = -transposed_times(axes1, linear);
         }
+        // The ground accelerates by -g.
         if constexpr (is_one_body<Place>)
-            if (joints().is_first[k] && type != JointType::free)  // ground accelerates by -g
+            if (joints().is_first[k] && type != JointType::free)
                 linear = linear +
                          transposed_times(
                              axes1, to_meeting * transposed_times(orientation(k), given.gravity));
@@ -383,18 +424,19 @@ struct JointLoads {
             if (implicit.has(k)) add_yielding(b, -implicit.yielding.load(k));
         store_first(bias, k, directions, b);
     }
+    /// Adds the acceleration of an implicit joint along its last three directions.
     CATENA_HD static void add_yielding(Vector<double, 6>& b, Vec3 const& yielding) {
         for (int i = 0; i < 3; ++i) b[3 + i] += yielding[i];
     }
 
     // Noise of a thermostat.
 
-    /// Loads whose answer is normal with the inverse of the chain's matrix, springs' and dampers'
-    /// part included, for covariance.
+    /// Sets random loads. The solver's response to them is normal, with the inverse of the chain's
+    /// mass matrix as covariance, including the parts of springs and dampers.
     CATENA_HD void set_noise(std::int64_t k, std::uint64_t body, std::uint64_t seed,
                              std::uint64_t step) const {
         Vec3 const turning = normal3(seed, step, body, NoiseStage::thermostat_angular);
-        Sym3 const factor = dca::factorize(as_symmetric(inertia.load(k)), 3);  // J = L S L^T
+        Sym3 const factor = dca::factorize(as_symmetric(inertia.load(k)), 3);  // J = L S L^T.
         Vec3 scaled, moment;
         for (int i = 0; i < 3; ++i) scaled[i] = turning[i] / std::sqrt(factor(i, i));
         for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// The local backward residual of forward dynamics in joint coordinates (src/dca/README.md,
+// Local backward residual of forward dynamics in joint coordinates (src/dca/README.md,
 // "Residuals").
 #include <algorithm>
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace catena {
 
-/// Forces on a body, and moments about its centre: applied, of the inboard joint, of the outboard
-/// joint; B.
+/// Forces on a body and moments about its centre of mass, B: applied, of the inboard joint, of the
+/// outboard joint.
 struct JointSolution::Terms {
     std::array<Vec3, 3> forces;
     std::array<Vec3, 5> moments;
-    double moment_sizes =
-        0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
+    /// Sum of |r| |f| over joint forces. The rounding of a moment is proportional to it, however
+    /// small the moment is.
+    double moment_sizes = 0;
 };
 
 namespace {
 
-/// |inertial - sum of terms| over the sum of their sizes and `more`, what cancelled within them or
-/// was taken out of them.
+/// |inertial - sum of terms| divided by the sum of their sizes and of `more`. `more` is the size of
+/// what cancelled within the terms or was subtracted from them.
 double balance(Vec3 const& inertial, std::span<Vec3 const> terms, double more) {
     Vec3 difference = inertial;
     double size = norm(inertial) + more;
@@ -41,6 +42,7 @@ Vec3 sum_of(std::span<Vec3 const> terms) {
     return sum;
 }
 
+/// Radius of gyration of body k.
 double radius_of(ChainGroup const& group, std::int64_t k) {
     return radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0));
 }
@@ -64,8 +66,8 @@ JointSolution::Terms JointSolution::terms(std::int64_t k) const {
 }
 
 /// Acceleration of a handle along its joint's axes (linear, angular), and the sizes of its terms
-/// (the same): what each force and moment on the body, and its turning, adds to it (chapter,
-/// eqs 2.1-2.2).
+/// (linear, angular). Terms are the contributions of each force and moment on the body and of its
+/// rotation (chapter, eqs 2.1-2.2).
 Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const {
     Terms const t = terms(k);
     Vec3 const w = omega.load(k), centripetal = cross(w, cross(w, r));
@@ -114,7 +116,7 @@ std::vector<Vector<double, 8>> JointSolution::handles_at_tips(
                              [&](std::int64_t k) { return handle(k, group.r1[k], axes1(k)); });
 }
 
-/// D^T (outboard - inboard) + bias; 0 along what is not restricted.
+/// D^T (outboard - inboard) + bias; 0 along directions that are not restricted.
 Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<double, 8> const& in,
                                          Vector<double, 6> const& bias, Screw<double> const& s,
                                          int restricted) {
@@ -130,8 +132,8 @@ Vec3 JointSolution::yielded(std::int64_t k) const {
     return as_symmetric(compliance.load(k)) * Vec3{{f[3], f[4], f[5]}};
 }
 
-/// |opening| over its terms. One spatial equation: angles count by the body's `size`, so that the
-/// measure does not depend on the unit of length.
+/// |opening| divided by the sizes of its terms. It is one spatial equation: angles are multiplied
+/// by the body's `size`, so that the measure does not depend on the unit of length.
 double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in,
                               ConstDirectionsView biases, std::int64_t at, Screw<double> const& s,
                               int restricted, double size, Vec3 const& yielded_by_it) const {
@@ -159,8 +161,8 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
     auto const of_body = [&](std::int64_t k) {
         double worst = 0;
         Terms const t = terms_solved_for(k);
-        // The accelerated ground has taken the weight out of the forces: where bodies fall freely,
-        // only its rounding is left.
+        // The acceleration of the ground replaces the weight of bodies. In free fall, therefore,
+        // only the rounding of the weight is left in the terms.
         double const mass = group.mass.view().at(k, 0), weight = mass * norm(given.gravity);
         worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
         worst = larger(worst, balance(inertial_moment(k), t.moments,

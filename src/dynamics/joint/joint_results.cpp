@@ -1,4 +1,5 @@
-// What a solution in joint coordinates says of bodies and joints, ground axes.
+// Accelerations and joint forces of a solution in joint coordinates, in ground axes, and its
+// potential energy.
 #include "dynamics/joint/joint_solution.hpp"
 #include "dynamics/joint/out_of_plane.hpp"
 
@@ -24,7 +25,7 @@ JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::i
     return {{{f[0], f[1], s.c * f[2] + s.s * f[5]}}, {{f[3], f[4], s.c * f[5] - s.s * f[2]}}};
 }
 
-/// By wrenches and carried beads; W.
+/// Force of external wrenches and carried beads on body k, W.
 Vec3 JointSolution::outside_force(std::int64_t k) const {
     Vec3 f = Vec3::zero();
     if (bead_force.origin)
@@ -51,7 +52,7 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
         Pair const found = along_axes(tip_force, tip.body, {tip.screw[0], tip.screw[1]});
         Mat3 const to_ground = orientation(tip.body) * axes2(tip.body);
         Vec3 const push = -(to_ground * found.force);
-        // Handles meet on G's origin, which slides.
+        // The handles coincide at the origin of G, which slides along the joint's axis.
         Vec3 const arm =
             orientation(tip.body) * (r2(tip.body) - group.r1[tip.body] - tip.joint.translation);
         Vec3 const moment = cross(arm, push) - to_ground * found.torque;
@@ -61,8 +62,9 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
     return r;
 }
 
-/// Force along the axis and torque across it, of planar chains. Where a tip is jointed the ground
-/// holds the chain across its plane twice: they stay 0.
+/// Adds the force along the axis and the torque across it, in planar chains. With a jointed tip,
+/// the ground holds the chain across its plane at both ends, so that these are not determined: they
+/// stay 0.
 void JointSolution::add_across_plane(Communicator const& communicator, BodyResults& r) const {
     std::vector<NeededWrench> needed;
     for (std::int64_t k = 0; k < group.size; ++k) {

@@ -1,4 +1,4 @@
-// What an evaluation in joint coordinates found, on the host.
+// Results of an evaluation in joint coordinates, on the host.
 #pragma once
 
 #include "dynamics/absolute_dynamics.hpp"
@@ -6,25 +6,31 @@
 
 namespace catena {
 
+/// Motion, loads and solution of a rank's bodies, with results and residuals computed from them. B
+/// axes unless stated otherwise.
 struct JointSolution {
     ChainGroup const& group;
     BodyLoads const& given;
-    ConstView<4> joint_turn, turn;            // MotionView::joint_turn, orientation
-    ConstView<3> omega, velocity, moving_r2;  // MotionView
+    /// Quaternions MotionView::joint_turn and MotionView::orientation.
+    ConstView<4> joint_turn, turn;
+    /// Fields of MotionView.
+    ConstView<3> omega, velocity, moving_r2;
     ConstView<6> moving_axes2;
-    ConstView<3> torque, force, alpha, acceleration;  // force: absent where no body has any
-    ConstView<3> bead_force;                          // on carried beads
+    /// Fields of JointLoads. `force` has no origin if no body has a force.
+    ConstView<3> torque, force, alpha, acceleration;
+    /// Forces on carried beads, W.
+    ConstView<3> bead_force;
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
-    ConstView<6> compliance;  // ConfigurationView::compliance
+    ConstView<6> compliance;  // Compliance of implicit joints (ConfigurationView::compliance).
 
-    /// Collective.
+    /// Accelerations and joint forces for output, W. Collective.
     BodyResults results(Communicator const&) const;
-    /// Largest local backward residual: Newton-Euler of every body and the closing of every joint,
-    /// each relative to the sizes of its own terms (src/dca/README.md, "Residuals"). Over all
-    /// ranks; collective.
+    /// Largest local backward residual over all ranks: Newton-Euler equations of every body and
+    /// closing of every joint, each relative to the sizes of its own terms (src/dca/README.md,
+    /// "Residuals"). Collective.
     double residual(Communicator const&, Executor const&) const;
-    /// By how much the equations of bodies and joints fail, as loads for the solver: what it
-    /// answers to them is missing in the solution. Collective.
+    /// Residuals of the equations of bodies and joints, as loads for the solver. The solver's
+    /// response to them is minus the error of the solution. Collective.
     struct Defect {
         Field<3> torque, force;
         DirectionsField bias, tip_bias;
@@ -32,56 +38,71 @@ struct JointSolution {
     Defect defect(Communicator const&, Executor const&) const;
 
   private:
+    /// Adds the constraint forces across the plane of planar chains. Collective.
     void add_across_plane(Communicator const&, BodyResults&) const;
     Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(turn.load(k))); }
+    /// Axes of the outboard joint, B.
     Mat3 axes2(std::int64_t k) const {
         return axes_of(group.moving_meeting() ? moving_axes2.load(k) : group.axes2[k]);
     }
     Vec3 r2(std::int64_t k) const {
         return group.moving_meeting() ? moving_r2.load(k) : group.r2[k];
     }
-    /// The inboard joint's, in the body.
+    /// Axes of the inboard joint, B.
     Mat3 axes1(std::int64_t k) const {
         return transposed_times(to_matrix(as_quaternion(joint_turn.load(k))),
                                 axes_of(group.axes1[k]));
     }
+    /// Screw of the inboard joint of body k.
     Screw<double> screw(std::int64_t k) const;
+    /// Screw of the outboard joint or the tip's joint of body k.
     Screw<double> outboard_screw(std::int64_t k) const;
     Vec3 gyroscopic_torque(std::int64_t k) const {
         return cross(omega.load(k), as_symmetric(group.inertia[k]) * omega.load(k));
     }
+    /// External force on body k, W.
     Vec3 outside_force(std::int64_t k) const;
+    /// Forces and moments on one body, by origin.
     struct Terms;
     struct Pair {
         Vec3 force, torque;
     };
-    /// Along a joint's axes.
+    /// Force and torque along a joint's axes, from the components along its directions.
     Pair along_axes(ConstDirectionsView forces, std::int64_t at, Screw<double> const&) const;
+    /// Constraint force of the outboard joint of body k, along that joint's axes.
     Pair outboard_pair(std::int64_t k) const;
+    /// Terms of the Newton-Euler equations of body k.
     Terms terms(std::int64_t k) const;
-    /// Planar: about the axis alone, the other moments are not solved for.
+    /// Variant of terms() for the equations that are solved: in planar chains only moments about
+    /// the axis are.
     Terms terms_solved_for(std::int64_t k) const;
+    /// Moment J alpha of body k, about the axis in planar chains.
     Vec3 inertial_moment(std::int64_t k) const;
+    /// Acceleration of the handle at r, and the sizes of its terms.
     Vector<double, 8> handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const;
-    /// Handle 2 of the last body on the rank before.
+    /// Value of handle() at handle 2 of the last body on the inboard neighbour's rank. Collective.
     Vector<double, 8> handle_before_first(Communicator const&) const;
-    /// Handle 2 of the body that body k hangs on.
+    /// Value of handle() at handle 2 of the body inboard of body k.
     Vector<double, 8> handle_before(std::int64_t k, Vector<double, 8> const& before_first) const;
-    /// What each of the group's tips is joined to: the ground's handle, or handle 1 of a ring's
-    /// first body. Collective.
+    /// For each of the group's tips, handle() of what it is joined to: the ground, or handle 1 of a
+    /// ring's first body. Collective.
     std::vector<Vector<double, 8>> handles_at_tips(Communicator const&) const;
-    /// What an implicit joint yields to its force along its last three directions; 0 of others.
+    /// Relative acceleration of an implicit joint that its constraint force causes through its
+    /// compliance, along the last three directions; 0 for other joints.
     Vec3 yielded(std::int64_t k) const;
+    /// Relative acceleration of two handles along the restricted directions, plus the bias; 0 for a
+    /// perfect solution.
     static Vector<double, 6> opening(Vector<double, 8> const& outboard,
                                      Vector<double, 8> const& inboard,
                                      Vector<double, 6> const& bias, Screw<double> const&,
                                      int restricted);
+    /// Relative residual of a joint's closing.
     double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard,
                    ConstDirectionsView biases, std::int64_t at, Screw<double> const&,
                    int restricted, double size, Vec3 const& yielded) const;
 };
 
-/// Of bodies at `motion`, positions included.
+/// Potential energy of bodies at `motion`, which must include positions.
 PotentialEnergy potential_of(ChainGroup const&, BodyLoads const&, Field<4> const& q,
                              BodyMotion const& motion);
 

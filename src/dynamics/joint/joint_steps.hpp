@@ -1,23 +1,27 @@
-// What steps and corrections do to the coordinates of one body, for every Space. A body on a free
-// base takes the base along.
+// Integration steps and corrections of the coordinates of one body, in any Space. A body on a free
+// base updates its base as well.
 #pragma once
 
 #include "dynamics/joint/joint_chains.hpp"
 
 namespace catena {
 
-/// One of the four: the sum grows by `weight` times the rates, the state goes to the start plus
-/// `next` times the rates, or at the end to the sum.
+/// One of the four stages: the sum grows by `weight` times the rates. The state becomes the start
+/// plus `next` times the rates, or in the last stage the sum.
 struct RungeKuttaStage {
     bool first = false, last = false;
-    double weight = 0, next = 0, time = 0;  // time: of the state that comes out
+    /// Weights in ps, and the time of the resulting state.
+    double weight = 0, next = 0, time = 0;
 };
 
+/// State arrays of a step, with the operations on one body.
 struct JointSteps {
     JointChains chains;
     StateView start, sum;
-    RatesView carried;  // accelerations that an integrator carries from step to step
+    /// Accelerations that an integrator carries from step to step.
+    RatesView carried;
 
+    /// Time derivative of a unit quaternion q at angular velocity omega (body axes).
     template <class Real>
     CATENA_HD static Vector<Real, 4> rate_of_quaternion(Quaternion<Real> const& q,
                                                         Vector<Real, 3> const& omega) {
@@ -26,6 +30,7 @@ struct JointSteps {
         return {{half * r.w, half * r.x, half * r.y, half * r.z}};
     }
 
+    /// Stage of a Runge-Kutta step for body k.
     template <bool positions, class Place>
     CATENA_HD void runge_kutta(Place k, RungeKuttaStage const& s) const {
         using Real = RealAt<Place>;
@@ -61,6 +66,7 @@ struct JointSteps {
         }
         if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
+    /// Stage of a Runge-Kutta step for the free base of a piece.
     CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration,
                                     RungeKuttaStage const& s) const {
         StateView const& state = chains.scan.state;
@@ -85,7 +91,8 @@ struct JointSteps {
         }
     }
 
-    /// Positions by h, velocities to the first guess at `time`.
+    /// First half of a Verlet step: coordinates after h, and a first guess of velocities.
+    /// Prescribed motions are set to `time`.
     template <bool positions>
     CATENA_HD void verlet_move(std::int64_t k, double h, double time) const {
         StateView const& state = chains.scan.state;
@@ -104,10 +111,11 @@ struct JointSteps {
         chains.joints().follow_course(state, k, time);
         if (!chains.left.motions) chains.set_relative<positions>(k);
     }
-    /// Velocities from the mean of the accelerations before and after the move.
+    /// Second half of a Verlet step: velocities from the mean of the accelerations before and after
+    /// the move.
     CATENA_HD void verlet_finish(std::int64_t k, double h) const {
         StateView const& state = chains.scan.state;
-        Vec3 const qdd = chains.rate(k);  // with the guess of qd
+        Vec3 const qdd = chains.rate(k);  // Computed with the guess of qd.
         state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, carried.qdd.load(k)),
                                       0.5 * h, qdd));
         carried.qdd.store(k, qdd);
@@ -122,7 +130,8 @@ struct JointSteps {
         chains.joints().follow_course(state, k, chains.time);
     }
 
-    /// Positions by h of the velocities, which are kept, to those at `time`.
+    /// Drift: advances coordinates by h at the current velocities, which are kept. Prescribed
+    /// motions are set to `time`.
     template <bool positions>
     CATENA_HD void drift(std::int64_t k, double h, double time) const {
         StateView const& state = chains.scan.state;
@@ -138,8 +147,8 @@ struct JointSteps {
         chains.joints().follow_course(state, k, time);
         chains.set_relative<positions>(k);
     }
-    /// Velocities from those kept by h of the rates found last, or from those of now by h of the
-    /// carried ones.
+    /// Kick: the velocities kept by drift() plus h times the last solved rates; or, if
+    /// `by_carried`, the current velocities plus h times the carried rates.
     CATENA_HD void kick(std::int64_t k, double h, bool by_carried) const {
         StateView const& state = chains.scan.state;
         StateView const& from = by_carried ? state : start;
@@ -152,8 +161,8 @@ struct JointSteps {
         }
         chains.joints().follow_course(state, k, chains.time);
     }
-    /// Velocities between those of before and the answer to noise, which `chains` must have without
-    /// velocities and gravity.
+    /// Thermostat: mixes velocities with the solver's response to random loads. `chains` must have
+    /// zero velocities and gravity, while `state` is the real state.
     CATENA_HD void mix(std::int64_t k, StateView const& state, double keep, double spread) const {
         JointsView const& joints = chains.joints();
         if (!(joints.drives > 0 && joints.drive_of(k)))
@@ -164,8 +173,8 @@ struct JointSteps {
             p, plus_scaled(keep * state.base_velocity.load(p), spread, chains.base_rate(k)));
     }
 
-    /// Coordinates of a correction that closes tips; those of accelerations without velocities and
-    /// gravity, which `chains` must not have.
+    /// Correction that closes tips: adds the solver's response to the coordinates or, if
+    /// `velocities`, to the velocities. `chains` must have zero velocities and gravity.
     CATENA_HD void correct(std::int64_t k, StateView const& state, bool velocities) const {
         JointsView const& joints = chains.joints();
         Vec3 const by = joints.drives > 0 && joints.drive_of(k) ? Vec3::zero() : chains.rate(k);
@@ -178,7 +187,8 @@ struct JointSteps {
         View<3> const& base = velocities ? state.base_velocity : state.base_position;
         base.store(p, base.load(p) + chains.base_rate(k));
     }
-    /// `alone`: what is no coordinate becomes 0.
+    /// Adds an increment to the coordinates of body k. `alone`: components of q that are no
+    /// coordinates become 0.
     CATENA_HD void turn_by(std::int64_t k, Vec3 const& by, bool alone) const {
         View<4> const& to = chains.scan.state.q;
         Vector<double, 4> const q = to.load(k);
@@ -188,7 +198,7 @@ struct JointSteps {
             to.store(k, Vector<double, 4>{
                             {q[0] + by[0], q[1] + by[1], alone ? 0.0 : q[2], alone ? 0.0 : q[3]}});
     }
-    /// 0, or NaN where the state of body k is not finite.
+    /// Returns 0, or NaN if the state of body k is not finite.
     CATENA_HD double trouble(std::int64_t k) const {
         StateView const& state = chains.scan.state;
         return 0.0 *

@@ -1,3 +1,4 @@
+// Collects the jointed tips of a rank and the characteristic length.
 #include "dynamics/joint/jointed_tips.hpp"
 
 #include <algorithm>
@@ -8,6 +9,7 @@ namespace catena {
 
 namespace {
 
+/// Properties of a tip that do not depend on which of its bodies are on this rank.
 JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vec3 const& screw, int restricted) {
     JointedTip tip;
     tip.ring = joint.ring;
@@ -24,10 +26,10 @@ JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vec3 const& screw, in
     return tip;
 }
 
-/// Where the start puts G in the ground.
+/// Motion of G in the ground, as the scene's start fixes it.
 Motion ground_of(TipJoint const& joint, Quat const& orientation, Vec3 const& origin) {
     scene::Pose const motion = scene::joint_motion(joint.type, joint.axis, joint.first_axis,
-                                                   joint.pitch, joint.q);  // of G in J
+                                                   joint.pitch, joint.q);  // Motion of G in J.
     return {orientation * to_quaternion(joint.rotation) * normalized(motion.orientation),
             Vec3::zero(),
             origin + to_matrix(orientation) * (joint.translation + joint.rotation * motion.origin),

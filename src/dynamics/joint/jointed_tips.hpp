@@ -1,6 +1,8 @@
-// The joints between last bodies and the ground, or in rings the first bodies, for chains in joint
-// coordinates: where they are, what their velocities add, and how far they have come open. Host and
-// device.
+// Joints between last bodies and the ground or, in rings, the first bodies, for chains in joint
+// coordinates: geometry, velocity terms, and openings by drift. On host and device.
+//
+// J is the joint frame, fixed in the last body. G is the frame on the other side of the joint:
+// fixed in the ground, or a ring's first body.
 #pragma once
 
 #include <cmath>
@@ -11,32 +13,38 @@
 
 namespace catena {
 
+/// A jointed tip with at least one of its two bodies on this rank.
 struct JointedTip {
-    std::int64_t body = -1;  // the last body, local; -1: on another rank
+    std::int64_t body = -1;  // Last body, local; -1 if it is on another rank.
     bool ring = false;
-    std::int64_t first = -1;  // of a ring: its first body, as `body`
-    int neighbour = -1;       // of a ring: the rank that has its other end
+    std::int64_t first = -1;  // First body of a ring, local; -1 if it is on another rank.
+    /// Rank that holds the other end of a ring; -1 if this rank does.
+    int neighbour = -1;
     JointType type = JointType::spherical;
     Vec3 axis, first_axis;
-    Mat3 rotation;     // of J in the last body
-    Vec3 translation;  // of J's origin from the last body's, B
-    Mat3 axes;         // the joint's in the meeting frame, as ChainGroup::axes1
+    Mat3 rotation;  // Rotation of J in the last body.
+    /// Origin of J from the last body's origin, B.
+    Vec3 translation;
+    Mat3 axes;  // Axes of the joint in the meeting frame, as ChainGroup::axes1.
     Screw<double> screw;
+    /// Number of restricted directions.
     int restricted = 0;
-    bool pitched = false;            // it slides as it turns
-    Motion ground = Motion::none();  // of G, at rest
-    Vec3 com;                        // of the last body from its origin, B
-    double cosine = 0;               // universal: of the angle between its axes
+    /// Helical with a nonzero pitch: it slides as it rotates.
+    bool pitched = false;
+    Motion ground = Motion::none();  // Motion of G on the ground, at rest.
+    Vec3 com;                        // Centre of mass of the last body from its origin, B.
+    /// Cosine of the angle between the axes of a universal joint.
+    double cosine = 0;
 };
-/// Those that join a body of this rank: behind the last bodies' own (ChainGroup::tips) those of
-/// rings that only begin here. `start`: motion at the scene's start, positions included, which
-/// decides where the ground's frames are.
+/// Jointed tips of this rank's bodies: those of last bodies, in the order of ChainGroup::tips, then
+/// those of rings that only begin here. `start` is the motion at the scene's start, positions
+/// included, which fixes the frames G on the ground.
 std::vector<JointedTip> jointed_tips(ChainGroup const&, Scene const&, BodyMotion& start);
-/// A length that openings are measured by: the longest chain's from joint to joint and a body's
-/// size. The same on every rank.
+/// Characteristic length that openings are divided by: contour length of the longest chain plus the
+/// size of a body, nm. Returns the same value on every rank.
 double reach_of(ChainGroup const&, Scene const&);
 
-/// Stores the first `directions` numbers of body k.
+/// Stores the first `directions` of the six numbers for body k.
 template <class Place>
 CATENA_HD void store_first(DirectionsView view, Place k, int directions,
                            Vector<RealAt<Place>, 6> const& v) {
@@ -55,13 +63,14 @@ CATENA_HD void store_first(DirectionsView view, Place k, int directions,
     }
 }
 
-/// The same, loaded; 0 beyond them.
+/// Extends a vector to six numbers by zeros.
 template <int K>
 CATENA_HD Vector<double, 6> with_zeros(Vector<double, K> const& v) {
     Vector<double, 6> all = Vector<double, 6>::zero();
     for (int i = 0; i < K; ++i) all[i] = v[i];
     return all;
 }
+/// Loads `directions` numbers of body k and extends them by zeros.
 CATENA_HD Vector<double, 6> load_first(ConstDirectionsView view, std::int64_t k, int directions) {
     switch (directions) {
         case 2:
@@ -77,40 +86,44 @@ CATENA_HD Vector<double, 6> load_first(ConstDirectionsView view, std::int64_t k,
     }
 }
 
+/// Tips of a rank and the motions of their two sides, with the operations on one tip.
 struct JointedTips {
     JointedTip const* tip = nullptr;
     double reach = 1;
     int directions = 6;
     MotionView motion;
-    View<13> last, other;  // by tip: how the last body moves, and what it is joined to
+    /// Motions of the last body and of what it is joined to, indexed by tip.
+    View<13> last, other;
 
-    /// Where the joint meets the last body.
+    /// Side of the joint on the last body.
     struct Place {
-        Vec3 point;  // from the centre of mass, B
-        Mat3 axes;   // B
+        Vec3 point;  // Meeting point from the centre of mass, B.
+        Mat3 axes;   // Axes of the joint, B.
     };
-    /// Angular and linear parts along a place's axes.
+    /// Angular and linear part of a motion along the axes of a Place.
     struct Pair {
         Vec3 angular, linear;
     };
 
-    /// Of the bodies that are here.
+    /// Copies the motions of those ends that are on this rank.
     CATENA_HD void take_ends(std::int64_t i) const {
         JointedTip const& t = tip[i];
         if (t.body >= 0) last.store(i, as_numbers(motion_of(t.body)));
         if (t.first >= 0) other.store(i, as_numbers(motion_of(t.first)));
     }
+    /// Motion of body k relative to the ground.
     CATENA_HD Motion motion_of(std::int64_t k) const {
         return {as_quaternion(motion.orientation.load(k)), motion.omega.load(k),
                 motion.origin.load(k), motion.velocity.load(k)};
     }
+    /// Motions of the two sides: the last body, and G.
     struct Ends {
         Motion last, other;
-        /// Components in the last body's axes of a vector in the other's.
+        /// Components in the last body's axes of a vector given in G's axes.
         CATENA_HD Vec3 to_last(Vec3 const& v) const {
             return to_matrix(conjugate(last.rotation) * other.rotation) * v;
         }
-        /// Of G's origin from the last body's.
+        /// Origin of G from the last body's origin, in the last body's axes.
         CATENA_HD Vec3 apart() const {
             return transposed_times(to_matrix(last.rotation), other.translation - last.translation);
         }
@@ -119,6 +132,7 @@ struct JointedTips {
         return {as_motion(last.load(i)), as_motion(other.load(i))};
     }
 
+    /// Meeting point and axes of the joint in the last body, at the current motion.
     CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
         Place m{t.translation - t.com, t.rotation * t.axes};
         if (slides(t.type)) m.point = e.apart() - t.com;
@@ -131,8 +145,8 @@ struct JointedTips {
         }
         return m;
     }
-    /// Handle 2 of the last body, where meetings move (MotionView::r2, axes2), and how a ring's
-    /// first body stands in the meeting frame, which are the joint's axes.
+    /// Sets handle 2 of the last body if meeting frames move (MotionView::r2, axes2). In a ring,
+    /// also sets the rotation of the first body in the meeting frame, whose axes are the joint's.
     CATENA_HD void set_meeting(std::int64_t i) const {
         JointedTip const& t = tip[i];
         Ends const e = ends(i);
@@ -146,25 +160,26 @@ struct JointedTips {
         motion.axes2.store(t.body, kept_axes(m.axes));
     }
 
-    /// Of G against the last body's point that it meets, on their way apart, along the place's
-    /// axes.
+    /// Velocity of G relative to the meeting point of the last body, along the axes of the Place.
     CATENA_HD Pair opening_rate(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = e.last.omega, v = e.last.velocity + cross(w, t.com + m.point);
         return {transposed_times(m.axes, e.to_last(e.other.omega) - w),
                 transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
+    /// True if the joint has one axis, fixed in both bodies: revolute, prismatic, helical.
     CATENA_HD static bool turns_about_axis(JointType type) {
         return type == JointType::revolute || slides(type);
     }
-    /// c of the joint (src/dca/README.md, "Joint bias") with the rates that the bodies' motion
-    /// gives it.
+    /// Velocity-dependent part c of the joint's relative acceleration (src/dca/README.md, "Joint
+    /// bias"), with the rates that follow from the bodies' motion.
     CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
         if (t.type != JointType::universal && !turns_about_axis(t.type))
             return {Vec3::zero(), Vec3::zero()};
         Pair const rate = opening_rate(t, e, m);
         if (t.type == JointType::universal) {
-            Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);  // (0, y, z)
+            // First axis: (0, y, z).
+            Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);
             Vec3 const u{{0, rate.angular[1], rate.angular[2]}};
             double const u1 = u[1] / first[1], u2 = u[2] - first[2] * u1;
             return {cross(w, u) + (u1 * u2) * cross(first, Vec3{{0, 0, 1}}), Vec3::zero()};
@@ -173,12 +188,14 @@ struct JointedTips {
         double const along = c * rate.angular[2] + (s == 0 ? 0.0 : s * rate.linear[2]);
         return {cross(w, Vec3{{0, 0, c * along}}), 2.0 * cross(w, Vec3{{0, 0, s * along}})};
     }
-    /// Of G against J.
+    /// Displacement of G relative to J, along the axes of the Place: the joint's closing error
+    /// along its restricted directions.
     CATENA_HD Pair opening(JointedTip const& t, Ends const& e, Place const& m) const {
         double constexpr turn = 6.283185307179586476925;
         Pair open{Vec3::zero(), transposed_times(m.axes, e.apart() - t.translation)};
+        // Rotation of G in J.
         Quat const relative =
-            conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;  // G in J
+            conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;
         if (t.type == JointType::weld) open.angular = rotation_vector(relative);
         if (t.type == JointType::universal) {
             Vec3 const second = to_matrix(relative) * t.axis;
@@ -188,7 +205,8 @@ struct JointedTips {
         if (turns_about_axis(t.type)) {
             open.angular = transposed_times(t.axes, cross(t.axis, to_matrix(relative) * t.axis));
             double turned = dot(rotation_vector(relative), t.axis);
-            if (t.pitched) {  // whole turns as the slide says
+            // The number of whole revolutions follows from the sliding.
+            if (t.pitched) {
                 double const asked = open.linear[2] * t.screw.c / t.screw.s;
                 turned += turn * std::round((asked - turned) / turn);
             }
@@ -196,14 +214,14 @@ struct JointedTips {
         }
         return open;
     }
-    /// Along the directions of the joint's handles, in their order.
+    /// Components along the directions of the joint's handles, in their order.
     CATENA_HD static Vector<double, 6> along_directions(JointedTip const& t, Pair const& pair) {
         double const c = t.screw.c, s = t.screw.s;
         return {{pair.linear[0], pair.linear[1], c * pair.linear[2] - s * pair.angular[2],
                  pair.angular[0], pair.angular[1], s * pair.linear[2] + c * pair.angular[2]}};
     }
-    /// LoadsView::tip_bias for the accelerations: velocity terms, and gravity as the ground's
-    /// acceleration.
+    /// Sets LoadsView::tip_bias for accelerations: velocity terms, and gravity as an acceleration
+    /// of the ground.
     CATENA_HD void set_acceleration_bias(std::int64_t i, Vec3 const& gravity,
                                          DirectionsView out) const {
         JointedTip const& t = tip[i];
@@ -217,8 +235,8 @@ struct JointedTips {
                 transposed_times(m.axes, transposed_times(to_matrix(e.last.rotation), gravity));
         store_first(out, t.body, directions, along_directions(t, {-terms.angular, -terms.linear}));
     }
-    /// The same for corrections: how far the joint is open, or how fast it comes open, along its
-    /// directions.
+    /// Sets LoadsView::tip_bias for a correction: the opening along the joint's directions or, if
+    /// `velocities`, its rate.
     CATENA_HD void set_opening(std::int64_t i, bool velocities, DirectionsView out) const {
         JointedTip const& t = tip[i];
         if (t.body < 0) return;
@@ -227,10 +245,12 @@ struct JointedTips {
         store_first(out, t.body, directions,
                     along_directions(t, velocities ? opening_rate(t, e, m) : opening(t, e, m)));
     }
+    /// Sets LoadsView::tip_bias to zero.
     CATENA_HD void set_no_bias(std::int64_t i, DirectionsView out) const {
         if (tip[i].body >= 0) store_first(out, tip[i].body, directions, Vector<double, 6>::zero());
     }
-    /// Largest opening over the reach (angles count by it already).
+    /// Largest opening along a restricted direction; lengths are divided by the reach, angles are
+    /// in rad.
     CATENA_HD double error(std::int64_t i) const {
         JointedTip const& t = tip[i];
         if (t.body < 0) return 0;

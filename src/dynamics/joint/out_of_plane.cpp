@@ -1,9 +1,11 @@
+// Sums of wrenches from the tip inward, in the order of the canonical tree, so that results do not
+// depend on the number of ranks.
 #include "dynamics/joint/out_of_plane.hpp"
 
 namespace catena {
 namespace {
 
-/// Of a stretch of bodies: `inboard` then `outboard`.
+/// Sum over two consecutive stretches of bodies, about the inboard joint of the first.
 NeededWrench join(NeededWrench const& inboard, NeededWrench const& outboard) {
     return {inboard.force + outboard.force,
             inboard.torque + outboard.torque + cross(inboard.to_next, outboard.force),
@@ -12,7 +14,7 @@ NeededWrench join(NeededWrench const& inboard, NeededWrench const& outboard) {
 
 NeededWrench const nothing{Vec3::zero(), Vec3::zero(), Vec3::zero()};
 
-/// What lies beyond each local unit, up to the tip.
+/// Sum over all bodies outboard of each local unit, up to the tip.
 std::vector<NeededWrench> beyond(ChainGroup const& group, Communicator const& communicator,
                                  std::vector<LocalUnit> const& units,
                                  std::vector<NeededWrench> const& own) {

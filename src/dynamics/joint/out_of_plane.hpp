@@ -1,6 +1,6 @@
-// What the joints of a planar chain carry across its plane: its two-direction handles leave that
-// out, and nothing in the motion depends on it. On request it follows from the accelerations, body
-// after body from the tip.
+// Forces that the joints of a planar chain carry across its plane. Its two-direction handles omit
+// them, and the motion does not depend on them. On request they are computed from the
+// accelerations, body by body from the tip inward.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,15 @@
 
 namespace catena {
 
-/// What a body needs of all its joints together, and where the next joint is; ground axes.
+/// Sum of the joint wrenches that a body needs, and the position of the next joint, W.
 struct NeededWrench {
-    Vec3 force, torque;  // torque about the body's inboard joint
-    Vec3 to_next;        // from its inboard to its outboard joint
+    Vec3 force, torque;  // The torque is about the body's inboard joint.
+    Vec3 to_next;        // Vector from the inboard to the outboard joint.
 };
 
-/// The wrench of every joint on its outboard body, about the joint, ground axes: sums of `needed`
-/// from the tip on, unit by unit of the canonical tree, as if every tip were free. Collective.
+/// Wrench {force, torque} of every joint on its outboard body, about the joint, W. It sums `needed`
+/// from the tip inward, unit by unit of the canonical tree, with every tip taken as free.
+/// Collective.
 std::vector<std::pair<Vec3, Vec3>> sums_from_tip(ChainGroup const&, Communicator const&,
                                                  std::vector<NeededWrench> const& needed);
 

@@ -1,29 +1,35 @@
-// The scan over runs on revolute joints whose solver goes_by_revolutes(): of motions within runs
-// nothing is kept, and runs' first bodies come to move when what lies before them is known. In any
-// Space; of runs side by side: JointLanes.
+// Scan over runs on revolute joints for solvers that release revolute joints from articulated-body
+// inertias (ChainSolver::goes_by_revolutes()). Motions within runs are not stored. The motion of a
+// run's first body is computed once that of the body before it is known. In any Space; JointLanes
+// has the counterpart with runs side by side.
 #pragma once
 
 #include "dynamics/joint/joint_loads.hpp"
 
 namespace catena {
 
-/// As a space's scans want it (HostSpace::ScanTree). Precondition: joints but those of chains'
-/// first bodies are revolute joints, none is driven.
+/// Interface of the scan for a Space's tree passes (HostSpace::ScanTree). Precondition: all joints
+/// except those of chains' first bodies are revolute, and none has prescribed motion.
 struct RevoluteScan {
     using Value = MotionNumbers<false>;
-    /// Of a body against the one before it, with what going on by it takes.
+    /// Motion of a body relative to the one before it, with the matrix that composition needs.
     struct Step {
         Quat rotation;
         Vec3 omega;
         Mat3 axes;
     };
     JointLoads loads;
-    bool joint_by_joint = false;  // set_relative() of every body came before
-    bool all_turns = false;  // are asked for, not those of runs' first bodies and last two alone
+    /// set_relative() has already been called for every body.
+    bool joint_by_joint = false;
+    /// Rotations of all joints are requested, not only those of a run's first body and last two
+    /// bodies.
+    bool all_turns = false;
 
-    /// With the turns and torques of its revolute joints, where these are not known.
+    /// Composes the motions along a run. Unless they are known, it also stores the rotations and
+    /// torques of the joints.
     CATENA_HD Value of_run(dca::Run const& run) const {
-        constexpr int few = 4;  // bodies at a time, so that their loads are under way together
+        // Bodies loaded at a time, so that their loads overlap.
+        constexpr int few = 4;
         int const count = static_cast<int>(run.count);
         Motion m = of_body<true>(run, 0);
         int i = 1;
@@ -37,7 +43,8 @@ struct RevoluteScan {
         for (; i < count; ++i) m = compose<false>(m, of_body<false>(run, i));
         return ended(m.rotation, m.omega);
     }
-    // The same body by body: from step() of the first one go_on() by those of the others, and ended().
+    // Alternative to of_run() body by body: start from step() of the first body, apply go_on() with
+    // step() of each following body, then ended().
     CATENA_HD Step step(dca::Run const& run, int i) const {
         Motion const m = of_body<true>(run, i);
         return {m.rotation, m.omega, to_matrix(m.rotation)};
@@ -56,32 +63,35 @@ struct RevoluteScan {
     CATENA_HD void set_before(std::int64_t slot, Value const& value) const { motions().set_before(slot, value); }
     CATENA_HD MotionScan<false> motions() const { return {loads.scan}; }
 
-    /// When the scan is through: of its first body, all that the solver does not know, and of a body by itself what acts on it.
+    /// Computes, after the scan, the motion of a run's first body and those of its loads that the
+    /// solver does not know. For a run of one body it also computes the torque.
     CATENA_HD void begin(dca::Run const& run) const {
         loads.scan.set_motion<false>(run.body);
         if (run.count == 1) loads.set_torque(run.body);
         loads.set_biases(run.body);
     }
 
-    /// Whether begin() may come before the scan is through: before a chain is the ground. A run of one body ends its chain, so that none
-    /// waits for what another rank has.
+    /// True if begin() need not wait for the end of the scan, because the ground is before the run.
+    /// A run of one body ends its chain, so that none waits for another rank's data.
     CATENA_HD bool begins_at_ground(dca::Run const& run) const { return loads.scan.joints.starts_chain(run.body); }
 
   private:
-    /// As JointLoads::set_relative, of what the solver asks for. `may_begin`: else it is not the run's first.
+    /// Motion and load of joint i of the run, limited to what the solver needs (compare
+    /// JointLoads::set_relative). `may_begin`: body i may be the first of the run.
     template <bool may_begin>
     CATENA_HD Motion of_body(dca::Run const& run, int i) const {
         JointScan const& s = loads.scan;
         std::int64_t const k = run.body + i;
         if (joint_by_joint) return s.load<false>(k);
-        // All reads come first: a GPU waits for them together.
+        // All loads come first, so that a GPU waits for them together.
         bool const is_revolute = !may_begin || i > 0 || s.joints.joint[k] == JointType::revolute;
         Vec3 const axis = s.joints.axis(k);
         double const angle = s.state.q.at(k, 0), rate = s.state.qd.at(k, 0);
         Quat const frame = as_quaternion(read(s.joints.joint_rotation, k));
         double const torque = loads.given.joint_loads ? loads.torque_about_revolute(k) : 0.0;
+        // The first body of a chain may have any joint.
         if constexpr (may_begin)
-            if (!is_revolute) {  // but whatever begins a chain
+            if (!is_revolute) {
                 loads.set_relative<false>(k);
                 return s.load<false>(k);
             }

@@ -1,3 +1,4 @@
+// Loops of bodies in joint coordinates, compiled for AVX2.
 #include "dca/simd/avx2.hpp"
 
 #include "dynamics/joint/simd/loops.hpp"

@@ -1,3 +1,4 @@
+// Loops of bodies in joint coordinates, compiled for AVX-512.
 #include "dca/simd/avx512.hpp"
 
 #include "dynamics/joint/simd/loops.hpp"

@@ -1,4 +1,5 @@
-// Loops of JointLoops over vectors of `Real`.
+// Implementation of JointLoops for vectors of type `Real`. Each source of this folder compiles it
+// for one instruction set.
 #pragma once
 
 #include "dca/simd/abreast.hpp"
@@ -8,8 +9,8 @@
 
 namespace catena {
 
-/// JointScan::follow of runs side by side, one a lane: the same operations on each in the same
-/// order.
+/// JointScan::follow for runs side by side, one per lane. Each lane performs the same operations in
+/// the same order as the scalar code.
 template <class Real, bool positions>
 class FollowRuns {
     static constexpr int lanes = Real::lanes, part = dca::part_length;
@@ -35,18 +36,20 @@ class FollowRuns {
             normal_ = tile_.in(ConstView<3>{s.joints.axes1.origin + 3 * s.joints.axes1.pitch,
                                             s.joints.axes1.pitch, 0});
     }
-    FollowRuns(FollowRuns const&) = delete;  // its views are of its own tile
+    /// Copies are deleted because the views refer to the object's own tile.
+    FollowRuns(FollowRuns const&) = delete;
     FollowRuns& operator=(FollowRuns const&) = delete;
 
+    /// Composes the motions along one group of runs and stores the motion across each.
     void follow(dca::RunsInLanes const& runs) {
         Motions m{};
         for (int p = 0; p < dca::parts_of_run; ++p) {
             dca::PartInLanes<Real> const bodies(runs, p);
             tile_.fill(bodies);
             for (Column k{0}; k.at < part; ++k.at) {
+                // Prefetched for reading; the lines are written later.
                 if (asks_ahead_)
-                    tile_.ask_to_read(runs.body, lanes * dca::longest_run,
-                                      p * part + k.at);  // and written again
+                    tile_.ask_to_read(runs.body, lanes * dca::longest_run, p * part + k.at);
                 unsigned const begin = runs.begins[p * part + k.at];
                 Motions const own = load(k);
                 if (p == 0 && k.at == 0) {
@@ -65,6 +68,7 @@ class FollowRuns {
     }
 
   private:
+    /// Relative motions of one column of bodies.
     Motions load(Column k) const {
         using Vector3 = Vector<Real, 3>;
         Motions m{as_quaternion(read(rotation_, k)), read(omega_, k), Vector3::zero(),
@@ -93,7 +97,8 @@ class FollowRuns {
     View<3> to_omega_, to_translation_, to_velocity_;
 };
 
-/// Motions of as many runs on revolute joints, without positions, and what the revolute joints do.
+/// Counterpart of FollowRuns for runs on revolute joints, without positions. It computes the
+/// joints' motions from their coordinates, and their rotations and torques.
 template <class Real>
 class FollowRevolutes {
     static constexpr int lanes = Real::lanes, part = dca::part_length;
@@ -121,6 +126,7 @@ class FollowRevolutes {
     FollowRevolutes(FollowRevolutes const&) = delete;
     FollowRevolutes& operator=(FollowRevolutes const&) = delete;
 
+    /// Processes group `item` of runs.
     void follow(dca::RunsInLanes const* items, std::int64_t item) {
         constexpr int of_body = revolute_constants * lanes, block = part * of_body;
         dca::RunsInLanes const& runs = items[item];
@@ -164,23 +170,26 @@ class FollowRevolutes {
     }
 
   private:
+    /// Rotation, motion and torque of the joints of one column.
     struct Of {
         Quaternion<Real> turn;
         Motions motion;
         Vector<Real, 1> torque;
     };
+    /// View of component 0 of a field, in the tile.
     template <class T, int D>
     ConstView<1> coordinate(FieldView<T, D> const& view) {
         return tile_.in(ConstView<1>{view.origin, view.pitch, 0});
     }
-    /// As JointLoads::set_joint_load.
+    /// Torque about the axes, as JointLoads::set_joint_load computes it.
     Vector<Real, 1> torque(Column k, Vector<Real, 1> const& q, Vector<Real, 1> const& qd) const {
         Real along = read(torque_, k)[0];
         if (stiffness_.origin) along = along - read(stiffness_, k)[0] * (q[0] - read(rest_, k)[0]);
         if (damping_.origin) along = along - read(damping_, k)[0] * qd[0];
         return {{along}};
     }
-    /// Of first bodies, in the lanes `begin`, that begin a chain, on whatever joint.
+    /// Replaces the values in lanes `begin` whose run begins a chain by the stored ones, since a
+    /// chain's first body may have any joint.
     void take_known(dca::RunsInLanes const& runs, unsigned begin, Of& of) {
         constexpr int numbers = static_cast<int>(sizeof(Of) / sizeof(Real)), of_turn = 4;
         alignas(64) double all[numbers * lanes];
@@ -209,7 +218,7 @@ class FollowRevolutes {
     View<4> turn_;
     View<1> load_, to_load_;
 };
-/// As JointScan::set_motion.
+/// JointScan::set_motion for the first bodies of runs.
 template <class Real>
 void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
     std::int64_t at[Real::lanes];
@@ -220,12 +229,14 @@ void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
     auto const omega_before =
         dca::pick<Real>(ConstView<3>{s.before.origin + first_of_omega, 1, 0}, at);
     dca::scatter(s.motion.omega, runs.body, 0, compose(omega_before, first));
-    if (s.motion.orients_first_alone) return;  // chains' first ones
+    /// Orientations are requested for chains' first bodies only, which other code sets.
+    if (s.motion.orients_first_alone) return;
     auto const before = as_quaternion(dca::pick<Real>(ConstView<4>{s.before.origin, 1, 0}, at));
     dca::scatter(s.motion.orientation, runs.body, 0,
                  as_vector(normalized(before * first.rotation)));
 }
 
+/// The table of loops for one vector type.
 template <class Real, bool positions>
 struct LoopsOf {
     using Bodies = dca::Abreast<Real>;
@@ -282,6 +293,7 @@ struct LoopsOf {
     }
 };
 
+/// Table of loops with or without positions.
 template <class Real>
 JointLoops joint_loops(bool positions) {
     return positions ? LoopsOf<Real, true>::loops() : LoopsOf<Real, false>::loops();

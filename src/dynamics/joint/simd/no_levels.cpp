@@ -1,3 +1,4 @@
+// Stubs for builds without AVX2 and AVX-512: empty tables of loops.
 #include "dynamics/joint/joint_lanes.hpp"
 
 namespace catena {
