@@ -100,7 +100,8 @@ template <class Real>
 CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
     if (any_above(x, 1e5)) {
         Real const turn(0x1.921fb54442d18p+2), turn_low(0x1.1a62633145c07p-52), bound(1e5);
-        Real left = fused(-truncated(x / turn), turn, x);  // exact, or one period off if the quotient was rounded across an integer
+        // The remainder is exact, or one period off if the quotient was rounded across an integer.
+        Real left = fused(-truncated(x / turn), turn, x);
         Real const wrong = Real(0) - left * x;  // positive if one period off
         left = where_less(Real(0), wrong, where_less(left, Real(0), left + turn, left - turn), left);
         Real const reduced = fused(-floor((x - left) / turn + Real(0.5)), turn_low, left);
