@@ -1,3 +1,4 @@
+// Forward kinematics and energies of beads, rigid bodies and linked bodies.
 #include "oracle/linked.hpp"
 
 namespace catena::oracle {
