@@ -63,8 +63,8 @@ class HostGather {
     /// Synchronises the ranks of the host and their shared memory.
     void wait();
 
-    /// Largest number of bytes per piece.
     Hosts const& hosts_;
+    /// Largest number of bytes per piece.
     std::int64_t piece_;
     std::vector<int> order_;  // ranks in window order: host by host
     /// Runs of `order_`.

@@ -10,7 +10,7 @@
 
 namespace catena {
 
-/// Options of the MPI communicator; the defaults are for production, others for tests.
+/// Options of the MPI communicator.
 struct MpiOptions {
     /// Largest number of bytes per MPI call. MPI counts in 32 bits; longer data are sent in pieces.
     std::int64_t largest_message = std::int64_t{1} << 30;

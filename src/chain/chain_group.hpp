@@ -27,8 +27,8 @@ enum class Axes { joint, world };
 struct LocalTip {
     std::int64_t body = 0;  // local index of the chain's last body
     TipJoint joint;
-    Mat3 axes;   // axes in M, as ChainGroup::axes1
-    Vec3 screw;  // as ChainGroup::screw
+    Mat3 axes;   // axes in M, see ChainGroup::axes1
+    Vec3 screw;  // see ChainGroup::screw
     /// Number of constrained directions.
     int restricted = 0;
 };
@@ -273,14 +273,14 @@ void exchange_from_inboard(Communicator const& communicator, ChainGroup const& g
                                                   field, -1, group.neighbour_inboard});
 }
 
-/// Canonical unit of the tree on this rank. Whatever is composed along a chain is composed unit by
-/// unit, independently of the number of ranks.
+/// Canonical unit of the tree on this rank. Chain-wide compositions proceed unit by unit,
+/// independently of the number of ranks.
 struct LocalUnit {
     std::size_t piece = 0;
     std::int64_t begin = 0, count = 0;  // local bodies
     std::int64_t index = 0;             // index of the unit in its chain
-    /// Returns the units of this rank along the chains.
 };
+/// Returns the units of this rank along the chains.
 std::vector<LocalUnit> local_units(ChainGroup const&);
 
 /// Gathers a value of every unit of shared chains, chain after chain, in one collective. `own` has

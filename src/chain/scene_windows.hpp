@@ -78,7 +78,7 @@ class SceneWindows {
     Communicator const& communicator_;
     std::int64_t bytes_, bodies_ = 0;
     std::vector<std::int64_t> own_size_;  // number of own bodies of every group
-    std::vector<Part> parts_;             // in the order of the scene
+    std::vector<Part> parts_;             // sorted in the order of the scene
 };
 
 }  // namespace catena

@@ -21,12 +21,12 @@ struct FieldView {
     Real* origin = nullptr;  // component 0 of body 0
     std::int64_t pitch = 0;  // see place_of()
     std::int64_t size = 0;
-    /// Component of body k, by reference.
 
+    /// Component of body k, by reference.
     CATENA_HD Real& at(std::int64_t k, int component) const {
         return origin[component * to_next_number(pitch) + place_of(k, pitch)];
-        /// Returns all components of body k.
     }
+    /// Returns all components of body k.
     CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const {
         return taken<false>(k);
     }
@@ -83,12 +83,12 @@ class BasicField {
             for (std::int64_t k = 1; k < size_; ++k)
                 if (std::memcmp(first, first + k, sizeof(Real)) != 0) return false;
         }
-        /// Number of entries before body 0 and after the last body: one cache line of doubles.
         return true;
     }
     void set(std::int64_t k, Vector<Real, D> const& v) { view().store(k, v); }
 
   private:
+    /// Number of entries before body 0 and after the last body: one cache line of doubles.
     static constexpr std::int64_t halo = 8;
     /// Pads the pitch to an odd number of cache lines. A power-of-two stride would map all
     /// components of a body to one cache set.

@@ -57,8 +57,8 @@ struct Matrix {
 template <class Real, int N>
 struct Symmetric {
     static constexpr int size = N * (N + 1) / 2;
-    /// Index of entry (i, j) in `data`; i and j may be swapped.
     Real data[size];
+    /// Index of entry (i, j) in `data`; i and j may be swapped.
     static CATENA_HD constexpr int at(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
     CATENA_HD Real& operator()(int i, int j) { return data[at(i, j)]; }
     CATENA_HD Real const& operator()(int i, int j) const { return data[at(i, j)]; }

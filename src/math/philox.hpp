@@ -57,7 +57,7 @@ CATENA_HD Vector<double, 3> normal3(std::uint64_t seed, std::uint64_t step, std:
         for (int i = 0; i < 2; ++i) {
             std::uint64_t const bits =
                 ((static_cast<std::uint64_t>(r.word[2 * i]) << 32) | r.word[2 * i + 1]) >> 11;
-            u[2 * half + i] = (static_cast<double>(bits) + 0.5) * 0x1p-53;  // in (0, 1]
+            u[2 * half + i] = (static_cast<double>(bits) + 0.5) * 0x1p-53;  // u in (0, 1]
         }
     }
     double const ra = std::sqrt(-2.0 * log_of_uniform(u[0])),

@@ -138,7 +138,7 @@ struct ShownBeads {
 
 /// Loop body that copies ghost positions from messages to OpenMM's arrays.
 struct ArrivedBeads {
-    DeviceParticles particles;  // with the ghosts as beads
+    DeviceParticles particles;  // the ghosts, as beads
     /// x, y, z of each ghost, nm.
     double const* position = nullptr;
     CATENA_HD void operator()(std::int64_t k) const {

@@ -45,8 +45,8 @@ struct ArrivedPositions {
 struct ForcesOnBeads {
     std::int64_t* force = nullptr;
     std::int64_t places = 0;
-    /// Component i % 3 of the force on bead i / 3.
     std::int32_t const* place = nullptr;
+    /// Component i % 3 of the force on bead i / 3.
     CATENA_HD std::int64_t& at(std::int64_t i) const {
         return force[place[i / 3] + i % 3 * places];
     }
@@ -74,8 +74,8 @@ struct SentForces {
     ForcesOnBeads forces;
     int messages = 0;
     std::int64_t end[most_messages] = {};  // number of beads in each message and all before it
-    /// Where bead 0 would lie in each message if it also contained the beads of all earlier
-    /// messages.
+    /// Address at which bead 0 would lie in each message if it also contained the beads of all
+    /// earlier messages.
     Number* to[most_messages] = {};
     bool all = true;  // false: zeros are not sent; ReturnedForces left zeros there
     /// Number of beads in all messages.
@@ -115,8 +115,8 @@ struct ReturnedForces {
             is_number = is_number && DeviceParticles::is_number(part);
             sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) +
                                             static_cast<std::uint64_t>(part));
-            // The sum of two values that are not numbers may look like a number.
         }
+        // The sum of two values that are not numbers may look like a number.
         force = is_number ? sum : INT64_MAX;
     }
 };

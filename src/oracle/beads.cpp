@@ -36,6 +36,7 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
     std::vector<ArticulatedBead<S>> beads(n);
     for (std::size_t k = 0; k < n; ++k)
         beads[k] = {scaled(S(chain.beads.mass[k]), M3<S>::identity()), -forces[k], S(0), S(0)};
+    // Inward pass: eliminate each link and add the outboard mass and bias to the inboard bead.
     for (std::size_t k = n; k-- > first;) {
         V3<S> const& u = links[k].direction;
         V3<S> const softness = factor(beads[k], k).solve(u);
@@ -46,6 +47,7 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
         beads[k - 1].bias = plus_scaled(
             beads[k - 1].bias, S((links[k].closure + beads[k].drive) / beads[k].compliance), u);
     }
+    // Outward pass: link force, then acceleration, from the inboard bead's acceleration.
     OracleResult<S> result;
     V3<S> a = V3<S>::zero();
     for (std::size_t k = 0; k < n; ++k) {

@@ -5,6 +5,7 @@
 // time derivative of every link's length.
 namespace catena::oracle {
 
+// Unknowns are three accelerations per bead, then one force per link.
 template <class S>
 OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
@@ -35,6 +36,7 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
     return result;
 }
 
+// Unknowns are six accelerations per body, then one force per link.
 template <class S>
 OracleResult<S> dense_linked(ChainSpec const& chain, Loads const& loads) {
     LinkedModel<S> const model = read_linked<S>(chain, loads);

@@ -266,12 +266,14 @@ std::vector<Motion<S>> restricted(Link<S> const& link) {
         !link.driven && link.type != JointType::weld && link.type != JointType::prismatic;
     bool const shifts =
         !link.driven && (link.type == JointType::prismatic || link.type == JointType::helical);
+    // Constrained rotations: all of them, those across the axis, or the one normal to both axes.
     if (!turns)
         for (int i = 0; i < 3; ++i) d.push_back({unit_direction<S>(i), none});
     else if (link.dof == 1)
         for (V3<S> const& e : across(link.free[0].angular)) d.push_back({e, none});
     else if (link.dof == 2)
         d.push_back({unit(cross(link.free[0].angular, link.free[1].angular)), none});
+    // Constrained translations: all of them, or those across the axis.
     if (!shifts) {
         for (int i = 0; i < 3; ++i) d.push_back({none, unit_direction<S>(i)});
         return d;

@@ -108,7 +108,7 @@ template <class S>
 struct Attitude {
     M3<S> orientation;       // maps B to W
     V3<S> omega;             // B
-    V3<S> origin, velocity;  // of the body's origin, W
+    V3<S> origin, velocity;  // body origin, W
 };
 /// Returns the attitude of every body by forward kinematics.
 template <class S>

@@ -129,6 +129,7 @@ OracleResult<S> tridiagonal_linked(ChainSpec const& chain, Loads const& loads) {
     std::size_t const n = model.bodies.size(), links = model.links.size();
     std::vector<S> pivot, beside, lambda(links + 1, S(0));
     link_compliance(model, pivot, beside);
+    // Forward elimination.
     for (std::size_t k = model.first; k < links; ++k) {
         V3<S> const& u = model.links[k].direction;
         lambda[k] = model.links[k].closure;
@@ -144,8 +145,10 @@ OracleResult<S> tridiagonal_linked(ChainSpec const& chain, Loads const& loads) {
                                    std::to_string(k + 1) +
                                    "): a chain stretched straight between its ends has no answer");
     }
+    // Back substitution; lambda[links] = 0.
     for (std::size_t k = links; k-- > model.first;)
         lambda[k] = (lambda[k] - beside[k] * lambda[k + 1]) / pivot[k];
+    // Accelerations under the link forces on both ends of every body.
     OracleResult<S> result;
     for (std::size_t k = 0; k < n; ++k) {
         LinkedBody<S> const& body = model.bodies[k];

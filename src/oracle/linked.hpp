@@ -13,7 +13,7 @@ struct LinkedBody {
     bool bead = false;
     M3<S> orientation, inertia;  // B to W; inertia about com, W
     V3<S> omega;                 // W
-    V3<S> force, torque;         // at com, W, without link forces; includes the gyroscopic torque
+    V3<S> force, torque;         // load at com, W, gyroscopic torque included, link forces not
     /// Ends of the inboard and the outboard link relative to com, W.
     std::array<V3<S>, 2> end{V3<S>::zero(), V3<S>::zero()};
     /// Part of the acceleration of an end that depends on the angular velocity alone.

@@ -50,7 +50,7 @@ struct OracleResult {
     /// Free base: acceleration of the origin of body 1 (second time derivative of its position), W.
     /// It is zero for other bases.
     Vector<Scalar, 3> base_acceleration = Vector<Scalar, 3>::zero();
-    std::vector<Vector<Scalar, 3>> com_acceleration;  // of the centre of mass or bead, W
+    std::vector<Vector<Scalar, 3>> com_acceleration;  // centre of mass or bead, W
     std::vector<Vector<Scalar, 3>> alpha;             // angular acceleration, W; empty for beads
     /// Total wrench that the inboard joint exerts on the body, W, with torque about the body's
     /// origin. It is the sum of the constraint wrench (including that of prescribed motion) and of
@@ -95,7 +95,7 @@ OracleResult<Scalar> dense(ChainSpec const& chain, Loads const& loads);
 template <class Scalar>
 struct Kinematics {
     std::vector<Matrix<Scalar, 3, 3>> orientation;  // R_WB; empty for beads, as is `omega`
-    std::vector<Vector<Scalar, 3>> origin;          // of the body, W
+    std::vector<Vector<Scalar, 3>> origin;          // body origin, W
     std::vector<Vector<Scalar, 3>> com_position;    // W
     std::vector<Vector<Scalar, 3>> com_velocity;    // W
     std::vector<Vector<Scalar, 3>> omega;           // absolute, W
@@ -127,7 +127,7 @@ Scalar rnea_residual(ChainSpec const& chain, Loads const& loads,
 
 /// Estimates a 2-norm condition number by dense eigenvalues, O(n^3), for moderate n. Rigid bodies:
 /// condition of the joint-space inertia, computed column by column from inverse dynamics. Joints
-/// with prescribed motion are left out; a free base counts with 6 coordinates; a jointed tip is
+/// with prescribed motion count as locked. A free base counts with 6 coordinates; a jointed tip is
 /// left out. Beads and linked bodies: condition of the links' matrix G M^-1 G^T, a tip link
 /// included. In double precision the estimate is reliable up to about 1e13 and never exceeds 1 /
 /// eps.

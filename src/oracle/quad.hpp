@@ -58,6 +58,7 @@ class Quad {
 inline Quad abs(Quad x) { return x < Quad(0) ? -x : x; }
 inline bool isfinite(Quad x) { return x - x == Quad(0); }
 
+/// Square root; returns x itself unless x > 0.
 inline Quad sqrt(Quad x) {
     if (!(x > Quad(0))) return x;
     // The long double root has 64 bits; one step of Newton's iteration doubles them.
@@ -92,16 +93,19 @@ inline Quad sin_of_quadrant(Quad r, int quadrant) {
         (quadrant & 1) ? alternating_series(Quad(1), r, 1) : alternating_series(r, r, 2);
     return (quadrant & 2) ? -value : value;
 }
+/// Sine of x. Precondition: |x| < 1e9.
 inline Quad sin(Quad x) {
     int quadrant = 0;
     Quad const r = reduce_angle(x, quadrant);
     return sin_of_quadrant(r, quadrant);
 }
+/// Cosine of x. Precondition: |x| < 1e9.
 inline Quad cos(Quad x) {
     int quadrant = 0;
     Quad const r = reduce_angle(x, quadrant);
     return sin_of_quadrant(r, quadrant + 1);
 }
+/// Angle of the direction (x, y): the long double result with one Newton correction.
 inline Quad atan2(Quad y, Quad x) {
     Quad const t(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
     Quad const across = y * cos(t) - x * sin(t),

@@ -61,6 +61,7 @@ std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& li
     };
     std::vector<S> const none(tip.locked.size(), S(0));
     Column<S> const open = error(none);
+    // The errors depend linearly on the components: column j is the change per unit of component j.
     Dense<S> response(open.size(), static_cast<Index>(none.size()));
     for (std::size_t j = 0; j < none.size(); ++j) {
         std::vector<S> one = none;

@@ -122,6 +122,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
                               j.q};
     place(shape, "tip", g);
     Attitude<S> const &last = attitude.back(), &first = attitude.front();
+    // The first body of a ring determines the pose.
     if (j.ring) {
         g.rotation = transposed_times(last.orientation, first.orientation);
         g.translation = transposed_times(last.orientation, first.origin - last.origin);
@@ -129,7 +130,8 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         if (g.type == JointType::universal)
             g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
     }
-    M3<S> const axes = last.orientation * g.rotation;  // of G
+    // The velocity of G relative to the last body, in G's axes, gives the joint rates.
+    M3<S> const axes = last.orientation * g.rotation;  // axes of G in W
     V3<S> const omega = last.orientation * last.omega, to_g = last.orientation * g.translation;
     V3<S> const com = last.orientation * links.back().com;
     V3<S> const turning = j.ring ? first.orientation * first.omega : V3<S>::zero(),
@@ -139,6 +141,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         transposed_times(axes, moving_g - (last.velocity + cross(omega, to_g)))};
     V3<S> const rates = coordinates(g, relative);
     Motion<S> const moving = along(g, rates);
+    // The closure consists of the Coriolis terms of the rates and of the universal joint's drift.
     TipClosure<S> tip{
         j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
     if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
@@ -199,6 +202,7 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
     OpenChain<S> const open(chain, loads);
     std::size_t const m = open.tip().locked.size();
     Dense<S> matrix(m, m);
+    // Column j of the matrix is the open chain's response to a unit of component j.
     for (std::size_t j = 0; j < m; ++j) matrix.col(static_cast<Index>(j)) = open.response(j);
     TipSystem<S> const system(matrix, static_cast<double>(chain.size()));
     std::vector<S> components(m, S(0));

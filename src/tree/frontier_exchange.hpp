@@ -52,8 +52,8 @@ class FrontierExchange {
     }
     /// True if the ranks exchange units through host memory.
     bool asks_host() const { return !shared_.empty() && !direct_; }
-    /// Units that this rank owns, in the memory of the space.
     bool is_direct() const { return static_cast<bool>(direct_); }
+    /// Units that this rank owns, in the memory of the space.
     FrontierUnit const* own_units() const { return own_units_.data(); }
     /// Units of all ranks in the schedule's order, in the memory of the space.
     FrontierUnit const* units() const { return units_.data(); }

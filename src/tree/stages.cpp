@@ -157,8 +157,8 @@ class Planner {
     Node const& of(std::int64_t slot) const { return node_[static_cast<std::size_t>(slot)]; }
     void know(std::int64_t slot, std::int64_t joint, std::int64_t next) {
         of(slot).joint = joint, of(slot).next = next;
-        /// True if no merge below `end_level` contains the segment.
     }
+    /// True if the segment is not merged below `end_level`.
     bool is_top(std::int64_t slot, int end_level) const {
         return of(slot).met < 0 || of(slot).met >= end_level;
     }

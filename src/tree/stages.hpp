@@ -87,7 +87,7 @@ struct PlacesAbove {
 
 /// Stages of a sweep.
 struct StagePlan {
-    std::vector<Stage> stages;  // from the leaves upwards
+    std::vector<Stage> stages;  // order: from the leaves upwards
     /// True if a separate launch processes the runs before all stages, which then load the runs'
     /// segments from their slots.
     bool runs_apart = false;

@@ -126,7 +126,7 @@ struct Root {
     std::int64_t slot = 0;
     std::int64_t first = 0, next = 0;
     int chain = 0;
-    /// Tells whether `next` is a joint to the ground, or the closing joint of a ring; in a ring
+    /// Kind of joint at `next`: a joint to the ground, or the closing joint of a ring; in a ring
     /// `next` equals `first`.
     TipTo tip = TipTo::nothing;
 };
