@@ -173,8 +173,8 @@ struct ChainGroup {
     bool is_implicit(std::int64_t k) const {
         return !implicit_joint.empty() && implicit_joint[static_cast<std::size_t>(k)] != 0;
     }
-    /// Number of directions in which the handles carry constraint forces of local body k's inboard
-    /// joint.
+    /// Number of constrained directions of local body k's inboard joint, at most `directions`.
+    /// Driven and implicit joints count as constrained in all directions.
     int restricted(std::int64_t k) const;
     /// Index in `pieces` of the piece that contains local body k.
     std::size_t index_of_piece(std::int64_t k) const;
