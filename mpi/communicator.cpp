@@ -1,3 +1,4 @@
+// Default implementations that need no MPI.
 #include "mpi/communicator.hpp"
 
 #include <algorithm>
@@ -6,7 +7,7 @@
 
 namespace catena {
 
-/// In round k every rank sends to the one k after it and receives from the one k before.
+// Every rank sends, in round k, to the rank k after it and receives from the rank k before it.
 void Communicator::exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const {
     for (int k = 1; k < size(); ++k) {
         int const after = (rank() + k) % size(), before = (rank() + size() - k) % size();

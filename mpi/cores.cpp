@@ -1,3 +1,4 @@
+// Number of cores for a rank, and the limit on threads.
 #include "mpi/cores.hpp"
 
 #include <unistd.h>
@@ -10,8 +11,8 @@
 
 namespace catena {
 
-CoreSet cores_bound_to() {  // std::thread::hardware_concurrency() knows them with some versions of
-                            // glibc alone
+// std::thread::hardware_concurrency() respects the binding only with some versions of glibc.
+CoreSet cores_bound_to() {
     CoreSet set{};
     set.known = sched_getaffinity(0, sizeof(set.cores), &set.cores) == 0;
     if (!set.known) CPU_ZERO(&set.cores);
@@ -26,6 +27,7 @@ int cores_of_rank(Communicator const& communicator) {
 }
 
 void require_possible_threads(int threads, std::string const& where) {
+    // `always` threads are allowed in any case, `a_processor` threads per processor.
     constexpr long always = 64, a_processor = 16;
     long const processors = std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)),
                most = std::max(always, a_processor * processors);

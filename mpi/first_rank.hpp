@@ -1,4 +1,4 @@
-// What rank 0 or every rank does, and how a failure becomes everybody's.
+// Actions on rank 0 or on every rank whose failure is reported on all ranks.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace catena {
 
-/// A failure that every rank knows of: all of them end in good order, with status 1.
+/// Error that every rank knows of. All ranks then terminate regularly with status 1.
 class SharedError : public ComputationError {
   public:
     using ComputationError::ComputationError;
 };
 
-/// Runs `action` on rank 0. What it throws is thrown on every rank: InputError as such, anything
-/// else as SharedError. Collective.
+/// Runs `action` on rank 0. An exception from it is thrown on every rank: InputError as InputError,
+/// all others as SharedError. Collective.
 template <class Action>
 void on_first_rank(Communicator const& communicator, Action const& action) {
     std::int64_t message[2] = {0, 0};  // status, length of the text
@@ -42,9 +42,9 @@ void on_first_rank(Communicator const& communicator, Action const& action) {
     throw SharedError(text);
 }
 
-/// Runs `action` on every rank. What it throws on one of them is thrown on all as SharedError, of
-/// several the last one's words. Precondition: where it throws on one, no other waits for that one
-/// within it. Collective.
+/// Runs `action` on every rank. An exception on one rank is thrown on all as SharedError; if
+/// several ranks fail, the text is that of the last rank. Precondition: if `action` throws on one
+/// rank, no other rank waits for that rank within it. Collective.
 template <class Action>
 void on_every_rank(Communicator const& communicator, Action const& action) {
     std::string text;

@@ -1,3 +1,4 @@
+// Choice between one-stage and two-stage gathers.
 #include "mpi/gather_way.hpp"
 
 #include <charconv>
@@ -7,7 +8,9 @@
 namespace catena {
 namespace {
 
+/// Smallest number of ranks for two stages.
 constexpr std::int64_t fewest_ranks = 32;
+/// Largest number of bytes per piece of a two-stage gather.
 constexpr std::int64_t largest_piece = 4 << 20;
 
 }  // namespace
@@ -57,7 +60,7 @@ Traffic GatherWay::within_and_between_hosts(std::int64_t bytes) const {
     Traffic t;
     if (stages == 1) return t;
     std::int64_t const pieces = (bytes + piece - 1) / piece;
-    t.host_waits = 2 * pieces;  // every rank's own bytes are there; all bytes are there
+    t.host_waits = 2 * pieces;  // one wait before and one after the exchange between hosts
     if (!leads || hosts == 1) return t;
     t.leader_gathers = pieces;
     t.leader_bytes = bytes;

@@ -1,4 +1,5 @@
-// How all_gather goes: at once between all ranks, or within hosts and between them.
+// Algorithms of all_gather(): one stage between all ranks, or two stages within hosts and between
+// hosts.
 #pragma once
 
 #include <cstdint>
@@ -8,36 +9,41 @@
 
 namespace catena {
 
-/// What the environment variable CATENA_GATHER asks for; the same bytes come out of all of them.
+/// Request of the environment variable CATENA_GATHER. All algorithms gather the same bytes.
 struct GatherChoice {
     enum class Stages { automatic, one, two };
     Stages stages = Stages::automatic;
-    int ranks_a_host = 0;  // so many ranks of a host count as a host: two stages on one machine; 0:
-                           // hosts are as they are
+    /// Number of ranks that count as a host, for tests of two stages on one machine; 0: real hosts.
+    int ranks_a_host = 0;
 };
-/// "auto", "one-stage", "two-stage", "two-stage:G". Throws InputError.
+/// Parses "auto", "one-stage", "two-stage" or "two-stage:G"; empty means auto. Throws InputError.
 GatherChoice gather_choice(std::string const& text);
 
-/// How a communicator gathers, as one of its ranks sees it.
+/// Algorithm of a communicator's gather, from the point of view of one rank.
 struct GatherWay {
     int stages = 1;
     std::int64_t ranks = 1, hosts = 1;
-    bool leads =
-        false;  // first rank of its host, which speaks to other hosts for all of it; of two stages
-    std::int64_t piece = 0;  // of two stages: bytes at a time
-    bool asked_for = false;  // by CATENA_GATHER
-    bool no_memory = false;  // two stages were wanted, and some host has no memory to share
+    /// Two stages: true on the first rank of a host, which communicates with other hosts for all
+    /// its ranks.
+    bool leads = false;
+    std::int64_t piece = 0;  // two stages: bytes per message
+    bool asked_for = false;  // true if CATENA_GATHER requested it
+    /// True if two stages were selected, but some host cannot allocate shared memory.
+    bool no_memory = false;
 
-    /// The rule: every round of a gather at once waits for a message between hosts, of one in two
-    /// stages only those between the hosts' first ranks do. Below some tens of ranks the rounds are
-    /// few either way.
+    /// True if two stages are faster. In one stage every round waits for a message between hosts;
+    /// in two stages only the rounds between the hosts' first ranks do. Below some tens of ranks
+    /// both need few rounds.
     static bool two_stages_pay(std::int64_t ranks, std::int64_t hosts);
-    /// What is chosen for so many ranks, seen by a host's first.
+    /// Returns the algorithm for the given numbers, as seen by a host's first rank.
     static GatherWay of(GatherChoice const&, std::int64_t ranks, std::int64_t hosts);
+    /// Returns the fallback to one stage for hosts without shared memory.
     GatherWay without_memory() const { return {1, ranks, hosts, false, 0, asked_for, true}; }
 
+    /// Description for reports.
     std::string text() const;
-    /// What a gather of so many bytes in all takes beside itself; nothing in one stage.
+    /// Additional traffic of a gather of `bytes` in all, within and between hosts; zero in one
+    /// stage.
     Traffic within_and_between_hosts(std::int64_t bytes) const;
 };
 

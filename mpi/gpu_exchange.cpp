@@ -1,3 +1,4 @@
+// Parser of CATENA_GPU_EXCHANGE.
 #include "mpi/gpu_exchange.hpp"
 
 #include "error.hpp"

@@ -1,12 +1,13 @@
-// What the environment variable CATENA_GPU_EXCHANGE asks for.
+// Request of the environment variable CATENA_GPU_EXCHANGE.
 #pragma once
 
 #include <string>
 
 namespace catena {
 
+/// Path of messages between GPUs.
 enum class GpuExchange { direct_where_possible, host };
-/// "auto" or "direct" (the same), "host"; empty: auto. Throws InputError.
+/// Parses "auto" or "direct" (equivalent), or "host"; empty means auto. Throws InputError.
 GpuExchange gpu_exchange_choice(std::string const& text);
 
 }  // namespace catena

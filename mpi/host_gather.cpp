@@ -1,3 +1,4 @@
+// Two-stage all-gather over an MPI shared-memory window.
 #include "mpi/host_gather.hpp"
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 namespace catena {
 namespace {
 
+/// Returns the communicator of the ranks that share memory with this rank.
 MpiHandle shares_memory(MPI_Comm world) {
     MPI_Comm host = MPI_COMM_NULL;
     check_mpi(MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host),
@@ -13,6 +15,7 @@ MpiHandle shares_memory(MPI_Comm world) {
     return MpiHandle(host);
 }
 
+/// Returns the part of a communicator with the given colour.
 MpiHandle split(MPI_Comm communicator, int colour) {
     MPI_Comm part = MPI_COMM_NULL;
     check_mpi(MPI_Comm_split(communicator, colour, 0, &part), "MPI_Comm_split");
@@ -24,7 +27,7 @@ MpiHandle split(MPI_Comm communicator, int colour) {
 Hosts::Hosts(MPI_Comm world, int colour)
     : ranks(split(shares_memory(world), colour)),
       leaders(split(world, ranks.rank() == 0 ? 0 : MPI_UNDEFINED)) {
-    int numbers[2] = {0, 1};  // this host's, of hosts
+    int numbers[2] = {0, 1};  // index of this host, number of hosts
     if (leads()) {
         numbers[0] = leaders.rank();
         numbers[1] = leaders.size();
@@ -75,7 +78,8 @@ std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts,
     int somewhere = 0;
     check_mpi(MPI_Allreduce(&failed, &somewhere, 1, MPI_INT, MPI_MAX, world), "MPI_Allreduce");
     if (somewhere != 0) {
-        made->window_ = MPI_WIN_NULL;  // not freed: that takes all ranks of a host
+        made->window_ =
+            MPI_WIN_NULL;  // stays allocated: freeing it is collective among all ranks of a host
         return nullptr;
     }
     check_mpi(MPI_Win_set_errhandler(made->window_, MPI_ERRORS_RETURN), "MPI_Win_set_errhandler");
@@ -94,7 +98,7 @@ HostGather::~HostGather() {
     MPI_Win_free(&window_);
 }
 
-/// Where bytes lie in the world's order and in the window's.
+/// Determines the positions of all bytes in world order and in window order.
 void HostGather::lay_out(std::vector<std::int64_t> const& bytes_of_rank) {
     std::partial_sum(bytes_of_rank.begin(), bytes_of_rank.end(), first_.begin() + 1);
     std::fill(of_host_.begin(), of_host_.end(), Interval{0, 0});
@@ -117,8 +121,8 @@ void HostGather::gather(std::span<std::byte const> own, std::span<std::byte> all
     std::int64_t const total = first_.back();
     for (std::int64_t begin = 0; begin < total; begin += piece_) {
         Interval const piece{begin, std::min(begin + piece_, total)};
-        // Who is past the two waits of a piece knows that all have read the piece before the last
-        // one: two halves need no third wait.
+        // A rank that has passed both waits of a piece knows that all ranks have read the piece
+        // before the previous one. Two halves therefore need no third wait.
         std::byte* const window = memory_ + (second_half_ ? piece_ : 0);
         second_half_ = !second_half_;
         Interval const mine = own_.within(piece);
@@ -141,6 +145,7 @@ void HostGather::gather(std::span<std::byte const> own, std::span<std::byte> all
     }
 }
 
+/// Exchanges the hosts' parts of a piece between their leaders.
 void HostGather::between_hosts(std::byte* window, Interval const& piece) {
     for (std::size_t h = 0; h < of_host_.size(); ++h) {
         Interval const part = of_host_[h].within(piece);
@@ -152,7 +157,7 @@ void HostGather::between_hosts(std::byte* window, Interval const& piece) {
               "MPI_Allgatherv between hosts");
 }
 
-/// What the host's ranks wrote before, all of them see after.
+/// Makes everything that the host's ranks wrote before this call visible to all of them after it.
 void HostGather::wait() {
     check_mpi(MPI_Win_sync(window_), "MPI_Win_sync");
     check_mpi(MPI_Barrier(hosts_.ranks), "MPI_Barrier");

@@ -1,3 +1,4 @@
+// Detection of launchers by their environment variables.
 #include "mpi/launcher.hpp"
 
 #include <charconv>
@@ -8,6 +9,7 @@
 namespace catena {
 namespace {
 
+/// Returns the value of a variable if it is a non-negative integer.
 std::optional<int> number(char const* variable) {
     char const* const text = variable != nullptr ? std::getenv(variable) : nullptr;
     if (text == nullptr) return std::nullopt;
@@ -18,13 +20,14 @@ std::optional<int> number(char const* variable) {
     return value;
 }
 
+/// Names of the variables of one launcher.
 struct Variables {
     char const* rank;
     char const* size;
 };
 
-// PMIx names no size; under Slurm the job step's is right, and SLURM_NTASKS is not: a batch script
-// has it as well.
+// PMIx has no variable for the size. Under Slurm the job step's size is right; SLURM_NTASKS is not,
+// because a batch script has it as well.
 constexpr Variables known[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                {"PMI_RANK", "PMI_SIZE"},
                                {"MV2_COMM_WORLD_RANK", "MV2_COMM_WORLD_SIZE"},

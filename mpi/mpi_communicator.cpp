@@ -1,3 +1,4 @@
+// Communicator over MPI. Data longer than the largest message are sent in pieces.
 #include "mpi/mpi_communicator.hpp"
 
 #include <mpi.h>
@@ -20,19 +21,19 @@
 namespace catena {
 namespace {
 
-/// MPI itself, from MPI_Init_thread to MPI_Finalize; owns nothing where the caller had initialised
-/// it.
+/// MPI itself, from MPI_Init_thread to MPI_Finalize. It owns nothing if the caller had initialised
+/// MPI.
 class MpiLibrary {
   public:
     MpiLibrary(int* argc, char*** argv) {
         int initialised = 0;
         check_mpi(MPI_Initialized(&initialised), "MPI_Initialized");
         if (initialised != 0) return;
-        // Of Open MPI's two ways to files, for ROMIO (io/all_writers.cpp).
+        // Selects ROMIO among Open MPI's two file implementations (io/all_writers.cpp).
         ::setenv("OMPI_MCA_io", "^ompio", 0);
         int provided = MPI_THREAD_SINGLE;
-        // Less is enough: tests alone speak from another thread than the main one, which waits
-        // meanwhile.
+        // A lower level would suffice: only tests communicate from a thread other than the main
+        // one, which waits meanwhile.
         check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
         owned_ = true;
         if (provided < MPI_THREAD_FUNNELED)
@@ -50,6 +51,7 @@ class MpiLibrary {
     Unwinding unwinding_;
 };
 
+/// Returns a duplicate of MPI_COMM_WORLD whose errors are returned, not fatal.
 MpiHandle duplicate_of_world() {
     check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN),
               "MPI_Comm_set_errhandler");
@@ -58,9 +60,11 @@ MpiHandle duplicate_of_world() {
     return MpiHandle(handle);
 }
 
+/// Rank's index on its host, and numbers of ranks on the host and on the same cores.
 struct OnHost {
     int rank = 0, ranks = 1, on_cores = 1;
 };
+/// Collective.
 OnHost place_on_host(MPI_Comm world) {
     Hosts const hosts(world, 0);
     CoreSet const own = cores_bound_to();
@@ -72,16 +76,18 @@ OnHost place_on_host(MPI_Comm world) {
             static_cast<int>(std::count(all.begin(), all.end(), own))};
 }
 
-// A double as an integer of the same order, NaN above all.
+/// Maps a double to an integer of the same order, with NaN above all.
 std::int64_t ordered(double value) {
     if (std::isnan(value)) return std::numeric_limits<std::int64_t>::max();
     auto const bits = std::bit_cast<std::int64_t>(value);
     return bits >= 0 ? bits : bits ^ std::numeric_limits<std::int64_t>::max();
 }
+/// Inverse of ordered().
 double from_ordered(std::int64_t key) {
     return std::bit_cast<double>(key >= 0 ? key : key ^ std::numeric_limits<std::int64_t>::max());
 }
 
+/// Communicator over a duplicate of MPI_COMM_WORLD.
 class MpiCommunicator final : public Communicator {
   public:
     MpiCommunicator(int* argc, char*** argv, MpiOptions const& options)
@@ -165,7 +171,7 @@ class MpiCommunicator final : public Communicator {
     void exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const override {
         ++rounds_;
         std::vector<MPI_Request> requests;
-        std::vector<std::size_t> expected;  // bytes of the receives, which come first
+        std::vector<std::size_t> expected;  // bytes of the receives, which are the first requests
         for (Incoming const& m : in)
             for_each_piece(m.bytes, [&](std::span<std::byte> piece) {
                 expected.push_back(piece.size());
@@ -203,6 +209,7 @@ class MpiCommunicator final : public Communicator {
     }
 
   private:
+    /// Selects the algorithm of all_gather().
     void choose_way(MpiOptions const& options) {
         GatherChoice const choice =
             options.gather ? *options.gather
@@ -219,17 +226,20 @@ class MpiCommunicator final : public Communicator {
         if (!two_stages_) way_ = way_.without_memory();
     }
 
+    /// Counts an all_gather of `bytes` in all.
     void count_gather(std::int64_t bytes) const {
         ++traffic_.gathers;
         traffic_.gathered_bytes += bytes;
         traffic_ += way_.within_and_between_hosts(bytes);
     }
 
+    /// Lengths of a gather's blocks; counts and offsets for MPI if the sum is short enough.
     struct Blocks {
         std::vector<std::int64_t> const& bytes;
         std::vector<int> count, first;
         bool short_enough = false;
 
+        /// Block of a rank in `all`.
         std::span<std::byte> of(std::span<std::byte> all, int rank) const {
             auto const begin =
                 std::accumulate(bytes.begin(), bytes.begin() + rank, std::int64_t{0});
@@ -238,7 +248,7 @@ class MpiCommunicator final : public Communicator {
         }
     };
 
-    /// `all` may be empty where nothing is received.
+    /// Checks the lengths of a gather's blocks. `all` may be empty on ranks that receive nothing.
     Blocks blocks_of(std::span<std::byte const> own, std::span<std::byte> all,
                      std::vector<std::int64_t> const& bytes) const {
         auto const total =
@@ -258,17 +268,20 @@ class MpiCommunicator final : public Communicator {
         return blocks;
     }
 
+    /// True if `own` already lies at its position in `all`.
     bool in_place(std::span<std::byte const> own, std::span<std::byte> all,
                   Blocks const& blocks) const {
         return !own.empty() && own.data() == blocks.of(all, rank_).data();
     }
 
+    /// Calls action(piece) for consecutive pieces of at most the largest message.
     template <class Byte, class Action>
     void for_each_piece(std::span<Byte> bytes, Action action) const {
         for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), largest_message_)))
             action(bytes.first(std::min(bytes.size(), largest_message_)));
     }
 
+    /// Broadcasts data of any length.
     void broadcast_in_pieces(std::span<std::byte> data, int root) const {
         while (!data.empty()) {
             std::span const piece = data.first(std::min(data.size(), largest_message_));
@@ -279,6 +292,7 @@ class MpiCommunicator final : public Communicator {
         }
     }
 
+    /// Gathers blocks of any length by one broadcast per rank.
     void all_gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all,
                               Blocks const& blocks) const {
         if (!in_place(own, all, blocks))
@@ -286,6 +300,7 @@ class MpiCommunicator final : public Communicator {
         for (int r = 0; r < size_; ++r) broadcast_in_pieces(blocks.of(all, r), r);
     }
 
+    /// Gathers blocks of any length on rank 0 by point-to-point messages.
     void gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all,
                           Blocks const& blocks) const {
         if (rank_ != 0) {
@@ -310,6 +325,7 @@ class MpiCommunicator final : public Communicator {
         }
     }
 
+    /// Throws if a received message does not have the expected length.
     static void require_length(MPI_Status const& status, std::size_t expected) {
         int count = 0;
         check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
@@ -318,6 +334,7 @@ class MpiCommunicator final : public Communicator {
                                    std::to_string(expected) + " were expected");
     }
 
+    /// Reduces one integer over the ranks.
     std::int64_t all_reduced(std::int64_t value, MPI_Op operation) const {
         ++rounds_;
         std::int64_t result = 0;
@@ -326,13 +343,14 @@ class MpiCommunicator final : public Communicator {
         return result;
     }
 
-    MpiLibrary library_;  // before world_: MPI ends after its communicators
+    MpiLibrary
+        library_;  // declared before world_: MPI is finalised after its communicators are freed
     MpiHandle world_;
     std::size_t largest_message_;
     int rank_, size_;
     OnHost on_host_;
     std::unique_ptr<Hosts> hosts_;
-    std::unique_ptr<HostGather> two_stages_;  // null: in one
+    std::unique_ptr<HostGather> two_stages_;  // null: one stage
     GatherWay way_;
     mutable std::int64_t rounds_ = 0;
     mutable Traffic traffic_;
@@ -355,7 +373,7 @@ std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, MpiOptio
     return communicator;
 }
 
-// Outside mpirun MPI is not initialised: a single rank needs none of it, and starts faster without.
+// MPI is not initialised outside mpirun: a single rank does not need it and starts faster.
 std::unique_ptr<Communicator> world_communicator(int* argc, char*** argv) {
     if (!launch_environment().found) return serial_communicator();
     return mpi_communicator(argc, argv);

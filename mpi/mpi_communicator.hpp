@@ -1,4 +1,4 @@
-// The communicator over MPI; only builds with MPI have it.
+// Communicator over MPI, for builds with MPI.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,18 @@
 
 namespace catena {
 
+/// Options of the MPI communicator.
 struct MpiOptions {
-    std::int64_t largest_message =
-        std::int64_t{1} << 30;  // in bytes: MPI counts in 32 bits, longer data go in pieces
-    std::optional<GatherChoice> gather;  // none: rank 0's CATENA_GATHER
-    std::vector<int>
-        host_of_rank;  // ranks of one host that count as different ones; empty: as they are
+    /// Largest number of bytes per MPI call. MPI counts in 32 bits; longer data are sent in pieces.
+    std::int64_t largest_message = std::int64_t{1} << 30;
+    std::optional<GatherChoice> gather;  // absent: rank 0's CATENA_GATHER decides
+    /// Simulated host of each rank, which divides real hosts; empty: real hosts.
+    std::vector<int> host_of_rank;
 };
 
-/// All ranks of MPI_COMM_WORLD. Initialises MPI, and finalises it at its end, unless the caller has
-/// done so already. Throws ComputationError when MPI fails, InputError when the launcher started
-/// several processes that MPI does not connect.
+/// Returns the communicator of all ranks of MPI_COMM_WORLD. It initialises MPI, and finalises it in
+/// its destructor, unless the caller has initialised it. Throws ComputationError if MPI fails.
+/// Throws InputError if the launcher started several processes that MPI does not connect.
 std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, MpiOptions const& = {});
 
 }  // namespace catena

@@ -1,4 +1,4 @@
-// Owners of what MPI hands out, and the one way an MPI failure becomes an error.
+// Owners of MPI objects, and the conversion of MPI error codes to exceptions.
 #pragma once
 
 #include <mpi.h>
@@ -12,6 +12,7 @@
 
 namespace catena {
 
+/// Throws ComputationError with MPI's text if `code` is an error. `call` names the MPI function.
 inline void check_mpi(int code, char const* call) {
     if (code == MPI_SUCCESS) return;
     char text[MPI_MAX_ERROR_STRING] = "unknown error";
@@ -21,11 +22,11 @@ inline void check_mpi(int code, char const* call) {
                            "): see whether every rank and its host are still up");
 }
 
-/// MPI's communicator of these ranks; MPI_COMM_NULL where they speak in another way.
+/// Returns the MPI communicator of these ranks; MPI_COMM_NULL if they do not communicate by MPI.
 MPI_Comm handle_of(Communicator const&);
 
-/// Whether an error is on its way out that other ranks may not know of: to wait for them then would
-/// be for ever.
+/// True while an exception propagates that began after construction. Other ranks may not know of
+/// it, so that collective calls could wait forever.
 class Unwinding {
   public:
     explicit operator bool() const { return std::uncaught_exceptions() > at_start_; }
@@ -34,7 +35,7 @@ class Unwinding {
     int at_start_ = std::uncaught_exceptions();
 };
 
-/// A communicator of MPI's, freed at its end; MPI_COMM_NULL is none.
+/// Owner of an MPI communicator, which its destructor frees. MPI_COMM_NULL means none.
 class MpiHandle {
   public:
     explicit MpiHandle(MPI_Comm handle) : handle_(handle) {

@@ -1,3 +1,4 @@
+// Measurement of messages and gathers, and the model fitted to them.
 #include "mpi/network.hpp"
 
 #include <unistd.h>
@@ -13,18 +14,20 @@
 namespace catena {
 namespace {
 
+/// Sizes of measured messages, bytes.
 constexpr std::int64_t message_bytes[] = {8, 64, 512, 4096, 32768, 262144, 2097152};
-/// Units of a chain that is cut (see tree.hpp), and directions a handle.
+/// Number of units of a shared chain (see tree.hpp), and measured numbers of directions per handle.
 constexpr std::int64_t units = 64;
 constexpr int kinds[] = {1, 2, 3, 4, 5, 6};
 
+/// Time of a monotonic clock, s.
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
 
-/// The slowest rank's seconds in the fastest of `repeat` calls after one that warms up: what others
-/// do on the cores is not the network's. Collective.
+/// Returns the slowest rank's time in the fastest of `repeat` calls, s, after one warm-up call. The
+/// fastest call is least affected by other work on the cores. Collective.
 template <class Action>
 double timed(Communicator const& communicator, int repeat, Action&& action) {
     double fastest = std::numeric_limits<double>::infinity();
@@ -38,8 +41,10 @@ double timed(Communicator const& communicator, int repeat, Action&& action) {
     return fastest;
 }
 
+/// Host name, zero-terminated.
 using HostName = std::array<char, 64>;
 
+/// Returns the host name of every rank. Collective.
 std::vector<std::string> hosts_of_ranks(Communicator const& communicator) {
     HostName own{};
     ::gethostname(own.data(), own.size() - 1);
@@ -51,12 +56,13 @@ std::vector<std::string> hosts_of_ranks(Communicator const& communicator) {
     return names;
 }
 
+/// Number of different names.
 std::int64_t different(std::vector<std::string> const& names) {
     return std::ssize(std::set<std::string>(names.begin(), names.end()));
 }
 
-/// There and back between rank 0 and `partner`, many times in one measurement: a clock's grain is
-/// as long as a short message.
+/// Returns half the round-trip time between rank 0 and `partner`. One measurement covers many round
+/// trips, because the resolution of a clock is as coarse as a short message.
 double there_and_back(Communicator const& communicator, int partner, std::int64_t bytes,
                       int repeat) {
     int const trips = static_cast<int>(std::clamp<std::int64_t>(2097152 / bytes, 4, 100));
@@ -72,7 +78,8 @@ double there_and_back(Communicator const& communicator, int partner, std::int64_
     return 0.5 * seconds / trips;
 }
 
-/// The latency is the shortest message's, the rest the longest one's.
+/// Returns the link fitted to messages named `what`: latency from the shortest, bandwidth from the
+/// longest.
 Link link_of(std::vector<TimedMessage> const& messages, std::string const& what) {
     std::vector<TimedMessage> mine;
     std::copy_if(messages.begin(), messages.end(), std::back_inserter(mine),
@@ -83,7 +90,7 @@ Link link_of(std::vector<TimedMessage> const& messages, std::string const& what)
     return {shortest.seconds, std::max(a_byte, 0.0)};
 }
 
-/// A gather of `count` records that ranks share as evenly as they can.
+/// All-gather of `count` records, distributed over the ranks as evenly as possible.
 class Gather {
   public:
     Gather(Communicator const& communicator, std::int64_t count, std::int64_t bytes_of_one)
@@ -94,6 +101,7 @@ class Gather {
         own_.resize(
             static_cast<std::size_t>(bytes_[static_cast<std::size_t>(communicator.rank())]));
     }
+    /// Performs one gather.
     void operator()() { communicator_.all_gather(own_, all_, bytes_); }
 
   private:
@@ -102,6 +110,7 @@ class Gather {
     std::vector<std::byte> own_, all_;
 };
 
+/// Measures gathers of the solver's records; their median over the model is the overhead.
 void time_gathers(NetworkTimes& times, Communicator const& communicator, int repeat) {
     auto const add = [&](std::string const& what, std::int64_t numbers) {
         std::int64_t const bytes = numbers * static_cast<std::int64_t>(sizeof(double));
@@ -121,6 +130,7 @@ void time_gathers(NetworkTimes& times, Communicator const& communicator, int rep
     times.network.gather_overhead = ratios[ratios.size() / 2];
 }
 
+/// Number of rounds of a logarithmic collective among `count` ranks.
 double rounds_among(std::int64_t count) {
     return static_cast<double>(std::bit_width(static_cast<std::uint64_t>(count - 1)));
 }
@@ -164,7 +174,7 @@ NetworkTimes time_network(Communicator const& communicator, int repeat) {
         (far ? times.network.far : times.network.near) = link_of(times.messages, what);
     }
     if (times.ranks == 1) return times;
-    if (!times.network.near) times.network.near = times.network.far;  // one rank a host
+    if (!times.network.near) times.network.near = times.network.far;  // each host has one rank
     time_gathers(times, communicator, repeat);
     return times;
 }

@@ -1,4 +1,4 @@
-// In the place of mpi_communicator.cpp in a build without MPI.
+// Replacement of mpi_communicator.cpp in builds without MPI.
 #include "error.hpp"
 #include "mpi/communicator.hpp"
 #include "mpi/launcher.hpp"

@@ -1,3 +1,4 @@
+// Communicator of a single rank.
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>

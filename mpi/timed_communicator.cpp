@@ -1,3 +1,4 @@
+// Measurement of the time that a rank spends in messages.
 #include "mpi/timed_communicator.hpp"
 
 #include <cstdlib>
@@ -64,7 +65,7 @@ void TimedCommunicator::barrier() const {
 
 void TimedCommunicator::abort(int status) const {
     under_.abort(status);
-    std::_Exit(status);  // GCC does not believe a virtual function that it never returns
+    std::_Exit(status);  // GCC does not accept that a virtual function never returns
 }
 
 }  // namespace catena

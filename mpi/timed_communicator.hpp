@@ -1,17 +1,16 @@
-// A communicator that tells how long its ranks' messages took, so that what remains is a rank's own
-// work.
+// Communicator that measures the time of its messages; the remaining time is the rank's own work.
 #pragma once
 
 #include "mpi/communicator.hpp"
 
 namespace catena {
 
-/// All calls go to another communicator, which must outlive it; their seconds, waiting for other
-/// ranks included, are added up. No message goes past it from GPU to GPU.
+/// Forwards all calls to another communicator, which must outlive it, and sums their times, waiting
+/// for other ranks included. Messages do not bypass it from GPU to GPU.
 class TimedCommunicator final : public Communicator {
   public:
     explicit TimedCommunicator(Communicator const& under) : under_(under) {}
-    /// So far, on this rank.
+    /// Time spent in messages so far on this rank, s.
     double seconds() const { return seconds_; }
 
     int rank() const override { return under_.rank(); }
@@ -38,6 +37,7 @@ class TimedCommunicator final : public Communicator {
     [[noreturn]] void abort(int status) const override;
 
   private:
+    /// Adds the time from construction to destruction.
     class Stopwatch;
     Communicator const& under_;
     mutable double seconds_ = 0;

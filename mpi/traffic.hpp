@@ -1,24 +1,25 @@
-// What messages a rank counts.
+// Counters of messages.
 #pragma once
 
 #include <cstdint>
 
 namespace catena {
 
-/// Messages between bodies of neighbouring ranks and units of the tree, as one rank counts them.
+/// Messages between neighbouring ranks' bodies and units of the tree, as counted by one rank.
 struct Traffic {
-    std::int64_t gathers = 0, gathered_bytes = 0;  // all_gather; the bytes of all ranks
-    std::int64_t exchanges = 0, sent_bytes = 0;    // exchange; what this rank sent
-    std::int64_t host_waits =
-        0;  // of gathers in two stages: when the ranks of the host wait for each other
-    std::int64_t leader_gathers = 0, leader_bytes = 0;  // of gathers in two stages, on a host's
-                                                        // first rank: between hosts; of all hosts
+    std::int64_t gathers = 0, gathered_bytes = 0;  // all_gather calls; bytes of all ranks
+    std::int64_t exchanges = 0, sent_bytes = 0;    // exchange calls; bytes sent by this rank
+    /// Gathers in two stages: number of times that the ranks of the host waited for each other.
+    std::int64_t host_waits = 0;
+    /// Gathers in two stages, counted on a host's first rank: gathers between hosts, and the bytes
+    /// of all hosts.
+    std::int64_t leader_gathers = 0, leader_bytes = 0;
 
     Traffic& operator+=(Traffic const& other);
     Traffic operator-(Traffic const& other) const;
     Traffic operator*(std::int64_t times) const;
     bool operator==(Traffic const&) const = default;
-    /// Calls action(name, count) for each.
+    /// Calls action(name, count) for each counter.
     template <class Action>
     void for_each(Action const& action) const {
         action("gathers", gathers);

@@ -1,3 +1,4 @@
+// Construction of chain groups from a scene.
 #include "chain/chain_group.hpp"
 
 #include <Eigen/Dense>
@@ -21,8 +22,8 @@ Mat3 columns(Eigen::Vector3d const& p, Eigen::Vector3d const& q, Vec3 const& axi
     return m;
 }
 
-/// Columns (p, q, axis), right-handed; the identity where the joint has no axis. Universal: p is
-/// normal to both axes.
+/// Returns the axes (p, q, axis) of a joint, right-handed; the identity if the joint has no axis.
+/// For a universal joint, p is normal to both axes.
 Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
     if (type == JointType::free || type == JointType::link || type == JointType::spherical ||
         type == JointType::weld)
@@ -34,13 +35,15 @@ Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
     return columns(p, z.cross(p).normalized(), axis);
 }
 
-/// {c, s, rate} of ChainGroup::screw.
+/// Returns {c, s, rate}, see ChainGroup::screw.
 Vec3 screw_of(JointType type, double pitch) {
     if (type == JointType::prismatic) return {{0, 1, 1}};
     double const rate = type == JointType::helical ? std::hypot(1.0, pitch) : 1.0;
     return {{1 / rate, type == JointType::helical ? pitch / rate : 0.0, rate}};
 }
 
+/// Number of directions that a joint type constrains; 6 less its degrees of freedom, and 1 for a
+/// link.
 int restricted_directions(JointType type) {
     switch (type) {
         case JointType::free:
@@ -61,6 +64,7 @@ int restricted_directions(JointType type) {
     return 0;
 }
 
+/// Inverse of a rotational inertia, as a lower triangle.
 Vector<double, 6> inverse(Sym3 const& inertia) {
     Eigen::Matrix3d j;
     for (int a = 0; a < 3; ++a)
@@ -70,13 +74,14 @@ Vector<double, 6> inverse(Sym3 const& inertia) {
              0.5 * (i(2, 1) + i(1, 2)), i(2, 2)}};
 }
 
-/// Of joint `body` (from 0); the number of bodies stands for the tip's.
+/// Type of joint `body` (counted from 0); the number of bodies denotes the tip joint.
 JointType joint_type(ChainSpec const& spec, std::int64_t body) {
     if (body == static_cast<std::int64_t>(spec.size()))
         return spec.tip == Tip::jointed ? spec.tip_joint.type : JointType::free;
     if (spec.bodies.size() > 0) return spec.bodies.joint[body];
     return body == 0 && spec.base == Base::free ? JointType::free : JointType::link;
 }
+/// True if the joint has prescribed motion.
 bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
     auto const& driven = spec.bodies.driven;
     auto const found =
@@ -84,24 +89,26 @@ bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
                          [](DrivenJoint const& d, std::int64_t k) { return d.body < k; });
     return found != driven.end() && found->body == body;
 }
-/// Of joints in joint coordinates with springs or dampers.
+/// True if a joint in joint coordinates has springs or dampers and no prescribed motion.
 bool has_implicit_joint(ChainSpec const& spec, std::int64_t body) {
     return body < static_cast<std::int64_t>(spec.bodies.size()) &&
            scene::resists(spec.bodies, static_cast<std::size_t>(body)) &&
            !is_driven_joint(spec, body);
 }
-/// In a ring the first body's joint is the one that closes it.
+/// Number of constrained directions of a joint. In a ring, the first body's joint is the closing
+/// joint.
 int restricted_at(ChainSpec const& spec, std::int64_t body, bool implicit) {
     if (body == 0 && spec.is_ring()) return restricted_directions(spec.tip_joint.type);
     if (implicit && has_implicit_joint(spec, body)) return 6;
     return is_driven_joint(spec, body) ? 6 : restricted_directions(joint_type(spec, body));
 }
 
-/// Directions that hold every joint of the chain.
+/// Smallest number of handle directions that covers every joint of the chain.
 int smallest_directions(ChainSpec const& spec) {
     return scene::directions_of(scene::handle_kind(spec));
 }
 
+/// Sets the arrays of bead k.
 void fill_bead(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     group.mass.set(k, {{spec.beads.mass[body]}});
     group.inverse_mass.set(k, {{1.0 / spec.beads.mass[body]}});
@@ -115,7 +122,8 @@ void fill_inertia(ChainGroup& group, Sym3 const& inertia, std::int64_t k) {
     group.inverse_inertia.set(k, inverse(inertia));
 }
 
-/// Planar chains turn about the axis alone: a a^T / (a . J a) in the place of the inverse inertia.
+/// Replaces the inverse inertia by a a^T / (a . J a): bodies of planar chains rotate about the axis
+/// alone.
 void keep_axis_alone(ChainGroup& group, Sym3 const& inertia, Vec3 const& axis, std::int64_t k) {
     double const about = dot(axis, inertia * axis);
     Vector<double, 6> v;
@@ -124,6 +132,7 @@ void keep_axis_alone(ChainGroup& group, Sym3 const& inertia, Vec3 const& axis, s
     group.inverse_inertia.set(k, v);
 }
 
+/// Sets the arrays of rigid body k.
 void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     BodyArrays const& b = spec.bodies;
     group.mass.set(k, {{b.mass[body]}});
@@ -140,11 +149,12 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     Quat const rotation = to_quaternion(b.rotation[body]);
     group.joint_rotation.set(k, {{rotation.w, rotation.x, rotation.y, rotation.z}});
     group.joint_translation.set(k, b.translation[body]);
-    // Of the last body, whose tip nobody holds, as of the one before: alike bodies then are alike.
+    // The last body with a free tip is treated as the one before, so that alike bodies have alike
+    // entries.
     std::int64_t const inboard = body + 1 < static_cast<std::int64_t>(b.size()) ? body : body - 1;
     group.r2.set(k, inboard < 0 ? Vec3::zero() : b.translation[inboard + 1] - b.com[inboard]);
-    // As JointsView::meeting() finds them where it looks again: the same bits where they do not
-    // move.
+    // The axes are computed as in JointsView::meeting(), so that axes that do not move have the
+    // same bits there.
     auto const meeting = [&](std::int64_t joint) {
         return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint)));
     };
@@ -152,7 +162,8 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     if (group.has_universal && b.joint[body] == JointType::universal)
         group.first_axis.set(k, b.first_axis[body]);
     if (!group.has_screws) return;
-    bool const closing = body == 0 && spec.is_ring();  // a ring's first body has no other joint
+    bool const closing =
+        body == 0 && spec.is_ring();  // a ring's first body has no other inboard joint
     if (closing)
         group.screw.set(k, screw_of(spec.tip_joint.type, spec.tip_joint.pitch));
     else
@@ -160,18 +171,19 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
             k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
 }
 
+/// Sets the arrays of body k of a linked chain.
 void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     LinkedArrays const& b = spec.linked;
     group.mass.set(k, {{b.mass[body]}});
     group.inverse_mass.set(k, {{1.0 / b.mass[body]}});
     if (!b.is_bead(static_cast<std::size_t>(body)))
-        fill_inertia(group, b.inertia[body], k);  // a bead: zero
+        fill_inertia(group, b.inertia[body], k);  // a bead's inertia stays zero
     group.r1.set(k, b.inboard[body]);
     group.r2.set(k, b.outboard[body]);
     group.length.set(k, {{b.length[body]}});
 }
 
-/// Beads that bodies carry, where any chain of the group has some.
+/// Sets the beads that bodies carry, if any chain of the group carries some.
 void fill_carried(ChainGroup& group, Scene const& scene) {
     auto const carried_of = [&](int chain) -> CarriedBeads const& {
         return scene.chains[group.chain[chain]].carried();
@@ -188,7 +200,7 @@ void fill_carried(ChainGroup& group, Scene const& scene) {
             for (std::int64_t i = carried.size() > 0 ? carried.offset[body] : 0;
                  carried.size() > 0 && i < carried.offset[body + 1]; ++i) {
                 Vec3 const place = carried.position[static_cast<std::size_t>(i)];
-                // Joint chains say it from the origin, their inboard joint.
+                // Joint chains give the position from the body's origin, the inboard joint.
                 group.bead_place.push_back(
                     group.linked ? place : place + group.r1[piece.local + body - piece.body]);
             }
@@ -197,6 +209,7 @@ void fill_carried(ChainGroup& group, Scene const& scene) {
     }
 }
 
+/// Appends the jointed tip of last body k.
 void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     TipJoint const& tip = spec.tip_joint;
     LocalTip const local = local_tip(group, spec, k);
@@ -209,11 +222,13 @@ void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     group.tip_screw.push_back(local.screw);
 }
 
+/// Number of directions of the group's handles.
 int directions_of(ChainGroup const& group) {
     if (carries_all(group.handles)) return group.beads || group.linked ? 3 : 6;
     return group.smallest_directions;
 }
 
+/// Allocates the arrays that the group's kind needs.
 void allocate(ChainGroup& group) {
     std::int64_t const n = group.size;
     group.is_first.assign(n, 0);
@@ -236,6 +251,7 @@ void allocate(ChainGroup& group) {
     if (group.has_screws) group.screw = Field<3>(n);
 }
 
+/// Sets all arrays from the scene.
 void fill(ChainGroup& group, Scene const& scene, Executor const& executor) {
     each_local_body(group, executor, [&](dca::Piece const& piece, std::int64_t i) {
         ChainSpec const& spec = scene.chains[group.chain[piece.chain]];
@@ -258,8 +274,8 @@ void fill(ChainGroup& group, Scene const& scene, Executor const& executor) {
     }
 }
 
-/// Also of the joints at the boundaries of shared units, the halo's among them, which are
-/// eliminated at the top.
+/// Sets restricted_of_joint. This includes the joints at the boundaries of shared units, which the
+/// top eliminates, and the halo's joint among them.
 void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
     dca::Schedule const& s = group.schedule;
     auto const restricted = [&](int chain, std::int64_t body) {
@@ -287,6 +303,7 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
 }
 
+/// Sets the neighbouring ranks.
 void find_neighbours(ChainGroup& group, int rank) {
     dca::Partition const& p = group.partition;
     std::int64_t const begin = p.first_of_rank[rank], end = p.first_of_rank[rank + 1];
@@ -295,6 +312,7 @@ void find_neighbours(ChainGroup& group, int rank) {
     if (!group.pieces.back().ends) group.neighbour_outboard = p.owner(end);
 }
 
+/// Finds the rings with an end on this rank.
 void find_rings(ChainGroup& group, int rank) {
     dca::Partition const& p = group.partition;
     for (int chain = 0; chain < p.chains(); ++chain) {
@@ -316,7 +334,7 @@ dca::TipTo tip_of(ChainSpec const& spec) {
     return spec.is_ring() ? dca::TipTo::first_body : dca::TipTo::ground;
 }
 
-/// What kinds of joints a group's chains have.
+/// Records which kinds of joints a chain has.
 void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     auto const look = [&](JointType type) {
         group.has_universal = group.has_universal || type == JointType::universal;
@@ -327,7 +345,7 @@ void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     group.smallest_directions = std::max(group.smallest_directions, smallest_directions(spec));
 }
 
-/// Whether it has nothing but revolute joints beyond its first joint.
+/// True if all joints of the chain except its first are revolute, and its tip is free.
 bool is_revolute(ChainSpec const& spec) {
     std::vector<JointType> const& joint = spec.bodies.joint;
     return spec.tip == Tip::free &&
@@ -335,6 +353,7 @@ bool is_revolute(ChainSpec const& spec) {
                        [](JointType type) { return type == JointType::revolute; });
 }
 
+/// Builds the group of the given chains. Collective.
 ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes,
                       Handles handles, bool pairwise, Communicator const& communicator,
                       GroupOptions const& options) {
@@ -384,7 +403,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     return group;
 }
 
-/// Chains of one number go into one group.
+/// Returns a number that is equal for chains of one group.
 int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;
@@ -420,8 +439,8 @@ std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes ax
     for (std::size_t i = 0; i < scene.chains.size(); ++i)
         chains[group_of(scene.chains[i], axes, handles, options.implicit)].push_back(
             static_cast<int>(i));
-    // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the
-    // order.
+    // Chains of one rank should lie close together, so that ranks have few ghosts of each other.
+    // Results do not depend on the order.
     bool const together = scene.forces.openmm && communicator.size() > 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (auto& [kind, members] : chains) {

@@ -1,6 +1,6 @@
-// The model in memory: the chains of a scene that share one kind of handle, as arrays over the
-// bodies this rank holds. Local body k = 0 .. size-1; -1 and size are the neighbours' bodies
-// (halo), valid where a chain goes on across the rank's end.
+// Model of the chains of a scene that share one handle kind, as arrays over the bodies that this
+// rank owns. Local bodies are k = 0 .. size-1. Entries -1 and size are the halo, the neighbouring
+// ranks' bodies; they are valid if a chain continues beyond the rank's end.
 #pragma once
 
 #include <cstdint>
@@ -18,145 +18,183 @@
 
 namespace catena {
 
-/// Axes of a handle's directions. joint: those of the joint frame (state in joint coordinates).
-/// world: ground axes (absolute coordinates).
+/// Axes of a handle's directions. joint: axes of the joint frame (state in joint coordinates).
+/// world: ground axes W (absolute coordinates).
 enum class Axes { joint, world };
 
-/// A chain's joint from its last body to the ground or to its first body, where this rank holds
-/// that last body.
+/// Joint from a chain's last body to the ground or to its first body, on the rank that owns the
+/// last body.
 struct LocalTip {
-    std::int64_t body = 0;  // local
+    std::int64_t body = 0;  // local index of the chain's last body
     TipJoint joint;
-    Mat3 axes;   // its axes in the meeting frame, as ChainGroup::axes1
-    Vec3 screw;  // as ChainGroup::screw
+    Mat3 axes;   // axes in M, see ChainGroup::axes1
+    Vec3 screw;  // see ChainGroup::screw
+    /// Number of constrained directions.
     int restricted = 0;
 };
 
-/// A chain closed on itself, one end of which at least is on this rank.
+/// Ring: a chain closed on itself, of which this rank owns at least one end.
 struct LocalRing {
-    int chain = 0;                       // of the group
-    std::int64_t first = -1, last = -1;  // its first and last bodies, local; -1 on another rank
-    int neighbour = -1;                  // the rank that holds the other end; -1: this one does
+    int chain = 0;  // index in the group
+    /// Local indices of the chain's first and last body; -1 if another rank owns it.
+    std::int64_t first = -1, last = -1;
+    /// Rank that owns the other end; -1: this rank owns both.
+    int neighbour = -1;
+    /// True if this rank owns both ends.
     bool is_whole() const { return neighbour < 0; }
 };
 
-/// A joint that follows a prescribed course, on this rank.
+/// Joint of this rank with prescribed motion.
 struct LocalDrive {
-    std::int64_t body = 0;           // local: the joint's outboard body
-    PrescribedMotion first, second;  // universal: both
+    std::int64_t body = 0;           // local index of the joint's outboard body
+    PrescribedMotion first, second;  // motion of each coordinate; `second` for universal joints
 };
 
-/// Two bodies meet at a joint in its meeting frame M: the joint frame J, but for a universal joint,
-/// where it is J turned about the first axis, and for sliding joints, where it moves with the
-/// outboard body along the axis. The last column of a joint's axes is its axis; of a universal
-/// joint the columns are (normal to both axes, -, second axis).
+/// Chains of one handle kind. Two bodies meet at a joint in its meeting frame M. M is the joint
+/// frame J, with two exceptions. For a universal joint, M is J rotated about the first axis; for a
+/// sliding joint, M moves with the outboard body along the axis. The last column of a joint's axes
+/// is its axis. For a universal joint the columns are the normal to both axes, the third unit
+/// vector, and the second axis.
 struct ChainGroup {
-    bool beads = false;   // point beads on links
-    bool linked = false;  // rigid bodies and point beads on links
-    bool planar = false;  // revolute, all axes parallel: the plane's two directions are enough
+    bool beads = false;   // true for point beads on links
+    bool linked = false;  // true for rigid bodies and point beads on links
+    /// True if all joints are revolute with parallel axes; then the two directions of the plane
+    /// suffice.
+    bool planar = false;
     Axes axes = Axes::joint;
     Handles handles = Handles::projected;
-    int directions = 6;           // K: what a handle carries
-    int smallest_directions = 6;  // what would be enough
+    int directions = 6;           // K, the number of directions of a handle
+    int smallest_directions = 6;  // number of directions that would suffice
+    /// True if some joint is universal, or some joint slides (prismatic, helical).
     bool has_universal = false, has_screws = false;
-    bool revolute = false;  // bodies on projected handles whose joints, but those of chains' first
-                            // ones, are revolute; tips are free
-    std::vector<std::uint8_t> implicit_joint;  // of local body k: its springs and dampers stand in
-                                               // the matrices; empty where none does
-    std::vector<int> chain;                    // index in the scene of each chain of the group
+    /// True for bodies on projected handles whose joints are revolute, except for the first joints
+    /// of chains; tips are free.
+    bool revolute = false;
+    /// 1 for each local body whose inboard joint's springs and dampers are implicit: they enter the
+    /// matrices. Empty if none is.
+    std::vector<std::uint8_t> implicit_joint;
+    /// Index in the scene of each chain of the group.
+    std::vector<int> chain;
     std::vector<std::string> name;
-    std::vector<Base> base;                    // one a chain
-    std::vector<std::int64_t> first_in_scene;  // scene-wide index of each chain's first body
-                                               // (bodies counted over all chains of the scene)
+    std::vector<Base> base;  // one per chain
+    /// Scene-wide index of each chain's first body (bodies counted over all chains of the scene).
+    std::vector<std::int64_t> first_in_scene;
     dca::Partition partition;
-    std::vector<dca::Piece> pieces;  // of this rank
+    std::vector<dca::Piece> pieces;  // pieces of this rank
     dca::Schedule schedule;
 
-    // Local arrays.
+    // Arrays over local bodies.
+    /// Number of local bodies.
     std::int64_t size = 0;
-    std::vector<std::uint8_t> is_first, is_last;  // of its chain
-    bool tips_in_scene = false;  // some chain of the group has a jointed tip, on whatever rank
-    std::vector<std::int32_t>
-        jointed_tip;  // of its last body: index in `tips`, else -1; empty where none has
+    /// 1 for the first and last bodies of chains.
+    std::vector<std::uint8_t> is_first, is_last;
+    /// True if some chain of the group has a jointed tip, on any rank.
+    bool tips_in_scene = false;
+    /// Index in `tips` of the jointed tip of each last body, else -1; empty if no chain has one.
+    std::vector<std::int32_t> jointed_tip;
+    /// Type of each inboard joint.
     std::vector<JointType> joint;
+    /// Mass, amu, and its inverse.
     Field<1> mass, inverse_mass;
-    // links
-    Field<1> length;  // of the inboard link
-    // bodies
-    Field<6> inertia,
-        inverse_inertia;  // about the centre of mass, B (lower triangle: xx yx yy zx zy zz);
-                          // planar: the inverse about the axis
-    Field<3> r1,
-        r2;  // inboard and outboard joint from the centre of mass, B (sliding outboard joint: at q
-             // = 0); of a last body whose tip nobody holds r2 and axes2 are as of the body before
-    Field<6>
-        axes1;  // joint's axes in M (kept_axes()); the same components in B turn with the joint
-    Field<6> axes2;           // the outboard joint's axes in B (universal: at q = 0)
-    Field<4> joint_rotation;  // quaternion of J of the inboard joint in the inboard body's axes
-                              // (first body: W)
-    Field<3>
-        joint_translation;  // origin of J from the inboard body's origin, its axes (first body: W)
-    Field<3> first_axis;    // of a universal joint, J; empty where there is none
-    Field<3> screw;  // {c, s, rate}: the joint turns by c rate q about its axis and slides by s
-                     // rate q along it; empty where no joint slides
-    bool carried_in_scene = false;  // some body of the group carries beads, on whatever rank
-    std::vector<std::int64_t>
-        bead_offset;               // size + 1: beads that body k carries; empty where none does
-    std::vector<Vec3> bead_place;  // of carried beads from the centre of mass, B
+    // Groups with links.
+    /// Length of the inboard link, nm.
+    Field<1> length;
+    // Groups with rigid bodies.
+    /// Inertia about the centre of mass and its inverse, B (lower triangle: xx yx yy zx zy zz), amu
+    /// nm^2. Planar groups: the inverse about the axis.
+    Field<6> inertia, inverse_inertia;
+    /// Inboard and outboard joint relative to the centre of mass, B, nm. A sliding outboard joint
+    /// is at q = 0. If the tip of a last body is free, its r2 and axes2 are set as for the body
+    /// before.
+    Field<3> r1, r2;
+    /// Axes of the inboard joint in M (kept_axes()). The same components taken in B are axes that
+    /// rotate with the joint.
+    Field<6> axes1;
+    /// Axes of the outboard joint in B (universal: at q = 0).
+    Field<6> axes2;
+    /// Quaternion of the inboard joint's frame J in the inboard body's axes (first body: W).
+    Field<4> joint_rotation;
+    /// Origin of J relative to the inboard body's origin, in that body's axes (first body: W), nm.
+    Field<3> joint_translation;
+    /// First axis of a universal joint, J; empty if no joint is universal.
+    Field<3> first_axis;
+    /// {c, s, rate}: the joint rotates by c rate q about its axis and slides by s rate q along it.
+    /// Empty if no joint slides.
+    Field<3> screw;
+    /// True if some body of the group carries beads, on any rank.
+    bool carried_in_scene = false;
+    /// Offset of the beads that body k carries; [size + 1]. Empty if no body carries beads.
+    std::vector<std::int64_t> bead_offset;
+    /// Position of each carried bead relative to the centre of mass, B, nm.
+    std::vector<Vec3> bead_place;
+    /// Joints with prescribed motion, ascending.
     std::vector<LocalDrive> drives;
+    /// Jointed tips, ascending.
     std::vector<LocalTip> tips;
-    std::vector<Vec3> tip_screw;  // of `tips`
+    /// Screws of `tips`, as `screw`.
+    std::vector<Vec3> tip_screw;
+    /// Rings with an end on this rank.
     std::vector<LocalRing> rings;
 
-    int neighbour_inboard = -1,
-        neighbour_outboard =
-            -1;  // ranks that hold the bodies before and after, where a chain goes on there
+    /// Ranks that own the bodies before the first and after the last local body, if a chain
+    /// continues there; else -1.
+    int neighbour_inboard = -1, neighbour_outboard = -1;
+    /// View of the arrays in host memory.
     GroupView view() const;
-    /// What sweeps read of `mass` and `inertia`: those of articulated handles and of runs on
-    /// revolute joints. Else empty.
+    /// Masses and inertias that sweeps read: those of articulated handles and of runs on revolute
+    /// joints. Empty for other groups.
     Field<1> const& mass_of_sweeps() const;
     Field<6> const& inertia_of_sweeps() const;
+    /// True if sweeps read masses and inertias.
     bool sweeps_read_inertias() const;
-    char const* kind()
-        const;  // smallest handle kind: link | planar | spherical | universal | revolute | full
-    /// Restricted directions of joint k of local numbering, the halo's, tips' and those of shared
-    /// chains' tops included (schedule.joints entries; `none`: 0).
+    /// Name of the smallest handle kind: link | planar | spherical | universal | revolute | full.
+    char const* kind() const;
+    /// Number of constrained directions of joint k in storage numbering. Entries include the halo,
+    /// tips and the tops of shared chains (schedule.joints entries; `none`: 0).
     std::vector<std::uint8_t> restricted_of_joint;
+    /// True if local body k is the last body of a chain with a jointed tip.
     bool has_jointed_tip(std::int64_t k) const {
         return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] >= 0;
     }
-    /// Precondition: has_jointed_tip(k).
+    /// Index in `tips` of body k's tip. Precondition: has_jointed_tip(k).
     std::size_t tip_index(std::int64_t k) const {
         return static_cast<std::size_t>(jointed_tip[static_cast<std::size_t>(k)]);
     }
     LocalTip const& tip_of(std::int64_t k) const { return tips[tip_index(k)]; }
+    /// Number of beads that the local bodies carry.
     std::int64_t carried_beads() const { return bead_offset.empty() ? 0 : bead_offset.back(); }
+    /// True if some chain of the group has a jointed tip, on any rank.
     bool has_tips() const { return tips_in_scene; }
-    /// Whether handle 2 of a body depends on the joint there.
+    /// True if handle 2 of a body depends on the state of the joint there.
     bool moving_meeting() const { return has_universal || has_screws; }
+    /// True if the inboard joint of local body k has prescribed motion.
     bool is_driven(std::int64_t k) const;
+    /// True if the springs and dampers of body k's inboard joint enter the matrices.
     bool is_implicit(std::int64_t k) const {
         return !implicit_joint.empty() && implicit_joint[static_cast<std::size_t>(k)] != 0;
     }
-    /// Restricted directions of local body k's inboard joint, of those that the handles carry.
+    /// Number of constrained directions of local body k's inboard joint, at most `directions`.
+    /// Driven and implicit joints count as constrained in all directions.
     int restricted(std::int64_t k) const;
-    /// Of `pieces`: the one that local body k is in.
+    /// Index in `pieces` of the piece that contains local body k.
     std::size_t index_of_piece(std::int64_t k) const;
-    /// Global body index over the scene of local body k.
+    /// Scene-wide index of local body k.
     std::int64_t scene_index(std::int64_t k) const;
-    /// Index in the scene of the chain that local body k belongs to.
+    /// Index in the scene of the chain that contains local body k.
     int scene_chain(std::int64_t k) const;
+    /// First body of each rank in the group's numbering; [ranks + 1].
     std::vector<std::int64_t> const& first_of_rank() const { return partition.first_of_rank; }
 };
 
-/// Of a chain of the group, with directions and planarity known. `last`: its last body, local.
+/// Returns the tip joint of a chain of the group, whose `directions` and `planar` must be set.
+/// `last`: local index of the chain's last body.
 LocalTip local_tip(ChainGroup const&, ChainSpec const&, std::int64_t last);
 
-/// That the tips belong to, local, in their order.
+/// Returns the local indices of the last bodies to which the tips belong, in the same order.
 std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const&);
 
-/// Body i of `from` to rank `to`, and from rank `source` into body j of `into`; a negative rank
-/// means nobody.
+/// Exchange of one body's numbers with neighbouring ranks: sends body i of `from` to rank `to`, and
+/// receives body j of `into` from rank `source`. A negative rank means no message.
 template <int D>
 struct BodyExchange {
     ConstView<D> from;
@@ -167,9 +205,11 @@ struct BodyExchange {
     int source;
 
     static constexpr int numbers = D;
+    /// Exchange without messages.
     static BodyExchange none() { return {{}, 0, -1, {}, 0, -1}; }
     explicit operator bool() const { return to >= 0 || source >= 0; }
 };
+/// Traffic of an exchange on this rank.
 template <int D>
 Traffic traffic_of(BodyExchange<D> const& e) {
     Traffic message;
@@ -177,7 +217,7 @@ Traffic traffic_of(BodyExchange<D> const& e) {
     message.sent_bytes = e.to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
     return message;
 }
-/// By the host: `access` gets and puts bodies, wherever they are.
+/// Carries out an exchange through host memory. `access` reads and writes bodies in any memory.
 template <int D, class Access>
 void exchange_by_host(Access const& access, Communicator const& communicator,
                       BodyExchange<D> const& e) {
@@ -188,7 +228,7 @@ void exchange_by_host(Access const& access, Communicator const& communicator,
                           std::as_writable_bytes(std::span(receive.data)), e.source);
     if (e.source >= 0) access.put(e.into, e.j, receive);
 }
-/// Access to a field's bodies on the host.
+/// Access to the bodies of fields in host memory.
 struct HostAccess {
     template <int D>
     Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
@@ -198,12 +238,12 @@ struct HostAccess {
     void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
         field.store(k, value);
     }
-    /// exchange_by_host(), or a shorter way.
+    /// Exchanges a body, here by exchange_by_host(). Other access types may have a shorter path.
     template <int D>
     void exchange(Communicator const& communicator, BodyExchange<D> const& e) const {
         exchange_by_host(*this, communicator, e);
     }
-    /// After first(0), where there is an exchange.
+    /// Calls first(0), then exchanges; does nothing without an exchange.
     template <int D, class First>
     void exchange(Communicator const& communicator, BodyExchange<D> const& e,
                   First const& first) const {
@@ -212,18 +252,20 @@ struct HostAccess {
         exchange(communicator, e);
     }
 };
-/// Of a field's halos: entry size, from the outboard neighbour's first body.
+/// Exchange that fills halo entry `size` of a field with the outboard neighbour's first body.
 template <int D>
 BodyExchange<D> from_outboard(ChainGroup const& group, View<D> field) {
     return {field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard};
 }
-/// Fills halos of a field: entry size from the outboard neighbour's first body, entry -1 from the
-/// inboard neighbour's last one. `access` reads and writes bodies of the field, wherever it is.
+/// Fills halo entry `size` of a field with the outboard neighbour's first body. `access` reads and
+/// writes bodies of the field. Collective among neighbours.
 template <int D, class Access = HostAccess>
 void exchange_from_outboard(Communicator const& communicator, ChainGroup const& group,
                             View<D> field, Access const& access = {}) {
     access.exchange(communicator, from_outboard(group, field));
 }
+/// Fills halo entry -1 of a field with the inboard neighbour's last body. Collective among
+/// neighbours.
 template <int D, class Access = HostAccess>
 void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field,
                            Access const& access = {}) {
@@ -231,17 +273,18 @@ void exchange_from_inboard(Communicator const& communicator, ChainGroup const& g
                                                   field, -1, group.neighbour_inboard});
 }
 
-/// A canonical unit of the tree on this rank: what composes along a chain does so unit by unit,
-/// whatever the number of ranks.
+/// Canonical unit of the tree on this rank. Chain-wide compositions proceed unit by unit,
+/// independently of the number of ranks.
 struct LocalUnit {
     std::size_t piece = 0;
     std::int64_t begin = 0, count = 0;  // local bodies
-    std::int64_t index = 0;             // within its chain
+    std::int64_t index = 0;             // index of the unit in its chain
 };
+/// Returns the units of this rank along the chains.
 std::vector<LocalUnit> local_units(ChainGroup const&);
 
-/// One collective: a value of every unit of chains that several ranks share, chain after chain,
-/// from those of the ranks' own units (`own`, one a local unit). Empty where no chain is shared.
+/// Gathers a value of every unit of shared chains, chain after chain, in one collective. `own` has
+/// one value for each of this rank's units. The result is empty if no chain is shared.
 template <class Value>
 std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGroup const& group,
                                        std::vector<LocalUnit> const& units,
@@ -257,7 +300,7 @@ std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGr
     return all;
 }
 
-/// action(piece, i) for body i of every piece, on the executor's threads.
+/// Calls action(piece, i) for body i of every piece, on the executor's threads.
 template <class Action>
 void each_local_body(ChainGroup const& group, Executor const& executor, Action const& action) {
     executor.for_ranges(group.size, 1, [&](std::int64_t begin, std::int64_t end) {
@@ -269,15 +312,16 @@ void each_local_body(ChainGroup const& group, Executor const& executor, Action c
     });
 }
 
+/// Options of make_groups().
 struct GroupOptions {
-    /// Joints with springs or dampers carry all six directions, along the free ones what these do
-    /// to the matrices; their chains have full handles.
+    /// True if springs and dampers are implicit. Joints with them then carry all six directions,
+    /// with their effect on the matrices along the free ones; their chains have full handles.
     bool implicit = false;
-    dca::Shares shares;                        // of the bodies of every group, rank by rank
-    Executor const& executor = this_thread();  // for loops over bodies
+    dca::Shares shares;                        // shares of the bodies of every group, per rank
+    Executor const& executor = this_thread();  // executor of loops over bodies
 };
-/// Groups the scene's chains by the smallest handle kind that holds them (full handles: by what
-/// they consist of). `pairwise` chooses the chapter's tree.
+/// Groups the scene's chains by their smallest handle kind; with full handles, by the kind of their
+/// bodies. `pairwise` selects the chapter's tree of pairs. Collective.
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const&, Axes, Handles, bool pairwise,
                                                      Communicator const&, GroupOptions const& = {});
 

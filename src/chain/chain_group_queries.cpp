@@ -1,4 +1,4 @@
-// What can be asked of a group once it is made.
+// Queries of a chain group, and its units.
 #include <algorithm>
 
 #include "chain/chain_group.hpp"

@@ -1,3 +1,4 @@
+// Recursive bisection of space, which orders chains by rank.
 #include "chain/chain_order.hpp"
 
 #include <algorithm>
@@ -7,12 +8,14 @@
 namespace catena {
 namespace {
 
+/// Number of bodies of all chains.
 std::int64_t bodies_of(std::span<PlacedChain const> chains) {
     std::int64_t bodies = 0;
     for (PlacedChain const& chain : chains) bodies += chain.bodies;
     return bodies;
 }
 
+/// Axis along which the midpoints of the chains extend farthest.
 int longest_side(std::span<PlacedChain const> chains) {
     Vec3 least = chains[0].middle, most = least;
     for (PlacedChain const& chain : chains)
@@ -24,8 +27,8 @@ int longest_side(std::span<PlacedChain const> chains) {
     return static_cast<int>(std::max_element(side.data, side.data + 3) - side.data);
 }
 
-/// Cuts where dca::cut_by_shares() does: a chain goes to the rank within whose share of all bodies
-/// its middle lies.
+/// Recursive bisection with the cuts of dca::cut_by_shares(): a chain goes to the rank whose share
+/// of all bodies contains the chain's middle.
 class Halving {
   public:
     Halving(std::span<PlacedChain> chains, int ranks, dca::Shares const& shares)
@@ -34,7 +37,7 @@ class Halving {
     }
 
   private:
-    /// `chains` are those of ranks [first, last), after those of others with `before` bodies.
+    /// Sorts the chains of ranks [first, last). Chains of earlier ranks contain `before` bodies.
     void order(std::span<PlacedChain> chains, int first, int last, std::int64_t before) const {
         std::sort(chains.begin(), chains.end(),
                   [](PlacedChain const& a, PlacedChain const& b) { return a.chain < b.chain; });
@@ -61,7 +64,7 @@ class Halving {
 
 std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks,
                                dca::Shares const& shares) {
-    Halving const halving(chains, ranks, shares);  // orders them
+    Halving const halving(chains, ranks, shares);  // sorts `chains`
     std::vector<int> in_order;
     for (PlacedChain const& chain : chains) in_order.push_back(chain.chain);
     return in_order;

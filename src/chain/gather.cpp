@@ -1,3 +1,4 @@
+// Gather of a group's data to rank 0, and its permutation to the order of the scene.
 #include "chain/gather.hpp"
 
 #include <algorithm>

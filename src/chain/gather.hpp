@@ -1,5 +1,5 @@
-// From the bodies of the ranks to arrays in the order of the scene (all chains one after the
-// other), on rank 0.
+// Collection of body data from all ranks on rank 0, in the order of the scene (all chains one after
+// the other).
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace catena {
 
-/// `own`: `width` numbers for each of this rank's bodies. On rank 0 they land in `in_scene_order`
-/// (width numbers for every body of the scene; entries of other groups are left alone). Collective.
+/// Gathers `width` numbers for each body of the group. `own` has those of this rank's bodies. Rank
+/// 0 receives them in `in_scene_order`, which has `width` numbers for every body of the scene;
+/// entries of other groups are unchanged. Collective.
 void gather_to_scene(Communicator const&, ChainGroup const&, int width, std::span<double const> own,
                      std::vector<double>& in_scene_order);
 

@@ -1,3 +1,4 @@
+// Windows over the bodies of the scene, and the messages that fill or distribute them.
 #include "chain/scene_windows.hpp"
 
 #include <algorithm>
@@ -31,7 +32,8 @@ SceneWindows::SceneWindows(Communicator const& communicator,
               [](Part const& a, Part const& b) { return a.first < b.first; });
 }
 
-/// action(part, begin, end): what of a part, counted from its first body, lies in the window.
+/// Calls action(part, begin, end) for every part that overlaps the window; bodies [begin, end) of
+/// the part, counted from its first, lie in it.
 template <class Action>
 void SceneWindows::for_each_part_in(Window const& window, Action const& action) const {
     for (std::size_t p = window.first_part; p < parts_.size() && parts_[p].first < window.end; ++p)
@@ -39,6 +41,7 @@ void SceneWindows::for_each_part_in(Window const& window, Action const& action) 
                std::min(window.end - parts_[p].first, parts_[p].count));
 }
 
+/// Sends this rank's bodies of a window to rank 0.
 void SceneWindows::send(Window const& window, int width,
                         std::vector<std::vector<double>> const& own) const {
     std::vector<double> packed;
@@ -50,7 +53,8 @@ void SceneWindows::send(Window const& window, int width,
     if (!packed.empty()) communicator_.exchange(std::as_bytes(std::span(packed)), 0, {}, -1);
 }
 
-/// One message from each rank that has something of the window, then everything to its place.
+/// Receives one message from each rank that owns bodies of the window, and sorts all bodies into
+/// the order of the scene.
 std::vector<double> SceneWindows::receive(Window const& window, int width,
                                           std::vector<std::vector<double>> const& own) const {
     std::vector<std::int64_t> at(static_cast<std::size_t>(communicator_.size()) + 1, 0);
@@ -78,6 +82,7 @@ std::vector<double> SceneWindows::receive(Window const& window, int width,
     return values;
 }
 
+/// Calls action(window) for all windows of the scene.
 template <class Action>
 void SceneWindows::for_each_window(int width, Action const& action) const {
     std::int64_t const length =
@@ -106,8 +111,8 @@ std::vector<std::vector<double>> SceneWindows::hand_out(
         own.emplace_back(static_cast<std::size_t>(size * width));
     int const rank = communicator_.rank();
     for_each_window(width, [&](Window const& window) {
-        std::vector<std::vector<double>> of_rank(
-            static_cast<std::size_t>(communicator_.size()));  // on rank 0; elsewhere its own
+        // This has the data of every rank on rank 0, elsewhere only the rank's own.
+        std::vector<std::vector<double>> of_rank(static_cast<std::size_t>(communicator_.size()));
         for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
             std::vector<double>& numbers = of_rank[static_cast<std::size_t>(part.rank)];
             if (rank == 0) {
@@ -136,7 +141,7 @@ std::vector<std::vector<double>> SceneWindows::hand_out(
     return own;
 }
 
-/// Joined where they are neighbours in their group too.
+/// Returns this rank's parts; parts that are also consecutive in their group are joined.
 std::vector<SceneWindows::Part> SceneWindows::own_parts() const {
     std::vector<Part> own;
     for (Part const& part : parts_) {
@@ -162,7 +167,7 @@ void SceneWindows::pass_own(int width, std::vector<std::vector<double>> const& o
     std::int64_t const length =
         std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
     std::vector<std::vector<Own>> rounds;
-    std::int64_t room = 0;  // bodies, in the last one
+    std::int64_t room = 0;  // bodies that fit in the last round
     for (Part const& part : own_parts())
         for (std::int64_t at = 0; at < part.count;) {
             if (room == 0 || rounds.back().size() == most_runs) {

@@ -1,5 +1,5 @@
-// Numbers of bodies on their way to rank 0 and back, in the order of the scene, a window of bounded
-// size at a time.
+// Transfer of body data between all ranks and rank 0 in the order of the scene, in windows of
+// bounded size.
 #pragma once
 
 #include <cstdint>
@@ -12,50 +12,56 @@
 
 namespace catena {
 
+/// Mapping between the bodies of the scene and those of groups and ranks.
 class SceneWindows {
   public:
+    /// Default size of a window.
     static constexpr std::int64_t usual_bytes = 4 << 20;
 
-    /// `groups`: those that hold the scene's bodies between them.
+    /// `groups` together contain all bodies of the scene.
     SceneWindows(Communicator const&, std::vector<std::unique_ptr<ChainGroup>> const& groups,
                  std::int64_t bytes = usual_bytes);
 
-    /// Bodies [first, first + values.size() / width) of the scene.
+    /// Callback that receives the numbers of bodies [first, first + values.size() / width) of the
+    /// scene.
     using Take = std::function<void(std::int64_t first, std::span<double const> values)>;
-    /// `own[g]`: `width` numbers for each of this rank's bodies of group g. Rank 0 takes window
-    /// after window. What `take` throws leaves the other ranks waiting: it is for failures that end
-    /// the program. Collective.
+    /// Passes all data to `take` on rank 0, window by window. `own[g]` has `width` numbers for each
+    /// of this rank's bodies of group g. An exception from `take` leaves the other ranks waiting,
+    /// so it must end the program. Collective.
     void pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const;
-    /// The reverse: what rank 0 has of all bodies (others give nothing) to the ranks that they are
-    /// of, as `own`. Collective.
+    /// Distributes rank 0's data of all bodies to the ranks that own them, in the layout of `own`
+    /// in pass(). Other ranks pass an empty span. Collective.
     std::vector<std::vector<double>> hand_out(int width,
                                               std::span<double const> in_scene_order) const;
 
-    /// Neighbours in the scene.
+    /// Consecutive bodies of the scene.
     struct Run {
         std::int64_t first, count;
     };
-    /// This rank's own, in the order of the scene.
+    /// Returns this rank's bodies as runs in the order of the scene.
     std::vector<Run> own_runs() const;
-    /// The numbers of such a run, or of a part of one.
+    /// Numbers of a run of own bodies, or of a part of one.
     struct Own {
         std::int64_t first;
         std::span<double const> values;
     };
-    /// `own` without a message, in the order of the scene, in rounds of bounded size: as many on
-    /// every rank, the last ones empty where a rank has less. Collective.
+    /// Passes `own` to `take` without messages, in the order of the scene and in rounds of bounded
+    /// size. All ranks have equally many rounds; the last ones are empty on ranks with less data.
+    /// Collective.
     void pass_own(int width, std::vector<std::vector<double>> const& own,
                   std::function<void(std::vector<Own> const&)> const& take) const;
 
   private:
-    static constexpr std::size_t most_runs = 256;  // in a round
-    /// Neighbours in the scene, in a group and on a rank.
+    static constexpr std::size_t most_runs = 256;  // largest number of runs in a round
+    /// Bodies that are consecutive in the scene, in their group and on their rank.
     struct Part {
-        std::int64_t first, count;  // in the scene
+        std::int64_t first, count;  // indices in the scene
         std::size_t group;
         int rank;
+        /// Index of the first body on its rank.
         std::int64_t local;
     };
+    /// Bodies [first, end) of the scene; `first_part` is the first part that overlaps them.
     struct Window {
         std::int64_t first, end;
         std::size_t first_part;
@@ -71,8 +77,8 @@ class SceneWindows {
 
     Communicator const& communicator_;
     std::int64_t bytes_, bodies_ = 0;
-    std::vector<std::int64_t> own_size_;  // of every group
-    std::vector<Part> parts_;             // in the order of the scene
+    std::vector<std::int64_t> own_size_;  // number of own bodies of every group
+    std::vector<Part> parts_;             // sorted in the order of the scene
 };
 
 }  // namespace catena

@@ -1,5 +1,5 @@
-// Elementary functions, host and device. Mathematical libraries of hosts and devices round
-// differently; these round alike everywhere.
+// Elementary functions for host and device. Library functions round differently on hosts and
+// devices; these give the same bits everywhere.
 #pragma once
 
 #include <cmath>
@@ -8,25 +8,27 @@
 
 namespace catena {
 
+/// Cosine and sine of one angle.
 template <class Real>
 struct BasicCosSin {
     Real cos, sin;
 };
 using CosSin = BasicCosSin<double>;
 
-/// By the quarter turns that were taken from the angle.
+/// Returns cosine and sine of an angle from those of the angle less `quarters` times pi/2.
 CATENA_HD CosSin turned_back(int quarters, double c, double s) {
     bool const odd = (quarters & 1) != 0;
     double const along = odd ? s : c, across = odd ? c : s;
     return {((quarters + 1) & 2) != 0 ? -along : along, (quarters & 2) != 0 ? -across : across};
 }
 
-/// Of u in (0, 1]: twice the series of atanh, of u scaled to within [sqrt(1/2), sqrt(2)).
+/// Returns the natural logarithm of u in (0, 1]. The function sums twice the series of atanh for u
+/// scaled to [sqrt(1/2), sqrt(2)).
 CATENA_HD double log_of_uniform(double u) {
     auto const bits = __builtin_bit_cast(std::uint64_t, u);
     int exponent = static_cast<int>(bits >> 52) - 1022;
     double m = __builtin_bit_cast(
-        double, (bits & 0x000fffffffffffffULL) | 0x3fe0000000000000ULL);  // in [1/2, 1)
+        double, (bits & 0x000fffffffffffffULL) | 0x3fe0000000000000ULL);  // mantissa, in [1/2, 1)
     bool const small = m < 0.70710678118654752;
     m = small ? 2 * m : m;
     exponent = small ? exponent - 1 : exponent;
@@ -38,7 +40,8 @@ CATENA_HD double log_of_uniform(double u) {
     return fused(e, ln2_high, fused(e, ln2_low, 2 * s * series));
 }
 
-/// Of 2 pi u, u in [0, 1]: Taylor's series within an eighth of a turn of the nearest quarter.
+/// Returns cosine and sine of 2 pi u, for u in [0, 1]. The function sums the Taylor series within
+/// pi/4 of the nearest multiple of pi/2.
 CATENA_HD CosSin cos_sin_of_turns(double u) {
     double const quarter = std::floor(4 * u + 0.5), x = (4 * u - quarter) * 1.57079632679489662, z = -x * x;
     double c = 1, s = 1;
@@ -51,8 +54,10 @@ CATENA_HD CosSin cos_sin_of_turns(double u) {
     return turned_back(static_cast<int>(quarter), c, s);
 }
 
-/// Within 0.8 units in the last place for |x| up to 1e5, and to 1e-15 beyond. Taylor's series of what is left of x by the nearest
-/// quarter turn, which is taken away in three parts: products with the first two are exact. What rounding takes from the rest is kept.
+/// Returns cosine and sine of the angle x, in radians. The error is at most 0.8 units in the last
+/// place for |x| up to 1e5, and 1e-15 beyond. The Taylor series is summed for the remainder of x by
+/// the nearest multiple of pi/2. That multiple is subtracted in three parts; the products with the
+/// first two are exact. The rounding error of the remainder is carried along.
 CATENA_HD CosSin cos_sin(double x) {
     if (std::fabs(x) > 1e5) {
         double const turn = 0x1.921fb54442d18p+2, turn_low = 0x1.1a62633145c07p-52, left = std::fmod(x, turn);
@@ -81,21 +86,23 @@ CATENA_HD CosSin cos_sin(double x) {
     double const sine = r + fused(s * z, r, rest * cosine);
     return turned_back(quarters == quarters ? static_cast<int>(quarters) : 0, cosine, sine);
 }
-/// Extended precision and instrumented scalars.
+/// Overload for extended precision and instrumented scalars.
 template <class Real>
 CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
     using std::cos;
     using std::sin;
     return {cos(x), sin(x)};
 }
-/// The same operations on several numbers side by side. Beyond 1e16, where neighbours are a radian apart, digits may differ.
+/// Overload that applies the same operations to all lanes of a vector. Digits may differ beyond
+/// 1e16, where adjacent doubles are a radian apart.
 template <class Real>
     requires requires { Real::lanes; }
 CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
     if (any_above(x, 1e5)) {
         Real const turn(0x1.921fb54442d18p+2), turn_low(0x1.1a62633145c07p-52), bound(1e5);
-        Real left = fused(-truncated(x / turn), turn, x);  // exact, but for a turn where the quotient was rounded over a whole number
-        Real const wrong = Real(0) - left * x;             // positive if so
+        // The remainder is exact, or one period off if the quotient was rounded across an integer.
+        Real left = fused(-truncated(x / turn), turn, x);
+        Real const wrong = Real(0) - left * x;  // positive if one period off
         left = where_less(Real(0), wrong, where_less(left, Real(0), left + turn, left - turn), left);
         Real const reduced = fused(-floor((x - left) / turn + Real(0.5)), turn_low, left);
         x = where_less(bound, x, reduced, where_less(x, -bound, reduced, x));
@@ -121,21 +128,23 @@ CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
     Real const half = Real(0.5) * z, most = Real(1) - half;
     Real const cosine = most + (((Real(1) - most) - half) + fused(z * z, c, -r * rest));
     Real const sine = r + fused(s * z, r, rest * cosine);
-    // turned_back: the quarters' last two bits
-    auto const odd = [](Real const& n) { return Real(0.5) * n - floor(Real(0.5) * n); };  // 0 or 1/2
+    // This repeats turned_back() with the last two bits of `quarters`.
+    // odd() returns 0 for even n and 1/2 for odd n.
+    auto const odd = [](Real const& n) { return Real(0.5) * n - floor(Real(0.5) * n); };
     Real const swapped = odd(quarters), zero(0);
     Real const along = where_less(zero, swapped, sine, cosine), across = where_less(zero, swapped, cosine, sine);
     return {where_less(zero, odd(floor(Real(0.5) * (quarters + Real(1)))), -along, along),
             where_less(zero, odd(floor(Real(0.5) * quarters)), -across, across)};
 }
 
-/// The angle whose tangent is s / w, for s >= 0 and w >= 0 that are not both 0; within 2 units in the last place. The arc tangent of the
-/// nearest quarter is known; the rest is below 1/8.
+/// Returns the angle in [0, pi/2] whose tangent is s / w, within 2 units in the last place.
+/// Preconditions: s >= 0, w >= 0, not both 0. The arc tangent of the nearest quarter c is
+/// tabulated; the argument of the remaining series is below 1/8.
 CATENA_HD double angle_of(double s, double w) {
     bool const steep = s > w;
     double const t = steep ? w / s : s / w, nearest = std::floor(4 * t + 0.5), c = 0.25 * nearest;
     double const u = (t - c) / fused(c, t, 1.0), z = u * u;
-    double high = 0, low = 0;  // arc tangent of c
+    double high = 0, low = 0;  // arc tangent of c, in two parts
     if (nearest == 1) {
         high = 0x1.f5b75f92c80ddp-3;
         low = 0x1.8ab6e3cf7afbdp-57;
@@ -160,6 +169,7 @@ CATENA_HD double angle_of(double s, double w) {
     double const beyond = fused(series * z, u, low) + u;
     return steep ? (0x1.921fb54442d18p+0 - high) + (0x1.1a62633145c07p-54 - beyond) : high + beyond;
 }
+/// Overload for extended precision, instrumented and SIMD scalars.
 template <class Real>
 CATENA_HD Real angle_of(Real s, Real w) {
     using std::atan2;

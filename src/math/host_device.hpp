@@ -1,22 +1,23 @@
-// Marks for code that host and device share.
+// Macros and primitives for code that host and device share.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 
+// CATENA_HD marks functions for host and device.
 #if defined(__CUDACC__)
 #define CATENA_HD __host__ __device__ inline
 #define CATENA_HD_IN_PLACE \
     __host__ __device__    \
-        __forceinline__  // never called: arrays that it is given may stay in registers
+        __forceinline__  // forces inlining: arrays passed to the function may stay in registers
 #define CATENA_HD_APART \
     __host__ __device__ \
-        __noinline__ inline  // seldom called: it is to cost its callers no registers
+        __noinline__ inline  // forbids inlining: a rare call must not cost its callers registers
 #define CATENA_EITHER_SIDE \
-    _Pragma("nv_exec_check_disable")  // before a template that calls what its arguments have on one
-                                      // side alone
+    _Pragma("nv_exec_check_disable")  // precedes templates that call functions of their arguments
+                                      // which exist on one side (host or device) alone
 #define CATENA_LAMBDA \
-    __device__  // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
+    __device__  // marks lambdas that a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
 #define CATENA_UNROLL _Pragma("unroll")
 #define CATENA_NO_UNROLL _Pragma("unroll 1")
 #else
@@ -31,8 +32,9 @@
 
 namespace catena {
 
-/// a b + c in one rounding where the instruction set has it, in two where it has not: written out,
-/// never left to the compiler, so that one source gives the same bits wherever it is inlined.
+/// Returns a b + c with one rounding if the instruction set has a fused operation, else with two.
+/// Contraction is written out and never left to the compiler, so that one source gives the same
+/// bits wherever it is inlined.
 CATENA_HD double fused(double a, double b, double c) {
 #if defined(__FMA__) || defined(__CUDA_ARCH__) || defined(__ARM_FEATURE_FMA)
     return __builtin_fma(a, b, c);
@@ -47,19 +49,19 @@ CATENA_HD float fused(float a, float b, float c) {
     return a * b + c;
 #endif
 }
-/// Extended precision and instrumented scalars.
+/// Overload for extended precision and instrumented scalars.
 template <class Real>
 CATENA_HD Real fused(Real a, Real b, Real c) {
     return a * b + c;
 }
 
-/// c - a b in one rounding where `fused` is.
+/// Returns c - a b, rounded as fused() is.
 template <class Real>
 CATENA_HD Real less_product(Real a, Real b, Real c) {
     return fused(-a, b, c);
 }
 
-/// place = min(place, value), for any number of threads at once.
+/// Atomically sets *place to the smaller of *place and `value`.
 CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
 #if defined(__CUDA_ARCH__)
     atomicMin(place, value);
@@ -72,18 +74,19 @@ CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
 #endif
 }
 
-/// The order of bodies in a GPU's arrays: in tiles of `lanes` runs of `steps` bodies, the runs'
-/// first bodies next to each other, then their second ones, ..., so that threads that walk along a
-/// run each touch whole cache lines together. Of each such row of bodies the first numbers come
-/// together, then the second ones, ...: from one number of a body to the next it is `lanes`,
-/// whatever the array.
+/// Order of bodies in a GPU's arrays. Bodies form tiles of `lanes` runs of `steps` bodies. A row of
+/// a tile holds the first bodies of its runs, the next row the second bodies, and so on. Threads
+/// that each walk along one run therefore access whole cache lines together. A row stores the first
+/// number of all its bodies, then the second number, and so on. Consecutive numbers of a body are
+/// thus `lanes` apart in every array.
 namespace gpu_order {
 inline constexpr std::int32_t lanes = 32, steps = 16, tile = lanes * steps;
 inline constexpr int bits_of_tile = 9;
 static_assert(1 << bits_of_tile == tile);
-/// Numbers from one row to the next.
+/// Distance between rows, in numbers, of an array with `columns` numbers per body.
 CATENA_HD constexpr std::int64_t pitch(int columns) { return std::int64_t{lanes} * columns; }
-/// a b + c. In one instruction on a GPU: nvcc forgets that the factors are short.
+/// Returns a b + c. On a GPU this is one instruction; nvcc does not exploit that the factors are 32
+/// bits wide.
 CATENA_HD std::int64_t wide_product(std::int32_t a, std::int32_t b, std::int64_t c) {
 #if defined(__CUDA_ARCH__)
     std::int64_t sum;
@@ -93,26 +96,27 @@ CATENA_HD std::int64_t wide_product(std::int32_t a, std::int32_t b, std::int64_t
     return std::int64_t{a} * b + c;
 #endif
 }
-/// Where body k's first number stands in columns of that pitch. What fits is computed in 32 bits.
+/// Index of body k's first number in an array of that pitch. Intermediate values that fit are
+/// computed in 32 bits.
 CATENA_HD std::int64_t first_number(std::int64_t k, std::int64_t pitch) {
     auto const in_tile = static_cast<std::int32_t>(k & (tile - 1)),
                row = static_cast<std::int32_t>(k >> bits_of_tile) * steps + in_tile % steps;
     return wide_product(row, static_cast<std::int32_t>(pitch), in_tile / steps);
 }
-/// Body i, row by row.
+/// Returns the body at position i of the storage order, counted row by row.
 CATENA_HD constexpr std::int64_t body(std::int64_t i) {
     auto const in_tile = static_cast<std::int32_t>(i & (tile - 1));
     return i + ((in_tile % lanes) * steps + in_tile / lanes - in_tile);
 }
-/// Of whole tiles that hold `bodies`.
+/// Number of bodies in the whole tiles that hold `bodies`.
 CATENA_HD constexpr std::int64_t padded(std::int64_t bodies) {
     return (bodies + tile - 1) / tile * tile;
 }
 }  // namespace gpu_order
 
-/// Where body k's first number stands in arrays of the processor that runs this, and how far it is
-/// to its next one. On the host one body follows the other, and `pitch` is from one number of a
-/// body to the next; on a GPU from one row of bodies to the next.
+/// Index of body k's first number in arrays of the processor that runs this code. On the host,
+/// bodies are consecutive and `pitch` is the distance between consecutive numbers of a body. On a
+/// GPU, `pitch` is the distance between rows of bodies.
 CATENA_HD std::int64_t place_of(std::int64_t k, [[maybe_unused]] std::int64_t pitch) {
 #if defined(__CUDA_ARCH__)
     return gpu_order::first_number(k, pitch);
@@ -120,6 +124,7 @@ CATENA_HD std::int64_t place_of(std::int64_t k, [[maybe_unused]] std::int64_t pi
     return k;
 #endif
 }
+/// Distance between consecutive numbers of a body in arrays of the processor that runs this code.
 CATENA_HD std::int64_t to_next_number([[maybe_unused]] std::int64_t pitch) {
 #if defined(__CUDA_ARCH__)
     return gpu_order::lanes;
@@ -127,7 +132,7 @@ CATENA_HD std::int64_t to_next_number([[maybe_unused]] std::int64_t pitch) {
     return pitch;
 #endif
 }
-/// What is there; the `last` one to take it lets it leave a GPU's caches first.
+/// Returns *place. With `last`, a GPU may evict the value from its caches first.
 template <bool last, class Real>
 CATENA_HD Real taken_number(Real const* place) {
 #if defined(__CUDA_ARCH__)
@@ -135,7 +140,7 @@ CATENA_HD Real taken_number(Real const* place) {
 #endif
     return *place;
 }
-/// Leaves there what is not asked for soon: it may leave a GPU's caches first.
+/// Sets *place to a value that is not read soon: a GPU may evict it from its caches first.
 template <class Real>
 CATENA_HD void leave_number(Real* place, Real const& value) {
 #if defined(__CUDA_ARCH__)

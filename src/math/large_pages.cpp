@@ -1,3 +1,4 @@
+// Allocation of zeroed memory in 2 MiB pages (Linux), with staggered start addresses.
 #include "math/large_pages.hpp"
 
 #include <cstdlib>
@@ -15,17 +16,19 @@ namespace catena {
 #if defined(__linux__)
 namespace {
 
+/// Size of a large page, bytes.
 constexpr std::size_t page = std::size_t{2} << 20;
 
-/// Where an array begins in its first page. If all began alike, the same body's numbers in dozens
-/// of them would fight for one set of a cache. Steps of an odd number of cache lines, through the
-/// sets of a small cache and back.
+/// Offset of the next array from its first page, bytes. Equal offsets would map one body's numbers
+/// in dozens of arrays to one cache set. Offsets are multiples of an odd number of cache lines;
+/// after 64 arrays they repeat.
 std::size_t next_shift() {
     constexpr std::size_t step = 13 * 64, steps = 64;
     static std::atomic<std::size_t> arrays = 0;
     return step * (arrays.fetch_add(1, std::memory_order_relaxed) % steps);
 }
 
+/// Returns `bytes`, rounded up to whole large pages.
 std::size_t whole_pages(std::size_t bytes) { return (bytes + page - 1) / page * page; }
 
 }  // namespace
@@ -40,8 +43,8 @@ void* allocate_zeros(std::size_t bytes) {
     std::byte* const begin = static_cast<std::byte*>(found) + before;
     if (before > 0) ::munmap(found, before);
     ::munmap(begin + length, page - before);
-    static_cast<void>(
-        ::madvise(begin, length, MADV_HUGEPAGE));  // where that is refused, pages are small
+    // If the kernel refuses the advice, pages stay small.
+    static_cast<void>(::madvise(begin, length, MADV_HUGEPAGE));
     return begin + shift;
 }
 

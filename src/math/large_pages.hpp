@@ -1,5 +1,5 @@
-// Memory of long arrays, in large pages where the system has them: a loop goes along dozens of
-// arrays at once, more than a processor keeps addresses of small pages for.
+// Memory of long arrays, in large pages if the system has them. A loop accesses dozens of arrays at
+// once, more than the address translation buffer of a processor holds small pages for.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,20 @@
 
 namespace catena {
 
-/// Fresh from the system, which hands out zeros page by page as they are touched. Throws
+/// Allocates memory fresh from the system, which supplies zeroed pages at the first access. Throws
 /// std::bad_alloc.
 void* allocate_zeros(std::size_t bytes);
+/// Frees memory of allocate_zeros(). `bytes` is the size passed to it.
 void free_zeros(void* place, std::size_t bytes);
 
-/// For arrays that keep the size they are made with: an element that is given no value is zero, and
-/// nobody writes that zero. The threads that first write an array then share the work of getting
-/// its pages, and have them near.
+/// Allocator for arrays of constant size. Elements without an initial value are zero, but the
+/// allocator does not write that zero. The threads that first write an array therefore share the
+/// page faults and get the pages in their own memory (first touch).
 template <class T>
 struct LargePages {
     using value_type = T;
     static_assert(std::is_trivially_copyable_v<T>);
+    /// Size of the smallest array in large pages, bytes.
     static constexpr std::size_t from_bytes = std::size_t{4} << 20;
 
     LargePages() = default;
@@ -37,6 +39,7 @@ struct LargePages {
         if (is_large(count)) return free_zeros(place, count * sizeof(T));
         std::allocator<T>().deallocate(place, count);
     }
+    /// Leaves the element unwritten: the memory is already zero.
     void construct(T*) noexcept {}
     template <class Other>
     bool operator==(LargePages<Other> const&) const noexcept {
@@ -47,6 +50,7 @@ struct LargePages {
     static bool is_large(std::size_t count) { return count * sizeof(T) >= from_bytes; }
 };
 
+/// Vector of constant size whose memory lies in large pages if it is long.
 template <class T>
 using LongArray = std::vector<T, LargePages<T>>;
 

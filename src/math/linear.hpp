@@ -1,5 +1,6 @@
-// Vectors and small matrices of a size known at compile time, host and device; Real = double,
-// float, an extended or a SIMD type. Values only: arrays of bodies live in math/field.hpp.
+// Vectors and small matrices of compile-time size, for host and device. Real is double, float, an
+// extended-precision or a SIMD type. These types are values; arrays over bodies are in
+// math/field.hpp.
 #pragma once
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 namespace catena {
 
+/// Column vector of N components.
 template <class Real, int N>
 struct Vector {
     Real data[N];
@@ -21,7 +23,7 @@ struct Vector {
     }
 };
 
-/// Row-major: a(i, j) is row i, column j.
+/// Matrix of R rows and C columns, stored row-major: a(i, j) is row i, column j.
 template <class Real, int R, int C>
 struct Matrix {
     Real data[R * C];
@@ -51,11 +53,12 @@ struct Matrix {
     }
 };
 
-/// Symmetric, the lower triangle stored row by row: (0,0) (1,0) (1,1) (2,0) ...
+/// Symmetric matrix whose lower triangle is stored row by row: (0,0) (1,0) (1,1) (2,0) ...
 template <class Real, int N>
 struct Symmetric {
     static constexpr int size = N * (N + 1) / 2;
     Real data[size];
+    /// Index of entry (i, j) in `data`; i and j may be swapped.
     static CATENA_HD constexpr int at(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
     CATENA_HD Real& operator()(int i, int j) { return data[at(i, j)]; }
     CATENA_HD Real const& operator()(int i, int j) const { return data[at(i, j)]; }
@@ -71,6 +74,7 @@ using Vec3 = Vector<double, 3>;
 
 using Mat3 = Matrix<double, 3, 3>;
 using Sym3 = Symmetric<double, 3>;
+/// Returns the symmetric matrix whose stored triangle is v.
 template <class Real>
 CATENA_HD Symmetric<Real, 3> as_symmetric(Vector<Real, 6> const& v) {
     return {{v[0], v[1], v[2], v[3], v[4], v[5]}};
@@ -106,7 +110,7 @@ CATENA_HD Vector<Real, N> operator*(Real s, Vector<Real, N> a) {
     for (int i = 0; i < N; ++i) a[i] = s * a[i];
     return a;
 }
-/// a + s b
+/// Returns a + s b.
 template <class Real, int N>
 CATENA_HD Vector<Real, N> plus_scaled(Vector<Real, N> a, Real s, Vector<Real, N> const& b) {
     CATENA_UNROLL
@@ -129,12 +133,14 @@ template <class Real>
 CATENA_HD Vector<Real, 3> cross(Vector<Real, 3> const& a, Vector<Real, 3> const& b) {
     return {{fused(a[1], b[2], -(a[2] * b[1])), fused(a[2], b[0], -(a[0] * b[2])), fused(a[0], b[1], -(a[1] * b[0]))}};
 }
-/// Of axes, the columns of a rotation, what is kept: the first and the last.
+/// Returns the stored part of a rotation matrix: its first and last column.
 template <class Real>
 CATENA_HD Vector<Real, 6> kept_axes(Matrix<Real, 3, 3> const& axes) {
     Vector<Real, 3> const first = axes.column(0), last = axes.column(2);
     return {{first[0], first[1], first[2], last[0], last[1], last[2]}};
 }
+/// Returns the rotation matrix whose first and last column are `kept`; the second is their cross
+/// product.
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> axes_of(Vector<Real, 6> const& kept) {
     Vector<Real, 3> const first{{kept[0], kept[1], kept[2]}}, last{{kept[3], kept[4], kept[5]}};
@@ -156,7 +162,7 @@ CATENA_HD Vector<Real, R> operator*(Matrix<Real, R, C> const& a, Vector<Real, C>
     }
     return y;
 }
-/// a^T x
+/// Returns a^T x.
 template <class Real, int R, int C>
 CATENA_HD Vector<Real, C> transposed_times(Matrix<Real, R, C> const& a, Vector<Real, R> const& x) {
     Vector<Real, C> y;
@@ -182,7 +188,7 @@ CATENA_HD Matrix<Real, R, C> operator*(Matrix<Real, R, K> const& a, Matrix<Real,
         }
     return m;
 }
-/// a^T b
+/// Returns a^T b.
 template <class Real, int K, int R, int C>
 CATENA_HD Matrix<Real, R, C> transposed_times(Matrix<Real, K, R> const& a, Matrix<Real, K, C> const& b) {
     Matrix<Real, R, C> m;
@@ -217,6 +223,7 @@ CATENA_HD Vector<Real, N> operator*(Symmetric<Real, N> const& a, Vector<Real, N>
     }
     return y;
 }
+/// Returns the symmetric matrix with both triangles stored.
 template <class Real, int N>
 CATENA_HD Matrix<Real, N, N> full(Symmetric<Real, N> const& a) {
     Matrix<Real, N, N> m;

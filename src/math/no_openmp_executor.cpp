@@ -1,3 +1,4 @@
+// Replacement of openmp_executor.cpp in builds without OpenMP.
 #include "error.hpp"
 #include "math/executor.hpp"
 

@@ -1,3 +1,4 @@
+// Executor that runs loops on OpenMP threads.
 #include <algorithm>
 #include <exception>
 
@@ -6,7 +7,7 @@
 namespace catena {
 namespace {
 
-/// Starting threads costs as much as some tens of merges.
+/// Smallest work per thread, in merges: starting threads costs as much as some tens of merges.
 constexpr std::int64_t worth_a_thread = 64;
 
 class OpenMpExecutor final : public Executor {
@@ -19,6 +20,8 @@ class OpenMpExecutor final : public Executor {
         std::int64_t const ranges =
             std::min<std::int64_t>({count * cost / worth_a_thread, count, threads_});
         if (ranges <= 1) return body(0, count);
+        // Exceptions must not leave a parallel region: the last one caught is thrown again after
+        // it.
         std::exception_ptr error;
 #pragma omp parallel for num_threads(threads_) schedule(static, 1)
         for (std::int64_t i = 0; i < ranges; ++i) try {

@@ -1,6 +1,6 @@
-// Counter-based random numbers: Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, SC'11), host and
-// device. A number is a pure function of (seed, step, body, stage), so every rank, thread and
-// restart draws the same.
+// Counter-based random numbers for host and device: Philox 4x32-10 (Salmon, Moraes, Dror, Shaw,
+// SC'11). A number is a pure function of (seed, step, body, stage), so every rank, thread and
+// restart draws the same numbers.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,12 @@
 
 namespace catena {
 
+/// Counter of the generator, and also one block of its output: 128 bits.
 struct Philox4 {
     std::uint32_t word[4];
 };
 
+/// Returns the random block of `counter` under the 64-bit key (key0, key1): ten Philox rounds.
 CATENA_HD Philox4 philox(Philox4 counter, std::uint32_t key0, std::uint32_t key1) {
     for (int round = 0; round < 10; ++round) {
         std::uint64_t const a = std::uint64_t{0xD2511F53u} * counter.word[0];
@@ -29,7 +31,7 @@ CATENA_HD Philox4 philox(Philox4 counter, std::uint32_t key0, std::uint32_t key1
     return counter;
 }
 
-/// What a draw is for; streams of different stages are independent.
+/// Purpose of a random number; streams of different stages are independent.
 enum class NoiseStage : std::uint32_t {
     start,
     start_angular,
@@ -40,8 +42,8 @@ enum class NoiseStage : std::uint32_t {
     conformation
 };
 
-/// Three independent standard normal numbers for (seed, step, body, stage); body < 2^48 (Box-Muller
-/// on 53-bit uniforms).
+/// Returns three independent standard normal numbers for (seed, step, body, stage). The method is
+/// Box-Muller on 53-bit uniform numbers. Precondition: body < 2^48.
 CATENA_HD Vector<double, 3> normal3(std::uint64_t seed, std::uint64_t step, std::uint64_t body,
                                     NoiseStage stage) {
     double u[4];
@@ -55,7 +57,7 @@ CATENA_HD Vector<double, 3> normal3(std::uint64_t seed, std::uint64_t step, std:
         for (int i = 0; i < 2; ++i) {
             std::uint64_t const bits =
                 ((static_cast<std::uint64_t>(r.word[2 * i]) << 32) | r.word[2 * i + 1]) >> 11;
-            u[2 * half + i] = (static_cast<double>(bits) + 0.5) * 0x1p-53;  // in (0, 1]
+            u[2 * half + i] = (static_cast<double>(bits) + 0.5) * 0x1p-53;  // u in (0, 1]
         }
     }
     double const ra = std::sqrt(-2.0 * log_of_uniform(u[0])),

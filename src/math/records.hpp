@@ -1,12 +1,12 @@
-// Records of doubles (segments, eliminated joints, directions), one for each of many places, and
-// how they lie in memory: one record after the other on the host, as fields on a GPU.
+// Records of doubles (segments, eliminated joints, directions), one per slot, and their memory
+// layout. Records are consecutive on the host; a GPU stores them like fields.
 #pragma once
 
 #include "math/linear.hpp"
 
 namespace catena::dca {
 
-/// One of two records of numbers, number by number: no branch.
+/// Returns one of two records, selected number by number without a branch.
 template <class T>
 CATENA_HD T either(bool first, T const& a, T const& b) {
     constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double));
@@ -17,20 +17,23 @@ CATENA_HD T either(bool first, T const& a, T const& b) {
     return __builtin_bit_cast(T, chosen);
 }
 
-enum class Order { by_body, plain };  // by_body: as fields; plain: these in turn
+/// Order of records in a GPU's memory. by_body: in the tiles of fields (gpu_order). plain:
+/// consecutive records in rows of gpu_order::lanes.
+enum class Order { by_body, plain };
 
-/// So many records does a GPU have memory for that is to hold `count`: whole rows.
+/// Number of records for which a GPU allocates memory to hold `count`: whole rows or tiles.
 inline std::int64_t padded_on_gpu(Order order, std::int64_t count) {
     return order == Order::by_body ? gpu_order::padded(count) : (count + gpu_order::lanes - 1) / gpu_order::lanes * gpu_order::lanes;
 }
 
-/// Of memory of the processor that runs this.
+/// Non-owning view of records in the memory of the processor that runs this code.
 template <class T, Order order>
 struct RecordsView {
     static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double));
     using Numbers = Vector<double, numbers>;
     double* origin = nullptr;
 
+    /// Number n of record i, by reference.
     CATENA_HD double& number(std::int64_t i, int n) const {
 #if defined(__CUDA_ARCH__)
         return on_gpu(i)[n * gpu_order::lanes];
@@ -38,8 +41,9 @@ struct RecordsView {
         return origin[i * numbers + n];
 #endif
     }
+    /// Returns record i.
     CATENA_HD T load(std::int64_t i) const { return taken<false>(i); }
-    /// Where nobody will want it soon (FieldView::load_last()).
+    /// Returns record i and lets a GPU evict it from its caches first (see FieldView::load_last()).
     CATENA_HD T load_last(std::int64_t i) const { return taken<true>(i); }
     CATENA_HD void store(std::int64_t i, T const& record) const {
 #if defined(__CUDA_ARCH__)
@@ -65,7 +69,7 @@ struct RecordsView {
         return reinterpret_cast<T const*>(origin)[i];
 #endif
     }
-    /// Number 0 of record i there.
+    /// Address of number 0 of record i in a GPU's memory.
     CATENA_HD double* on_gpu(std::int64_t i) const {
         constexpr std::int64_t pitch = gpu_order::pitch(numbers);
         if constexpr (order == Order::by_body) return origin + gpu_order::first_number(i, pitch);

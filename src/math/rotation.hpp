@@ -7,22 +7,25 @@
 
 namespace catena {
 
+/// Quaternion w + x i + y j + z k; a unit quaternion represents a rotation.
 template <class Real>
 struct Quaternion {
     Real w, x, y, z;
     static CATENA_HD Quaternion identity() { return {Real(1), Real(0), Real(0), Real(0)}; }
 };
 using Quat = Quaternion<double>;
+/// Returns the quaternion of components (w, x, y, z).
 template <class Real>
 CATENA_HD Quaternion<Real> as_quaternion(Vector<Real, 4> const& v) {
     return {v[0], v[1], v[2], v[3]};
 }
+/// Returns the components (w, x, y, z).
 template <class Real>
 CATENA_HD Vector<Real, 4> as_vector(Quaternion<Real> const& q) {
     return {{q.w, q.x, q.y, q.z}};
 }
 
-/// Q_AC = Q_AB Q_BC.
+/// Quaternion product: Q_AC = Q_AB Q_BC.
 template <class Real>
 CATENA_HD Quaternion<Real> operator*(Quaternion<Real> const& a, Quaternion<Real> const& b) {
     return {fused(-a.z, b.z, fused(-a.y, b.y, fused(-a.x, b.x, a.w * b.w))),
@@ -44,29 +47,29 @@ CATENA_HD Quaternion<Real> normalized(Quaternion<Real> const& q) {
     Real const s = Real(1) / sqrt(squared_norm(q));
     return {s * q.w, s * q.x, s * q.y, s * q.z};
 }
-/// The rotation matrix R_AB of Q_AB; s = 2 / |q|^2.
+/// Returns the rotation matrix R_AB of Q_AB, given s = 2 / |q|^2.
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q, Real const& s) {
     Real const xs = q.x * s, ys = q.y * s, zs = q.z * s;
     Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, yy = q.y * ys,
                zz = q.z * zs;
-    // Sums and differences of the same products, left to the compiler: gcc 12 contracts them where
-    // it vectorises, -ffp-contract=off or not.
+    // Sums and differences of the same products are not left to the compiler: gcc 12 contracts them
+    // where it vectorises, with -ffp-contract=off or without.
     return {{Real(1) - (yy + zz), fused(q.x, ys, -wz), fused(q.x, zs, wy), fused(q.x, ys, wz),
              Real(1) - (xx + zz), fused(q.y, zs, -wx), fused(q.x, zs, -wy), fused(q.y, zs, wx),
              Real(1) - (xx + yy)}};
 }
-/// s of q, which need not be normalised to the last bit. `inverse(x)`: 1 / x.
+/// Returns s = 2 / |q|^2; q need not be normalised to the last bit. `inverse(x)` returns 1 / x.
 template <class Real, class Inverse>
 CATENA_HD Real matrix_scale(Quaternion<Real> const& q, Inverse const& inverse) {
     return Real(2) * inverse(squared_norm(q));
 }
-/// The same: the scale is divided out.
+/// Returns the rotation matrix of q; the norm of q is divided out.
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q) {
     return to_matrix(q, Real(2) / squared_norm(q));
 }
-/// The same of one whose norm is 1 but for rounding.
+/// Returns the rotation matrix of a q whose norm is 1 up to rounding.
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix_of_unit(Quaternion<Real> const& q) {
     return to_matrix(q, Real(4) - Real(2) * squared_norm(q));
@@ -77,7 +80,7 @@ CATENA_HD Quaternion<Real> from_axis_angle(Vector<Real, 3> const& axis, Real ang
     auto const [c, s] = cos_sin(Real(0.5) * angle);
     return {c, s * axis[0], s * axis[1], s * axis[2]};
 }
-/// The rotation with rotation vector v (angle |v| about v), accurate for small |v|.
+/// Returns the rotation with rotation vector v (angle |v| about v), accurate for small |v|.
 template <class Real>
 CATENA_HD Quaternion<Real> from_rotation_vector(Vector<Real, 3> const& v) {
     Real const angle = norm(v);
@@ -85,7 +88,7 @@ CATENA_HD Quaternion<Real> from_rotation_vector(Vector<Real, 3> const& v) {
     Real const s = angle > Real(1e-8) ? half.sin / angle : Real(0.5);
     return {half.cos, s * v[0], s * v[1], s * v[2]};
 }
-/// The rotation vector of q, of length at most pi.
+/// Returns the rotation vector of q; its length is at most pi.
 template <class Real>
 CATENA_HD Vector<Real, 3> rotation_vector(Quaternion<Real> q) {
     using std::sqrt;
@@ -94,7 +97,7 @@ CATENA_HD Vector<Real, 3> rotation_vector(Quaternion<Real> q) {
     Real const f = s > Real(1e-12) ? Real(2) * angle_of(s, q.w) / s : Real(2) / q.w;
     return {{f * q.x, f * q.y, f * q.z}};
 }
-/// Unit quaternion of a rotation matrix (Shepperd's choice of the largest component).
+/// Returns the unit quaternion of a rotation matrix (Shepperd's choice of the largest component).
 template <class Real>
 CATENA_HD Quaternion<Real> to_quaternion(Matrix<Real, 3, 3> const& r) {
     Real const t = r(0, 0) + r(1, 1) + r(2, 2);
@@ -112,7 +115,8 @@ CATENA_HD Quaternion<Real> to_quaternion(Matrix<Real, 3, 3> const& r) {
                                        Real(1) - r(0, 0) - r(1, 1) + r(2, 2)});
 }
 
-/// A rotation that is one but for rounding, without what makes it none: r (3 - r^T r) / 2.
+/// Returns the rotation matrix nearest to r, without its rounding errors, by r (3 - r^T r) / 2.
+/// Precondition: r is a rotation matrix up to rounding.
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> orthogonal(Matrix<Real, 3, 3> const& r) {
     Symmetric<Real, 3> half;

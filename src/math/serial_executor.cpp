@@ -1,3 +1,4 @@
+// Executor that runs every loop on the calling thread.
 #include "math/executor.hpp"
 
 namespace catena {

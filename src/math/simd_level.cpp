@@ -1,3 +1,4 @@
+// Names and widths of the SIMD levels, and the choice of the best one.
 #include "math/simd_level.hpp"
 
 #include "math/host_device.hpp"

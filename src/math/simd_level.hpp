@@ -1,22 +1,24 @@
-// Instruction sets in which several runs of bodies, merges or bodies are computed side by side, one
-// in each lane of a vector.
+// Instruction sets with which several items (bodies, merges or runs of bodies) are computed at
+// once, one in each vector lane.
 #pragma once
 
 #include <vector>
 
 namespace catena {
 
-/// Weaker ones first. off: one body after the other.
+/// Instruction sets in ascending order. off: one body after the other.
 enum class SimdLevel { off, avx2, avx512 };
+/// Name of the level in input files and reports.
 char const* name_of(SimdLevel);
-/// Numbers a vector holds; off: 1.
+/// Number of doubles in a vector; 1 if off.
 int lanes_of(SimdLevel);
-/// Those that this build has and this processor can run.
+/// Returns the levels that this build contains and this processor supports, in ascending order.
 std::vector<SimdLevel> simd_levels();
-/// The last one of these.
+/// Returns the last of simd_levels().
 SimdLevel best_simd_level();
-/// Whether the rest of the program rounds a product and a sum at once, as vectors do. If not, it
-/// shows what goes side by side: that must not depend on ranks then.
+/// True if scalar code contracts a product and a sum to one rounding, as the vector code does. If
+/// false, results depend on which items share a vector; that grouping must then not depend on
+/// ranks.
 bool rounds_as_vectors();
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Detection of AVX2 and AVX-512 on x86 processors.
 #include "math/simd_level.hpp"
 
 namespace catena {

@@ -1,4 +1,4 @@
-// What a GPU is told of beads by the host (neighbours/device_beads.hpp): where they go, in tables.
+// Tables of bead destinations that the host computes for a GPU (neighbours/device_beads.hpp).
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,8 @@
 
 namespace catena {
 
-/// A bead that stands at x, its particle at `place`. `box`: beads are taken from their cells.
+/// Returns the entry of a bead at position x whose particle is at `place`. With `box`, it contains
+/// the periodic cell of x.
 inline DeviceBead bead_at(std::int32_t place, Vec3 const& x, std::optional<Vec3> const& box) {
     DeviceBead bead;
     bead.place = place;
@@ -20,12 +21,12 @@ inline DeviceBead bead_at(std::int32_t place, Vec3 const& x, std::optional<Vec3>
     return bead;
 }
 
-/// ShownBeads::first and place.
+/// Tables ShownBeads::first and ShownBeads::place.
 struct ShownTable {
     std::vector<std::int32_t> first, place;
 };
 
-/// `sent`: of each place, which of `beads` beads is shown there.
+/// Inverts `sent`, which maps each place to one of `beads` beads.
 inline ShownTable shown_table(std::span<std::int64_t const> sent, std::size_t beads) {
     ShownTable table{std::vector<std::int32_t>(beads + 1, 0),
                      std::vector<std::int32_t>(sent.size())};

@@ -14,12 +14,13 @@
 
 namespace catena {
 
+/// Indices of points, sorted by the grid cells that contain them.
 class PointsInCells {
   public:
     PointsInCells(Grid const& grid, std::span<Vec3 const> points, Executor const& executor) {
         std::vector<Run> const runs = sorted_runs(grid, points, executor);
         point_.resize(points.size());
-        std::vector<std::int64_t> place;  // of each run's points
+        std::vector<std::int64_t> place;  // first index of each run's points
         std::int64_t placed = 0;
         for (Run const& run : runs) {
             if (cells_.empty() || !is_same(cells_.back(), run.cell)) {
@@ -38,21 +39,23 @@ class PointsInCells {
         });
     }
 
-    /// Those that hold points, ascending.
+    /// Cells that contain points, ascending.
     std::vector<Cell> const& cells() const { return cells_; }
-    /// Cell by cell; ascending in each.
+    /// Point indices, cell by cell, and ascending within a cell.
     std::vector<std::int64_t> const& points() const { return point_; }
-    /// Which of them are in the i-th cell.
+    /// Range in points() of the i-th cell.
     std::pair<std::int64_t, std::int64_t> range(std::size_t i) const {
         return {first_[i], first_[i + 1]};
     }
+    /// Points of the i-th cell.
     std::span<std::int64_t const> points(std::size_t i) const {
         return std::span(point_).subspan(static_cast<std::size_t>(first_[i]),
                                          static_cast<std::size_t>(first_[i + 1] - first_[i]));
     }
 
   private:
-    /// Points that follow each other lie together: their cells are the same for some.
+    /// Consecutive points in one cell. Consecutive points are mostly near each other, so that runs
+    /// are longer than one point.
     struct Run {
         Cell cell;
         std::int64_t begin, end;
@@ -71,7 +74,8 @@ class PointsInCells {
         std::sort(runs.begin(), runs.end(), before);
         return runs;
     }
-    /// Piece by piece, then two by two.
+    /// Returns the runs of all points, sorted by cell: first in pieces of points, then by pairwise
+    /// merges of the pieces.
     static std::vector<Run> sorted_runs(Grid const& grid, std::span<Vec3 const> points,
                                         Executor const& executor) {
         std::int64_t constexpr of_piece = 1 << 13;

@@ -1,5 +1,5 @@
-// Beads and OpenMM's particles on one GPU: what each side shows the other, so that neither
-// positions nor forces pass through the host.
+// Exchange between beads and OpenMM's particles on one GPU, so that neither positions nor forces
+// pass through the host.
 #pragma once
 
 #include <cmath>
@@ -11,45 +11,50 @@
 
 namespace catena {
 
-/// Where a bead's particle stands in OpenMM's arrays, and the periodic cell that its coordinates
-/// are taken from: they change only when OpenMM puts its particles into a new order, because OpenMM
-/// takes a wrapped bead for one that has moved far.
+/// Index of a bead's particle in OpenMM's arrays, and the periodic cell that is subtracted from its
+/// position. Cells change only when OpenMM reorders its particles: OpenMM would treat a newly
+/// wrapped bead as one that moved far.
 struct DeviceBead {
     std::int32_t place = 0;
     std::int32_t cell[3] = {0, 0, 0};
 };
 
-/// OpenMM's arrays. All addresses are the GPU's.
+/// OpenMM's arrays. All addresses are in GPU memory.
 struct DeviceParticles {
+    /// Particle of each bead.
     DeviceBead const* bead = nullptr;
-    /// x, y, z and a charge, a place after the other: in single precision (`correction`: what
-    /// rounding took away; may be absent) or double.
+    /// Records of x, y, z and charge, one per place, nm and e. Single precision uses `position`,
+    /// with rounding errors in `correction` (may be null); double precision uses `double_position`.
     float *position = nullptr, *correction = nullptr;
     double* double_position = nullptr;
-    /// 2^-32 kJ/mol/nm: x of every place, then y, then z.
+    /// Forces in units of 2^-32 kJ/mol/nm: x of every place, then y, then z.
     std::int64_t* force = nullptr;
+    /// Number of places in the arrays, padding included.
     std::int64_t places = 0;
+    /// Offset that is subtracted from all positions, and edges of the periodic box, nm.
     Vec3 origin = Vec3::zero(), box = Vec3::zero();
-    /// Where they were when OpenMM's list of pairs was made, as `position` and `double_position`;
-    /// absent: it is not asked for. `far` becomes 1 where a particle is farther from there.
+    /// Positions when OpenMM built its neighbour list, in the layout of `position` or
+    /// `double_position`; null: no check. `far` is set to 1 if a particle has moved farther than
+    /// `farthest_squared` allows (nm^2).
     float const* listed = nullptr;
     double const* double_listed = nullptr;
     float farthest_squared = 0;
     std::int64_t* far = nullptr;
-    /// Becomes the index of a bead whose position or force is no number OpenMM can hold; -1: there
-    /// was none.
+    /// Set to the index of a bead whose position or force OpenMM cannot represent; -1: none.
     std::int64_t* trouble = nullptr;
-    std::int64_t first = 0;  // index of bead 0 among all that trouble can name
-    std::int64_t order =
-        0;  // of the particles: which one, counted; in another one beads stand at other places
+    /// Index of bead 0 in the numbering of `trouble`.
+    std::int64_t first = 0;
+    /// Counter of OpenMM's particle orders; in another order, beads are at other places.
+    std::int64_t order = 0;
 
-    /// The same for beads that follow others.
+    /// Returns the view for the beads from `bead_index` on.
     DeviceParticles from(std::int64_t bead_index) const {
         DeviceParticles rest = *this;
         rest.bead += bead_index;
         rest.first += bead_index;
         return rest;
     }
+    /// Writes position x (nm, W) of bead k to its particle, and sets `far` and `trouble`.
     CATENA_HD void put(std::int64_t k, Vec3 const& x) const {
         DeviceBead const b = bead[k];
         std::int64_t const at = 4 * static_cast<std::int64_t>(b.place);
@@ -73,7 +78,7 @@ struct DeviceParticles {
         }
         if (far && !(away < farthest_squared)) *far = 1;
     }
-    /// kJ/mol/nm
+    /// Force on bead k, kJ/mol/nm. Sets `trouble` if it is not a number.
     CATENA_HD Vec3 force_on(std::int64_t k) const {
         std::int64_t const at = bead[k].place;
         Vec3 f;
@@ -85,27 +90,31 @@ struct DeviceParticles {
         return f;
     }
 
+    /// True if a fixed-point force is in range; OpenMM marks NaN and overflow by values beyond.
     CATENA_HD static bool is_number(std::int64_t fixed) { return fixed <= most && fixed >= -most; }
     static constexpr double far_away = 1e30;  // nm
     static constexpr std::int64_t most =
-        std::int64_t{0x7ffffffffffff000};  // of fixed-point numbers; what is none lies beyond
+        std::int64_t{0x7ffffffffffff000};  // largest valid fixed-point force
 };
 
-/// Where beads go that other ranks have as ghosts, and how far they may be from where they stood.
-/// All addresses are the GPU's.
+/// Destinations of beads that are ghosts on other ranks, and the limit of their displacement. All
+/// addresses are in GPU memory.
 struct ShownBeads {
-    std::int32_t const
-        *first = nullptr,
-        *place = nullptr;     // bead k goes to places place[first[k]] to place[first[k + 1] - 1]
-    double* shown = nullptr;  // x, y, z of each place
-    double const* listed =
-        nullptr;  // x, y, z of each bead when this was made; absent: it may go anywhere
+    /// Bead k is sent to places place[first[k]] to place[first[k + 1] - 1].
+    std::int32_t const *first = nullptr, *place = nullptr;
+    double* shown = nullptr;  // x, y, z of each place, nm
+    /// Position (x, y, z) of each bead when the ghost lists were built; null: displacements are not
+    /// limited.
+    double const* listed = nullptr;
+    /// Square of the displacement limit, nm^2.
     double farthest_squared = 0;
-    /// Become 1 where a bead is farther away, and the index of one that is at no finite place.
+    /// `far` is set to 1 if a bead has moved farther; `trouble` to the index of a bead whose
+    /// position is not finite.
     std::int64_t *far = nullptr, *trouble = nullptr;
+    /// Index of bead 0 in the numbering of `trouble`.
     std::int64_t first_bead = 0;
 
-    /// The same for beads that follow others.
+    /// Returns the view for the beads from `bead_index` on.
     ShownBeads from(std::int64_t bead_index) const {
         ShownBeads rest = *this;
         rest.first += bead_index;
@@ -113,6 +122,7 @@ struct ShownBeads {
         rest.first_bead += bead_index;
         return rest;
     }
+    /// Writes position x (nm, W) of bead k to all its destinations, and sets `far` and `trouble`.
     CATENA_HD void show(std::int64_t k, Vec3 const& x) const {
         for (std::int32_t i = first[k]; i < first[k + 1]; ++i)
             for (int c = 0; c < 3; ++c) shown[3 * static_cast<std::int64_t>(place[i]) + c] = x[c];
@@ -126,30 +136,32 @@ struct ShownBeads {
     }
 };
 
-/// Ghosts on their way from messages into OpenMM's arrays.
+/// Loop body that copies ghost positions from messages to OpenMM's arrays.
 struct ArrivedBeads {
-    DeviceParticles particles;  // whose beads are the ghosts
+    DeviceParticles particles;  // the ghosts, as beads
+    /// x, y, z of each ghost, nm.
     double const* position = nullptr;
     CATENA_HD void operator()(std::int64_t k) const {
         particles.put(k, {{position[3 * k], position[3 * k + 1], position[3 * k + 2]}});
     }
 };
 
-/// Beads of one group of chains, on a GPU.
+/// Beads of one chain group on a GPU.
 class DeviceBeads {
   public:
     virtual ~DeviceBeads() = default;
+    /// Number of beads.
     virtual std::int64_t count() const = 0;
-    /// cudaStream_t; what is asked for below runs there.
+    /// The cudaStream_t to which the functions below enqueue their work.
     virtual void* stream() const = 0;
-    /// The particles are where the beads are, once the stream has come here.
+    /// Enqueues the copy of bead positions to OpenMM's particles.
     virtual void put_positions(DeviceParticles const&) = 0;
-    /// Other ranks' ghosts are where the beads are, once the stream has come here.
+    /// Enqueues the copy of bead positions to the ghosts of other ranks.
     virtual void show(ShownBeads const&) = 0;
-    /// Adds to the forces since set_simple_forces() what the particles feel when the stream comes
-    /// to where forces are needed: before OpenMM computes again.
+    /// Adds the particles' forces to the forces since set_simple_forces(). The stream reads them
+    /// where forces are needed, before OpenMM's next evaluation.
     virtual void add_forces(DeviceParticles const&) = 0;
-    /// On the host, W; waits for them.
+    /// Positions in W on the host, nm; waits for them.
     virtual ConstView<3> host_positions() = 0;
 };
 

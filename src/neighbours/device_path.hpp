@@ -1,4 +1,4 @@
-// OpenMM's forces on beads that stay on the GPU.
+// OpenMM forces on beads that stay in GPU memory.
 #pragma once
 
 #include <cstdint>
@@ -17,82 +17,85 @@ class Context;
 
 namespace catena {
 
-/// When something ran, in seconds of std::chrono::steady_clock.
+/// Interval of time, in seconds of std::chrono::steady_clock.
 struct Interval {
     double begin = 0, end = 0;
 };
 
 class Halo;
 
+/// Options of a DevicePath.
 struct DevicePathPlan {
-    std::vector<int> particle;       // of each own bead
-    std::vector<std::int64_t> bead;  // its number among all, for messages
-    std::optional<Vec3> box;         // particles may be moved by its edges, one by one
-    bool shifted = false;            // all particles may be moved by one vector
-    bool overlap = true;             // the chains' own work goes on while OpenMM computes
-    bool keeps_list = false;         // no force looks for pairs but by the list that all share
-    Halo* halo = nullptr;            // of a rank among several
+    std::vector<int> particle;       // particle of each own bead
+    std::vector<std::int64_t> bead;  // number of each own bead in messages
+    /// Edges of the periodic box, nm. If set, particles may be moved by whole edges, one by one.
+    std::optional<Vec3> box;
+    bool shifted = false;     // true if all particles may be moved by one vector
+    bool overlap = true;      // true if the chains' own work overlaps with OpenMM's
+    bool keeps_list = false;  // true if all pair forces use the shared neighbour list
+    Halo* halo = nullptr;     // null on a single rank
 };
 
-/// Over several ranks begin(), go_on(), refuse_trouble() are collective, and what is said to be a
-/// ComputationError there is a SharedError.
+/// Evaluation of OpenMM forces for beads in GPU memory. Over several ranks begin(), go_on() and
+/// refuse_trouble() are collective, and errors documented as ComputationError are SharedErrors.
 class DevicePath {
   public:
     virtual ~DevicePath() = default;
-    /// Makes the GPU context that OpenMM computes in that of this thread, or says false: what the
-    /// chains keep on the GPU must be made there. Until the object's end.
+    /// Makes OpenMM's GPU context current for this thread until the object's destruction; returns
+    /// false if impossible. Chains must allocate their GPU memory in this context.
     virtual bool make_current() noexcept = 0;
-    /// Enqueues OpenMM's work at the beads' positions; over several ranks what others must be shown
-    /// of them. `beads`: all of this rank, group after group, the same every time. `timed`: clock()
-    /// will be asked about it. Throws what OpenMM throws, and ComputationError where the beads of
-    /// the evaluation before had no finite position or force.
+    /// Enqueues OpenMM's work at the current positions; over several ranks, first the positions
+    /// that other ranks need. `beads`: all groups of this rank in order, the same at every call.
+    /// `timed`: clock() will be called. Throws OpenMM's exceptions, and ComputationError if the
+    /// previous evaluation met a position or force that is not finite.
     virtual void begin(std::span<DeviceBeads* const> beads, bool timed) = 0;
-    /// What the beads' streams were given since begin() may run side by side with what begin()
-    /// enqueued and with what follows: here it ends. Over several ranks positions of ghosts come
-    /// now, and OpenMM's work is enqueued.
+    /// Ends the overlap: work enqueued to the beads' streams since begin() may run concurrently
+    /// with what begin() and later calls enqueue. Over several ranks this call exchanges the
+    /// ghosts' positions and then enqueues OpenMM's work.
     virtual void go_on(std::span<DeviceBeads* const> beads) = 0;
-    /// Lets the beads' streams wait for OpenMM and add its forces.
+    /// Makes the beads' streams wait for OpenMM and then add its forces.
     virtual void finish(std::span<DeviceBeads* const> beads) = 0;
-    /// Throws ComputationError where beads of the last evaluation had no finite position or force.
-    /// To be asked once their streams have been waited for.
+    /// Throws ComputationError if the last evaluation met a position or force that is not finite.
+    /// Precondition: the beads' streams have completed.
     virtual void refuse_trouble() = 0;
-    /// Of the last evaluation, which was timed: OpenMM's computation, the chains' work from begin()
-    /// to go_on(), and what brought ghosts, or told whether pairs' list still holds; 0 where there
-    /// was no such thing. Waits for them.
+    /// Times of the last evaluation, which must have been timed. `openmm`: OpenMM's computation.
+    /// `chains`: the chains' work from begin() to go_on(). `exchange`: the exchange of ghosts, or
+    /// the check of the neighbour list. Absent parts are 0. Waits for the GPU.
     struct Clock {
         Interval openmm, chains, exchange;
     };
     virtual Clock clock() = 0;
-    /// At how many evaluations OpenMM's list of pairs was made, and at how many it was kept without
-    /// OpenMM being asked.
+    /// Numbers of evaluations that built OpenMM's neighbour list, and of those that kept it without
+    /// a check by OpenMM.
     struct PairLists {
         std::int64_t made = 0, kept = 0;
     };
     virtual PairLists pair_lists() const { return {}; }
-    /// Of the last evaluation's beads, as they are now, nm, W. Waits for them.
+    /// Positions in the last evaluation, nm, W. Waits for the GPU.
     virtual std::vector<Vec3> positions() = 0;
 };
 
-/// Of a rank among several that has no beads: it takes part in what all do. `halo` must outlive it.
+/// Returns the path of a rank without beads, which only takes part in collective calls. `halo` must
+/// outlive it.
 std::unique_ptr<DevicePath> make_idle_path(Halo& halo, bool overlap);
 
 namespace cuda {
 
-/// Empty where OpenMM's arrays can be reached on a GPU by this build and on this machine, else why
-/// not.
+/// Returns an empty string if this build can access OpenMM's arrays on a GPU of this machine, else
+/// the reason why not.
 std::string const& why_no_device_path();
-/// Empty where such a path can compute some of the pairs of a Context alone, and can keep their
-/// list, else why not. Precondition: why_no_device_path() is empty.
+/// Returns an empty string if a path can compute a share of a Context's pairs and keep their
+/// neighbour list, else the reason why not. Precondition: why_no_device_path() is empty.
 std::string why_pairs_cannot_be_shared();
-/// Whether the ranks' GPUs are of one kind, so that they find the same order of particles and
-/// blocks. Collective.
+/// True if the GPUs of all ranks are of one model, so that OpenMM orders particles and blocks
+/// alike. Collective.
 bool gpus_are_alike(Communicator const&);
-/// Whether the ranks' GPUs may write to each other's memory. Collective.
+/// True if the ranks' GPUs can write to each other's memory. Collective.
 bool gpus_may_write_to_each_other(Communicator const&);
-/// The GPU that choose_device chose.
+/// Index of the GPU that choose_device() selected.
 int chosen_device();
-/// `context`: of OpenMM's CUDA platform; must outlive it. Precondition: why_no_device_path() is
-/// empty.
+/// Returns the path for `context`, which must be of OpenMM's CUDA platform and outlive it.
+/// Precondition: why_no_device_path() is empty.
 std::unique_ptr<DevicePath> make_device_path(OpenMM::Context& context, DevicePathPlan plan);
 
 }  // namespace cuda

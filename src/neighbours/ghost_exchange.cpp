@@ -1,3 +1,4 @@
+// Update of ghosts in host memory: rebuild the lists if necessary, then exchange positions.
 #include "neighbours/ghost_exchange.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Construction of ghost lists, and exchange of the ghosts' positions.
 #include "neighbours/ghost_lists.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace catena {
 
 namespace {
 
-/// Blocks of every rank, which need not know each other's lengths. Collective.
+/// Gathers a vector from every rank; ranks need not know each other's lengths. Collective.
 template <class T>
 std::vector<std::vector<T>> blocks_of_ranks(Communicator const& communicator,
                                             std::vector<T> const& own) {
@@ -43,7 +44,7 @@ template <class T>
 std::span<std::byte const> bytes_of(std::vector<T> const& values) {
     return std::as_bytes(std::span(values));
 }
-/// Room for so many.
+/// Resizes `values` to `count` elements and returns their bytes.
 template <class T>
 std::span<std::byte> room_for(std::size_t count, std::vector<T>& values) {
     values.resize(count);
@@ -89,9 +90,10 @@ void GhostLists::share_partners() {
                 partners_[rank].send.push_back(place_[bead] - first());
 }
 
-/// The same answer on every rank: the largest of a number each.
+// The result is the same on every rank, because it follows from the maximum of one number per rank.
 bool GhostLists::are_used_up(Moves const& moves, char const* trouble) {
-    double constexpr good = 0, used_up = 1, in_trouble = 2;  // and the bead's number
+    double constexpr good = 0, used_up = 1,
+                     in_trouble = 2;  // the bead's number is added to in_trouble
     bool const far = std::exchange(renew_, false) || (moves.far && !plan_.ranges.empty());
     double const state =
         communicator_.max(moves.bead >= 0 ? in_trouble + static_cast<double>(moves.bead)
@@ -120,10 +122,10 @@ void GhostLists::make(std::span<Vec3 const> own) {
     traffic_.seconds_of_lists += seconds_now() - begin;
 }
 
-/// Adds what acts on another rank's beads within reach + skin to what it is sent, and the other way
-/// round. Where some rank finds no place aside all beads are looked for over the longest range:
-/// then every bead of another rank is shown there, and one that is no ghost is as far away as a
-/// place aside must be.
+/// Adds to the lists the beads that act on another rank's beads within reach + skin, in both
+/// directions. If some rank finds no free cell for idle particles, all beads are searched over the
+/// longest range. Every bead of another rank is then received here, and one that is no ghost is far
+/// enough to mark a free position.
 void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
     PairRange const longest{longest_reach(plan_.ranges), {}};
     Grid const grid(longest.reach + plan_.skin, plan_.box);
@@ -143,7 +145,7 @@ void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
         for (std::size_t i = 0; i < meeting.taken.size(); ++i)
             if (std::binary_search(plan_.partners.begin(), plan_.partners.end(),
                                    meeting.theirs.piece[i]))
-                meeting.taken[i] = 0;  // it comes
+                meeting.taken[i] = 0;  // partners are received anyway
     }
     swap([](Meeting const& m) { return bytes_of(m.taken); },
          [](Meeting& m) { return room_for(m.mine.piece.size(), m.asked); });
@@ -176,8 +178,8 @@ void GhostLists::Shown::add(std::int64_t bead, std::span<Vec3 const> positions) 
     first.push_back(std::ssize(position));
 }
 
-/// With each rank whose beads lie in or around this one's cells, which is mutual. `cells`: what
-/// `blocks` reach into.
+/// Collects the own pieces for each rank whose beads lie in or around this rank's cells; the
+/// relation is symmetric. `cells`: cells that `blocks` intersect.
 void GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks,
                       Grid const& grid, std::vector<Cell> const& cells) {
     std::vector<std::vector<Cell>> const of_ranks = blocks_of_ranks(communicator_, cells);
@@ -197,7 +199,7 @@ void GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& 
     std::erase_if(meetings_, [](auto const& with) { return with.second.mine.piece.empty(); });
 }
 
-/// Brings what the others show.
+/// Exchanges the pieces and their positions.
 void GhostLists::show() {
     for (auto& [rank, m] : meetings_) m.shown = std::ssize(m.mine.piece);
     swap([](Meeting const& m) { return std::as_bytes(std::span(&m.shown, 1)); },
@@ -215,7 +217,7 @@ void GhostLists::show() {
          });
 }
 
-/// Of the pieces that another rank shows, 1 for those with a bead near one of mine, else 0.
+/// Returns 1 for the pieces of another rank that have a bead near an own bead, else 0.
 std::vector<char> GhostLists::near_ones(Meeting const& meeting,
                                         std::vector<PairRange> const& ranges) {
     std::vector<char> near(meeting.theirs.piece.size(), 0);
@@ -231,6 +233,7 @@ std::vector<char> GhostLists::near_ones(Meeting const& meeting,
     return near;
 }
 
+/// Collects the beads of pieces that act over `range`; pieces with `left_out` set get no beads.
 void GhostLists::find_acting(Shown const& shown, PairRange const& range,
                              std::vector<char> const& left_out, Acting& acting) const {
     acting.position.clear();
@@ -245,8 +248,8 @@ void GhostLists::find_acting(Shown const& shown, PairRange const& range,
     }
 }
 
-/// That of a bead which is not near, where there is no other. Own beads may come nearer by half the
-/// skin.
+/// Uses the position of a bead that is no ghost as the idle position if there is no free cell. Own
+/// beads may approach it by half the skin.
 void GhostLists::find_place_among(Shown const& theirs, std::vector<char> const& near) {
     auto const far = std::find(near.begin(), near.end(), 0);
     if (!plan_.box || !free_.empty() || far == near.end()) return;
@@ -255,8 +258,9 @@ void GhostLists::find_place_among(Shown const& theirs, std::vector<char> const& 
     edge_ = Vec3{{plan_.skin / 4, plan_.skin / 4, plan_.skin / 4}};
 }
 
-/// In cells that are not in or around own beads', or far out where space has no end: nothing acts
-/// on own beads from there. False where every cell of the box is.
+/// Finds idle positions, from which nothing acts on own beads. In a periodic box these are in cells
+/// that are neither own nor adjacent to own ones; unbounded space has room beyond all cells.
+/// Returns false if every cell of the box is own or adjacent.
 bool GhostLists::find_place_aside(Grid const& grid, CellSet const& own) {
     CellSet const felt = grid.with_surroundings(own);
     free_.clear();
@@ -276,7 +280,7 @@ bool GhostLists::find_place_aside(Grid const& grid, CellSet const& own) {
     return !free_.empty();
 }
 
-/// A message from and to each of those ranks.
+/// Exchanges one message in each direction with every rank in `meetings_`.
 template <class Out, class In>
 void GhostLists::swap(Out const& out, In const& in) {
     std::vector<Outgoing> outgoing;
@@ -288,10 +292,10 @@ void GhostLists::swap(Out const& out, In const& in) {
     exchange(outgoing, incoming);
 }
 
-/// Out of each other's reach where there is room, in a cube: a row would be so long that OpenMM
-/// could not sort own beads among them. In a box scattered over the cells that are free, thousands
-/// of them where there are so many: in one they would all feel each other. As many as OpenMM takes
-/// at once stand in the same one.
+// Idle particles are placed out of each other's reach if there is room. In unbounded space they
+// form a cube: a row would be so long that OpenMM could not sort own beads among them. In a box
+// they are scattered over up to 4096 free cells, because in one cell they would all interact.
+// Groups of 32, which OpenMM processes at once, share a cell.
 Vec3 GhostLists::aside(std::int64_t i, std::int64_t count) const {
     std::int64_t constexpr together = 32;
     auto const in_cube = [](std::int64_t k, std::int64_t of) {
@@ -303,9 +307,8 @@ Vec3 GhostLists::aside(std::int64_t i, std::int64_t count) const {
     if (plan_.box) {
         std::int64_t const cells = std::ssize(free_), groups = (count + together - 1) / together,
                            group = i / together;
-        if (cells == 0)
-            throw ComputationError(
-                "no place in the box is out of the beads' reach");  // every bead there is a ghost
+        // Every bead of the other ranks is a ghost here.
+        if (cells == 0) throw ComputationError("no place in the box is out of the beads' reach");
         place = free_[static_cast<std::size_t>(group % cells)];
         auto const [at, side] = in_cube(group / cells * together + i % together,
                                         (groups + cells - 1) / cells * together);
@@ -376,12 +379,14 @@ void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) 
     std::vector<char> is_known(all.size(), 0);
     for (std::int64_t const bead : beads_) is_known[static_cast<std::size_t>(bead)] = 1;
     double const no_bead = -1, count = static_cast<double>(all.size());
-    double worst = no_bead;  // a stale ghost's bead, or `count` + a missed one
+    // `worst` is a stale ghost's bead, or `count` + a missing one.
+    double worst = no_bead;
     for (std::size_t i = 0; i < beads_.size(); ++i)
         if (!std::equal(ghosts[i].data, ghosts[i].data + 3, all[beads_[i]].data))
             worst = std::max(worst, static_cast<double>(beads_[i]));
     for (PairRange const& range : plan_.ranges) {
-        std::vector<std::int64_t> acting, own_ones;  // beads; own ones by their places among these
+        // `acting` contains beads; `own_ones` contains positions in `acting`.
+        std::vector<std::int64_t> acting, own_ones;
         std::vector<Vec3> there;
         for (std::int64_t bead = 0; bead < std::ssize(all); ++bead) {
             if (!range.is_for(bead)) continue;

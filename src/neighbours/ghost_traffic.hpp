@@ -1,19 +1,21 @@
-// What a rank holds of other ranks' beads and has sent them of its own.
+// Statistics of ghosts and of their exchange.
 #pragma once
 
 #include <cstdint>
 
 namespace catena {
 
+/// Counters of one rank since the start.
 struct GhostTraffic {
-    std::int64_t updates = 0, rebuilds = 0;  // of ghosts' positions, and of their lists; of several
-                                             // layers the most of one
-    std::int64_t messages = 0,
-                 bytes = 0;  // sent from rank to rank, for the lists too; collectives not counted
-    bool direct = false;     // positions go from GPU to GPU, not through the host
-    double seconds_of_lists = 0;  // that making them took
-    std::int64_t ghosts = 0,
-                 most_ghosts = 0;  // now, and of all lists so far; of several layers the sums
+    /// Numbers of position updates and of rebuilds; of several layers, the largest.
+    std::int64_t updates = 0, rebuilds = 0;
+    /// Point-to-point messages and bytes sent, including those of rebuilds; collectives are not
+    /// counted.
+    std::int64_t messages = 0, bytes = 0;
+    bool direct = false;          // true if positions are exchanged from GPU to GPU
+    double seconds_of_lists = 0;  // time spent in rebuilds, s
+    /// Current number of ghosts, and its maximum so far; of several layers, the sums.
+    std::int64_t ghosts = 0, most_ghosts = 0;
 };
 
 }  // namespace catena

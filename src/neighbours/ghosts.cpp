@@ -1,3 +1,4 @@
+// Neighbour search over blocks of points, which are sorted into a grid by their midpoints.
 #include "neighbours/ghosts.hpp"
 
 #include <algorithm>
@@ -14,24 +15,26 @@ namespace catena {
 
 namespace {
 
+/// Returns the offsets of groups with one point each.
 std::vector<std::int64_t> each_by_itself(std::size_t points) {
     std::vector<std::int64_t> first(points + 1);
     std::iota(first.begin(), first.end(), std::int64_t{0});
     return first;
 }
 
-/// Along one axis of a grid, the cells whose points may be within reach of those of a cell.
+/// Range of grid cells along one axis whose points may be within reach of the points of a cell.
 class Window {
   public:
     Window(Grid const& grid, int axis, double reach)
         : count_(grid.ends() ? grid.cells()[axis] : 0),
           width_(static_cast<std::int64_t>(std::ceil(reach / grid.edge()[axis]))),
           all_(count_ > 0 && 2 * width_ + 1 >= count_) {}
+    /// Distance of two cells along the axis, in cells; periodic if the grid is.
     std::int64_t apart(std::int64_t a, std::int64_t b) const {
         std::int64_t const d = std::abs(a - b);
         return count_ > 0 ? std::min(d, count_ - d) : d;
     }
-    /// Calls action(first, last) for at most two runs of cells, each cell once.
+    /// Calls action(first, last) for at most two ranges of cells; each cell occurs once.
     template <class Action>
     void runs(std::int64_t a, Action const& action) const {
         if (all_) return action(std::int64_t{0}, count_ - 1);
@@ -47,7 +50,7 @@ class Window {
     bool all_;
 };
 
-/// Blocks by the cells of their middles.
+/// Blocks of a set of points, and their midpoints for the sorting into cells.
 struct BlocksInCells {
     BlocksInCells(PointGroups const& points, double edge)
         : groups(points), blocks(blocks_of(points, edge)) {
@@ -60,10 +63,11 @@ struct BlocksInCells {
     PointGroups groups;
     std::vector<PointBlock> blocks;
     std::vector<Vec3> middles;
-    Vec3 half = Vec3::zero();  // of the widest
+    Vec3 half = Vec3::zero();  // half edges of the widest block
 };
 
-/// Which groups are near others: by blocks of either, most of which are out of reach.
+/// Search for the groups near a second set of points. Both sets are searched by blocks, most of
+/// which are out of reach.
 class Search {
   public:
     Search(BlocksInCells const& ours, BlocksInCells const& theirs, double radius,
@@ -85,7 +89,7 @@ class Search {
 
     std::vector<char> run(Executor const& executor) {
         std::vector<std::size_t> const rows = row_starts(in_cells_.cells());
-        int constexpr cost = 256;  // of a row in bodies
+        int constexpr cost = 256;  // cost of a row, in bodies
         executor.for_ranges(std::ssize(rows) - 1, cost, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i)
                 search_row(rows[static_cast<std::size_t>(i)],
@@ -95,9 +99,10 @@ class Search {
     }
 
   private:
+    /// Number of cells per reach: narrower cells exclude more blocks.
     static double constexpr cells_a_reach = 2;
 
-    /// Where rows along z begin among cells, and the number of these.
+    /// Returns the index of the first cell of each row along z, then the number of cells.
     static std::vector<std::size_t> row_starts(std::vector<Cell> const& cells) {
         std::vector<std::size_t> starts;
         for (std::size_t i = 0; i < cells.size(); ++i)
@@ -107,12 +112,13 @@ class Search {
         return starts;
     }
 
-    /// Their cells along z, and how many cells they are away, squared.
+    /// Row of the other set's cells along z, and its squared distance in cells.
     struct Row {
         std::size_t first, last;
         std::int64_t away;
     };
 
+    /// Searches the blocks of cells [first, last), which form one row along z.
     void search_row(std::size_t first, std::size_t last) {
         std::vector<Row> const rows = rows_near(in_cells_.cells()[first]);
         std::vector<std::int64_t> open;
@@ -126,7 +132,7 @@ class Search {
             }
     }
 
-    /// The nearest first: they decide most.
+    /// Returns the rows within reach, nearest first: they decide most groups.
     std::vector<Row> rows_near(Cell const& cell) const {
         std::vector<Row> rows;
         std::vector<Cell> const& cells = their_cells_.cells();
@@ -153,7 +159,7 @@ class Search {
         return rows;
     }
 
-    /// Takes the groups of a block that are near blocks of the row from the open ones.
+    /// Removes from `open` the groups of a block that are near blocks of the row, and marks them.
     void search_along(Row const& row, PointBlock const& block, std::int64_t z,
                       std::vector<std::int64_t>& open) {
         std::vector<Cell> const& cells = their_cells_.cells();
@@ -174,6 +180,7 @@ class Search {
         });
     }
 
+    /// Tests one group point by point against a block of the other set, and stores the result.
     bool is_near(std::int64_t g, PointBlock const& block) {
         std::span<Vec3 const> const points = ours_.groups.group(g),
                                     others = theirs_.groups.of(block);
@@ -187,14 +194,14 @@ class Search {
         return near;
     }
 
-    /// Between boxes, of nearest images.
+    /// Squared distance between two bounding boxes in nearest images; 0 if they overlap.
     double squared_gap(Vec3 const& middle, Vec3 const& half, PointBlock const& other) const {
         Vec3 d = grid_.nearest_image(middle - other.middle);
         for (int c = 0; c < 3; ++c) d[c] = std::max(0.0, std::abs(d[c]) - half[c] - other.half[c]);
         return dot(d, d);
     }
     bool may_be_near(double squared_gap) const {
-        double constexpr slack = 1 + 1e-9;  // however boxes are rounded
+        double constexpr slack = 1 + 1e-9;  // allows for rounding of the boxes
         return squared_gap < slack * radius_ * radius_;
     }
 
@@ -204,7 +211,7 @@ class Search {
     Grid grid_;
     Window x_, y_, z_;
     PointsInCells in_cells_, their_cells_;
-    std::vector<PointBlock> their_blocks_;  // cell by cell
+    std::vector<PointBlock> their_blocks_;  // sorted by cell
     std::vector<char> near_;
 };
 
@@ -237,7 +244,7 @@ std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions,
         is_own[k] = true;
         inside.push_back(positions[k]);
     }
-    std::vector<std::int64_t> bead;  // of `outside`
+    std::vector<std::int64_t> bead;  // bead of each entry of `outside`
     for (std::int64_t k = 0; k < std::ssize(positions); ++k) {
         if (is_own[k]) continue;
         outside.push_back(positions[k]);

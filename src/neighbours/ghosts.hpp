@@ -1,5 +1,4 @@
-// Which beads lie near others: the search that every list of ghosts is made by. No OpenMM here, and
-// no messages.
+// Neighbour search used to build ghost lists. It depends neither on OpenMM nor on communication.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +12,23 @@
 
 namespace catena {
 
-/// Of each group 1 where one of its points lies within `radius` of one of `others`, however these
-/// are grouped, else 0. `box`: edges of the periodic box (nearest images). Preconditions: radius >
-/// 0, positions finite.
+/// Returns 1 for each group with a point within `radius` (nm) of a point of `others`, else 0. The
+/// grouping of `others` does not affect the result. `box`: edges of the periodic box (nearest
+/// images). Preconditions: radius > 0, positions finite.
 std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius,
                               std::optional<Vec3> const& box, Executor const&);
 
-/// Indices, ascending, of the `points` that lie within `radius` of one of `others`; the rest as
-/// above.
+/// Returns the ascending indices of the `points` within `radius` of one of `others`. Preconditions
+/// as near_groups().
 std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others,
                                    double radius, std::optional<Vec3> const& box);
 
-/// Beads that are not among `own` and lie within `radius` of one of these, ascending.
+/// Returns the ascending indices of beads not in `own` that lie within `radius` of a bead in `own`.
 std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions,
                                     std::span<std::int64_t const> own, double radius,
                                     std::optional<Vec3> const& box);
 
-/// The largest distance between a bead's two positions.
+/// Returns the largest distance between corresponding positions.
 double largest_displacement(std::span<Vec3 const> from, std::span<Vec3 const> to);
 
 }  // namespace catena

@@ -1,5 +1,5 @@
-// Space cut into cells that are wider than a radius: what is near a point lies in its cell or in
-// one of the 26 around it.
+// Grid of cells wider than a given radius: all neighbours of a point within that radius lie in its
+// cell or in one of the 26 adjacent cells.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,14 @@
 
 namespace catena {
 
+/// Integer coordinates of a cell.
 using Cell = std::array<std::int64_t, 3>;
 
 inline bool is_same(Cell const& a, Cell const& b) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
+/// Hash function of cells.
 struct CellHash {
     std::size_t operator()(Cell const& c) const {
         std::uint64_t h = 0;
@@ -32,12 +34,14 @@ struct CellHash {
 
 using CellSet = std::unordered_set<Cell, CellHash>;
 
+/// Grid over a periodic box or over unbounded space.
 class Grid {
   public:
-    /// `box`: edges of the periodic box; without it space has no end. Precondition: radius > 0.
+    /// `radius` is the least width of a cell, nm. `box` has the edges of the periodic box; without
+    /// it, space is unbounded. Precondition: radius > 0.
     Grid(double radius, std::optional<Vec3> const& box) : box_(box) {
-        double const width =
-            radius * (1 + 1e-9);  // wider than the radius however a point's cell is rounded
+        // The factor keeps cells wider than the radius in spite of rounding.
+        double const width = radius * (1 + 1e-9);
         for (int i = 0; i < 3; ++i) {
             count_[i] = box ? std::max<std::int64_t>(
                                   1, static_cast<std::int64_t>(std::floor((*box)[i] / width)))
@@ -47,24 +51,29 @@ class Grid {
         }
     }
 
+    /// Edges of a cell, nm.
     Vec3 const& edge() const { return edge_; }
+    /// True if space is a periodic box.
     bool ends() const { return box_.has_value(); }
-    /// Along each edge of the box. Precondition: space ends.
+    /// Number of cells along each edge of the box. Precondition: ends().
     Cell const& cells() const { return count_; }
 
+    /// Cell that contains x, wrapped into the box.
     Cell cell(Vec3 const& x) const {
         Cell c = unwrapped(x);
         for (int i = 0; i < 3; ++i) c[i] = wrapped(c[i], i);
         return c;
     }
 
+    /// Midpoint of a cell, nm.
     Vec3 middle(Cell const& c) const {
         Vec3 x;
         for (int i = 0; i < 3; ++i) x[i] = (static_cast<double>(c[i]) + 0.5) * edge_[i];
         return x;
     }
 
-    /// The cell and those around it; in a small box some more than once.
+    /// Calls visit(cell) for the cell and its 26 neighbours. In a small box some cells occur more
+    /// than once.
     template <class Visit>
     void around(Cell const& c, Visit visit) const {
         for (std::int64_t x = -1; x <= 1; ++x)
@@ -73,6 +82,7 @@ class Grid {
                     visit(Cell{wrapped(c[0] + x, 0), wrapped(c[1] + y, 1), wrapped(c[2] + z, 2)});
     }
 
+    /// Returns the cells together with all their neighbours.
     template <class Cells>
     CellSet with_surroundings(Cells const& cells) const {
         CellSet all;
@@ -80,19 +90,20 @@ class Grid {
         return all;
     }
 
-    /// The shortest of a vector's images.
+    /// Returns the shortest periodic image of a vector.
     Vec3 nearest_image(Vec3 d) const {
         if (box_)
             for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] * a_box_[i]);
         return d;
     }
-    /// Of nearest images; the same for (a, b) and (b, a).
+    /// Squared distance of nearest images, nm^2. The result for (a, b) and (b, a) is the same to
+    /// the bit.
     double squared_distance(Vec3 const& a, Vec3 const& b) const {
         Vec3 const d = nearest_image(a - b);
         return dot(d, d);
     }
-    /// Calls visit(cell) for those that a box reaches into; in a small periodic box for some more
-    /// than once.
+    /// Calls visit(cell) for all cells that intersect the box [least, most]. In a small periodic
+    /// box some cells occur more than once.
     template <class Visit>
     void within(Vec3 const& least, Vec3 const& most, Visit visit) const {
         Cell const a = unwrapped(least), b = unwrapped(most);
@@ -102,7 +113,7 @@ class Grid {
                     visit(Cell{wrapped(x, 0), wrapped(y, 1), wrapped(z, 2)});
     }
 
-    /// A cell's place along an axis, around the box where there is one.
+    /// Coordinate of a cell along an axis, wrapped into the periodic box if there is one.
     std::int64_t wrapped(std::int64_t c, int axis) const {
         if (count_[axis] == 0) return c;
         std::int64_t const r = c % count_[axis];
@@ -111,7 +122,7 @@ class Grid {
 
   private:
     Cell unwrapped(Vec3 const& x) const {
-        double constexpr far = 1e15;  // an integer still tells neighbours apart there
+        double constexpr far = 1e15;  // integer coordinates are still distinct there
         Cell c{};
         for (int i = 0; i < 3; ++i)
             c[i] = static_cast<std::int64_t>(std::clamp(std::floor(x[i] / edge_[i]), -far, far));
@@ -119,7 +130,7 @@ class Grid {
     }
 
     std::optional<Vec3> box_;
-    Vec3 edge_{}, a_box_{};  // a_box_: boxes a length
+    Vec3 edge_{}, a_box_{};  // a_box_: 1 / edge of the box, 1/nm
     Cell count_{};
 };
 

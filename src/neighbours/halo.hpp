@@ -1,5 +1,5 @@
-// Other ranks' beads around a rank's own: what the path on which positions and forces stay on the
-// GPU asks of the ranks.
+// Interface of the GPU path to ghosts: exchange of bead positions between ranks when positions and
+// forces stay in GPU memory.
 #pragma once
 
 #include <cstdint>
@@ -16,66 +16,69 @@ class Context;
 
 namespace catena {
 
+/// Ghosts of one rank, and the OpenMM Context of its own beads and ghosts.
 class Halo {
   public:
-    /// Positions to and from a rank.
+    /// Numbers of positions sent to and received from a rank.
     struct Message {
         int rank;
         std::int64_t sent, received;
     };
+    /// Lists that stay valid until the next rebuild.
     struct Lists {
-        std::vector<Message>
-            messages;  // whose positions follow each other in `sent` and `particle`
+        /// Messages; their positions are consecutive in `sent` and `particle`.
+        std::vector<Message> messages;
         std::vector<std::int64_t> sent;  // own beads whose positions are sent, in this order
-        bool one_for_all = false;        // every message has all of `sent`
-        std::vector<int> particle;       // of each position received, in the rank's Context
-        std::vector<int>
-            idle;  // particles that stand for no bead, and their places, which nothing feels
+        bool one_for_all = false;        // true if every message contains all of `sent`
+        std::vector<int> particle;       // particle in the rank's Context of each position received
+        /// Particles that represent no bead, and their positions (`aside`), at which nothing acts
+        /// on them.
+        std::vector<int> idle;
         std::vector<Vec3> aside;
-        std::optional<double> farthest;  // how far own beads may move until lists are made anew;
-                                         // any way where it is absent
-        bool keeps_particles =
-            false;  // the Context and its particles' parameters are those of the lists before
+        /// Limit of own beads' displacement until the next rebuild, nm; absent: no limit.
+        std::optional<double> farthest;
+        /// True if the Context and its particles' parameters are those of the previous lists.
+        bool keeps_particles = false;
     };
     virtual ~Halo() = default;
 
-    /// GhostLists::are_used_up's.
+    /// Error text for GhostLists::are_used_up().
     static constexpr char const* in_trouble =
         "the position of bead {:.0f}, or OpenMM's force on it, is not finite";
 
-    /// Whether the lists are to be made anew. `far`: an own bead is farther away than `farthest`;
-    /// `bead`: number of one whose position or force is not finite, -1: there is none. Collective.
-    /// Throws SharedError where some rank has one.
+    /// True if the lists must be rebuilt. `far`: an own bead has moved farther than `farthest`.
+    /// `bead`: number of a bead whose position or force is not finite; -1: none. Collective. Throws
+    /// SharedError if a rank has such a bead.
     virtual bool are_used_up(bool far, std::int64_t bead) = 0;
-    /// Throws SharedError where some rank has a bead whose position or force is not finite.
+    /// Throws SharedError if some rank has a bead whose position or force is not finite.
     /// Collective.
     virtual void refuse_trouble(std::int64_t bead) const = 0;
-    /// Finds the lists at own beads' positions, nm, W. Collective.
+    /// Builds the lists at the own beads' positions, nm, W. Collective.
     virtual void make_lists(std::span<Vec3 const> own) = 0;
     virtual Lists const& lists() const = 0;
-    /// That has a particle for each own bead and each ghost. Precondition: the rank has beads, and
-    /// lists. Another one only after make_lists(), before which the caller lets go of the one
-    /// before and makes the GPU context of all of them its thread's.
+    /// Context with one particle for each own bead and each ghost. Preconditions: the rank has
+    /// beads, and lists exist. The Context changes only after make_lists(). Before that call the
+    /// caller must release the previous one and make the common GPU context current.
     virtual OpenMM::Context& context() = 0;
-    /// Sends and receives positions. Collective.
+    /// Exchanges positions through host memory. Collective.
     virtual void carry(std::span<Vec3 const> sent, std::span<Vec3> received) = 0;
-    /// They went from GPU to GPU, not by carry().
+    /// Records that positions were exchanged from GPU to GPU instead.
     virtual void note_carried() = 0;
     virtual Communicator const& communicator() const = 0;
     virtual bool every_rank_has_beads() const = 0;
-    /// Whether audit() is to be called at every evaluation, on every rank or none: compares the
-    /// ghosts with a search among all beads. Collective; throws SharedError.
+    /// True if audit() must be called at every evaluation, which is the same on all ranks. audit()
+    /// compares the ghosts with a search among all beads. It is collective and throws SharedError.
     virtual bool is_audited() const = 0;
     virtual void audit(std::span<Vec3 const> own, std::span<Vec3 const> received) const = 0;
-    /// Where every rank has every bead: bits for the groups of forces that this one computes, those
-    /// between pairs in its share of these alone. What ranks find adds up to the forces. Absent: a
-    /// rank computes whatever acts on its own beads.
+    /// Force decomposition, in which every rank has every bead: bits of the force groups that this
+    /// rank computes. Pair forces among them cover this rank's share of pairs only; the sum over
+    /// ranks is the total force. Absent: a rank computes all forces on its own beads.
     virtual std::optional<int> groups_of_share() const { return std::nullopt; }
-    /// Where every rank has every bead: from now on positions of own beads are sent in this
-    /// sequence, and so received elsewhere. Collective.
+    /// Force decomposition: sets the sequence in which own beads' positions are sent, and so
+    /// received elsewhere. Collective.
     virtual void send_in(std::span<std::int64_t const> /*sequence*/) {}
-    /// Whether are_used_up() was told last that beads of some rank are far, or found lists used up:
-    /// lists of pairs are to be made anew.
+    /// True if the last are_used_up() found beads of some rank far, or the lists invalid. Neighbour
+    /// lists must then be rebuilt.
     virtual bool some_are_far() const { return false; }
 };
 

@@ -1,4 +1,4 @@
-// Where pairs are shared out among ranks that all know every bead.
+// Division of pairs among ranks in a force decomposition, in which all ranks know every bead.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,18 @@
 
 namespace catena {
 
-/// Rank r computes from cuts[r] to cuts[r + 1] of a row of blocks, 0 and 1 being its ends.
+/// Returns cuts of equal shares. Rank r computes the blocks from cuts[r] to cuts[r + 1], where 0
+/// and 1 are the ends of the row of blocks.
 inline std::vector<double> equal_cuts(int ranks) {
     std::vector<double> cuts;
     for (int r = 0; r <= ranks; ++r) cuts.push_back(static_cast<double>(r) / ranks);
     return cuts;
 }
 
-/// Cuts that give every rank as much work, were that of each, `work`, spread evenly over what it
-/// has now. Where there is none they stay. Every rank keeps an eighth of an equal share at least:
-/// whoever has none would not notice that others have what was its own.
+/// Returns cuts that give every rank equal work, if the measured `work` of each is spread evenly
+/// over its present share. Without any work the cuts are unchanged. Every rank keeps at least an
+/// eighth of an equal share: a rank without pairs could not measure that the others are now
+/// overloaded with its former share.
 inline std::vector<double> evened_cuts(std::vector<double> const& cuts,
                                        std::span<double const> work) {
     std::size_t const ranks = work.size();
@@ -27,7 +29,7 @@ inline std::vector<double> evened_cuts(std::vector<double> const& cuts,
     double const least = 0.125 / static_cast<double>(ranks);
     std::vector<double> evened{0};
     std::size_t r = 0;
-    double before = 0;  // work of ranks before r
+    double before = 0;  // work of the ranks before r
     for (std::size_t next = 1; next < ranks; ++next) {
         double const wanted = total * static_cast<double>(next) / static_cast<double>(ranks);
         while (r + 1 < ranks && before + work[r] < wanted) before += work[r++];

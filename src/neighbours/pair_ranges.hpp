@@ -1,5 +1,5 @@
-// How far pairs of beads act on each other, where some act farther than others: what decides which
-// beads are ghosts. No OpenMM here.
+// Interaction ranges of pairs of beads, which determine the ghosts. Some beads act over longer
+// ranges than others. This file does not depend on OpenMM.
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,19 @@
 
 namespace catena {
 
-/// Two beads that both act in it feel each other up to `reach`, nm.
+/// Range of a pair interaction: two beads that both take part interact up to the distance `reach`,
+/// nm.
 struct PairRange {
     double reach = 0;
-    std::vector<char> acts;  // of each bead; empty: every one
+    std::vector<char> acts;  // flag of each bead; empty: all beads take part
 
+    /// True if the bead takes part in the interaction.
     bool is_for(std::int64_t bead) const {
         return acts.empty() || acts[static_cast<std::size_t>(bead)] != 0;
     }
 };
 
+/// Largest `reach`, nm; 0 without ranges.
 inline double longest_reach(std::vector<PairRange> const& ranges) {
     double reach = 0;
     for (PairRange const& range : ranges) reach = std::max(reach, range.reach);

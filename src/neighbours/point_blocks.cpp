@@ -1,3 +1,4 @@
+// Formation of blocks of points.
 #include "neighbours/point_blocks.hpp"
 
 #include <algorithm>
@@ -5,6 +6,7 @@
 namespace catena {
 namespace {
 
+/// Bounding box of points.
 struct Box {
     explicit Box(Vec3 const& x) : least(x), most(x) {}
     void add(Vec3 const& x) {
@@ -17,6 +19,7 @@ struct Box {
         add(other.least);
         add(other.most);
     }
+    /// Longest edge.
     double edge() const {
         return std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2]});
     }
@@ -30,7 +33,7 @@ Box box_of(std::span<Vec3 const> points) {
     return box;
 }
 
-/// Around [least, most] however its middle is rounded.
+/// Returns the block whose box contains [least, most] in spite of the rounding of its midpoint.
 PointBlock block(Box const& box, std::int64_t begin, std::int64_t end) {
     PointBlock b{0.5 * (box.least + box.most), {}, begin, end};
     for (int c = 0; c < 3; ++c)

@@ -1,7 +1,7 @@
-// Particles of OpenMM's that several GPUs have, each at the same place of its arrays: positions on
-// their way from the GPU whose bead one is to the others, and forces on their way back. A thread
-// takes one number: i = 3 bead + direction, where beads are counted as they are sent or received,
-// one message after the other. All addresses are GPUs'.
+// Force decomposition over several GPUs that hold the same particles at the same places of OpenMM's
+// arrays. Positions are sent from the GPU that owns a bead to the others, and forces on it are sent
+// back. A thread processes one number, i = 3 bead + direction. Beads are counted in the order of
+// sending or receiving, one message after the other. All addresses are in GPU memory.
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,14 @@
 
 namespace catena {
 
-/// Precondition of all of these: no more messages than this.
+/// Largest number of messages of the loop bodies below.
 inline constexpr int most_messages = 16;
 
-/// Positions as OpenMM computes with them, in single precision, to every other GPU.
+/// Loop body that sends the positions with which OpenMM computes, in single precision, to every
+/// other GPU.
 struct SentPositions {
-    float const* position = nullptr;  // x, y, z and a charge, a place after the other
+    float const* position = nullptr;  // x, y, z and charge of each place
+    /// Place of each bead that is sent.
     std::int32_t const* place = nullptr;
     int messages = 0;
     float* to[most_messages] = {};
@@ -28,7 +30,8 @@ struct SentPositions {
     }
 };
 
-/// What rounding took away of them no force needs.
+/// Loop body that copies received positions to OpenMM's array. Rounding corrections are not sent,
+/// because no force uses them.
 struct ArrivedPositions {
     float* position = nullptr;
     std::int32_t const* place = nullptr;
@@ -38,18 +41,19 @@ struct ArrivedPositions {
     }
 };
 
-/// OpenMM's array of forces (DeviceParticles::force), and where beads are in it.
+/// OpenMM's array of forces (DeviceParticles::force) and the places of beads in it.
 struct ForcesOnBeads {
     std::int64_t* force = nullptr;
     std::int64_t places = 0;
     std::int32_t const* place = nullptr;
+    /// Component i % 3 of the force on bead i / 3.
     CATENA_HD std::int64_t& at(std::int64_t i) const {
         return force[place[i / 3] + i % 3 * places];
     }
 };
 
-/// A force on its way: as OpenMM has it, to the bit, or, where OpenMM finds forces in single
-/// precision, in single precision.
+/// Converts a force for sending. It is sent bitwise, or in single precision if OpenMM computes
+/// forces in single precision.
 template <class Number>
 CATENA_HD Number on_its_way(std::int64_t force) {
     if constexpr (std::is_same_v<Number, float>)
@@ -57,22 +61,26 @@ CATENA_HD Number on_its_way(std::int64_t force) {
     else
         return force;
 }
+/// Converts a received force; values that are not numbers become INT64_MAX.
 CATENA_HD std::int64_t arrived_force(std::int64_t force) { return force; }
 CATENA_HD std::int64_t arrived_force(float force) {
-    float constexpr beyond = 9.2e18f;  // DeviceParticles::most, but for rounding
+    float constexpr beyond = 9.2e18f;  // DeviceParticles::most up to rounding
     return std::fabs(force) < beyond ? static_cast<std::int64_t>(force) : INT64_MAX;
 }
 
-/// Of forces on beads of others this GPU has found a part.
+/// Loop body that sends the forces that this GPU has computed on beads of other ranks.
 template <class Number>
 struct SentForces {
     ForcesOnBeads forces;
     int messages = 0;
-    std::int64_t end[most_messages] = {};  // beads in each message and those before
-    Number* to[most_messages] = {};  // where bead 0 would be if the message had those before, too
-    bool all = true;                 // false: zeros stay away, where ReturnedForces left some
+    std::int64_t end[most_messages] = {};  // number of beads in each message and all before it
+    /// Address at which bead 0 would lie in each message if it also contained the beads of all
+    /// earlier messages.
+    Number* to[most_messages] = {};
+    bool all = true;  // false: zeros are not sent; ReturnedForces left zeros there
+    /// Number of beads in all messages.
     std::int64_t count() const { return messages > 0 ? end[messages - 1] : 0; }
-    /// `box`: where its numbers go
+    /// Appends a message of `beads` beads, whose numbers are written to `box`.
     void add(std::int64_t beads, Number* box) {
         to[messages] = box - 3 * count();
         end[messages] = count() + beads;
@@ -86,8 +94,9 @@ struct SentForces {
     }
 };
 
-/// What others have found of the forces on own beads is added, in whole numbers: their order does
-/// not matter. Leaves zeros where numbers were, for those that are not sent next time.
+/// Loop body that adds the forces that other GPUs have computed on own beads. The sums are of
+/// integers, so that their order does not matter. It leaves zeros in the buffers for components
+/// that are not sent next time.
 template <class Number>
 struct ReturnedForces {
     ForcesOnBeads forces;
@@ -107,7 +116,8 @@ struct ReturnedForces {
             sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) +
                                             static_cast<std::uint64_t>(part));
         }
-        force = is_number ? sum : INT64_MAX;  // two that are none may add up to one
+        // The sum of two values that are not numbers may look like a number.
+        force = is_number ? sum : INT64_MAX;
     }
 };
 

@@ -3,49 +3,54 @@
 #include "error.hpp"
 #include "oracle/linked.hpp"
 
-// Articulated-body algorithm. For every body F = I A + p with F = [torque; force] through the
-// inboard joint, about the joint's centre, A = [alpha; acceleration of the origin], I and p of the
-// body and everything outboard of it, all in B. The 6 x 6 inertia is kept as its blocks: [rot,
-// cross; cross^T, lin].
+// Articulated-body algorithm. For every body, F = I A + p. F = [torque; force] acts through the
+// inboard joint, about the joint's centre; A = [alpha; acceleration of the origin]. I and p belong
+// to the body and everything outboard of it. All are in B. The 6 x 6 inertia is stored in blocks:
+// [rot, cross; cross^T, lin].
 namespace catena::oracle {
 namespace {
 
+/// Spatial inertia in blocks.
 template <class S>
 struct Inertia {
     M3<S> rot = M3<S>::zero(), cross = M3<S>::zero(), lin = M3<S>::zero();
 };
+/// Wrench for an acceleration.
 template <class S>
 SpatialForce<S> operator*(Inertia<S> const& i, Motion<S> const& a) {
     return {i.rot * a.angular + i.cross * a.linear,
             transposed_times(i.cross, a.angular) + i.lin * a.linear};
 }
 
-/// One coordinate as it is eliminated: q'' = (rest - carry . A) / inertia, A the acceleration with
-/// it and those outboard locked.
+/// Coordinate after its elimination: q'' = (rest - carry . A) / inertia. A is the acceleration with
+/// this and all outboard coordinates locked.
 template <class S>
 struct Coordinate {
     SpatialForce<S> carry;
     S inertia = S(0), rest = S(0);
 };
 
+/// Articulated-body inertia and bias force of a body.
 template <class S>
 struct Articulated {
-    Inertia<S> inertia;  // with the inboard joint locked
+    Inertia<S> inertia;  // inertia with the inboard joint locked
     SpatialForce<S> bias;
     Motion<S> closure;  // velocity-dependent part of A across the joint, B
-    // Behind the joint, as the inboard body feels it: F = behind (A carried over from the inboard
-    // body) + bias_behind.
+    // Inertia and bias behind the joint act on the inboard body: F = behind (A carried over from
+    // the inboard body) + bias_behind.
     Inertia<S> behind;
     SpatialForce<S> bias_behind;
     std::array<Coordinate<S>, 2> coordinate;
 };
 
+/// Throws ComputationError for body k.
 [[noreturn]] void not_definite(std::size_t k) {
     throw ComputationError("articulated inertia is not positive definite (body " +
                            std::to_string(k + 1) +
                            "): check the mass and inertia of this body and those outboard of it");
 }
 
+/// Adds the rigid body itself, its gyroscopic terms and its loads.
 template <class S>
 void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gravity,
                     Articulated<S>& a) {
@@ -62,9 +67,10 @@ void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gra
     a.bias = a.bias + SpatialForce<S>{gyroscopic + cross(link.com, net), net};
 }
 
-/// Coordinates one after the other from the outboard side (a universal joint is two pins with a
-/// massless body between): I - U D^-1 U^T with U = I P, D = P^T U; the bias behind carries the
-/// force along the coordinate.
+/// Eliminates the coordinates of a joint one after the other from the outboard side. A universal
+/// joint equals two revolute joints with a massless body between them. The inertia becomes I - U
+/// D^-1 U^T with U = I P, D = P^T U. The bias behind the joint includes the force along the
+/// coordinate.
 template <class S>
 void pass_coordinates(Link<S> const& link, std::size_t k, Articulated<S>& a) {
     a.behind = a.inertia;
@@ -85,6 +91,7 @@ void pass_coordinates(Link<S> const& link, std::size_t k, Articulated<S>& a) {
     }
 }
 
+/// Eliminates the three coordinates of a spherical joint together.
 template <class S>
 void pass_spherical(Link<S> const& link, std::size_t k, Articulated<S>& a) {
     Cholesky<S, 3> const d(a.inertia.rot);
@@ -97,8 +104,8 @@ void pass_spherical(Link<S> const& link, std::size_t k, Articulated<S>& a) {
                                                                   link.effort - a.bias.torque)};
 }
 
-/// Adds what `outboard` passes through its joint to the inboard body, in the inboard body's axes
-/// about its origin.
+/// Adds the inertia and bias of `outboard` behind its joint to the inboard body, in the inboard
+/// body's axes about its origin.
 template <class S>
 void hand_inboard(Link<S> const& link, Articulated<S> const& outboard, Articulated<S>& inboard) {
     M3<S> const& r = link.rotation;
@@ -117,7 +124,7 @@ void hand_inboard(Link<S> const& link, Articulated<S> const& outboard, Articulat
         SpatialForce<S>{r * outboard.bias_behind.torque + cross(link.translation, force), force};
 }
 
-/// Acceleration of a free body 1.
+/// Returns the acceleration of a free body 1.
 template <class S>
 Motion<S> solve_free(Articulated<S> const& a) {
     Matrix<S, 6, 6> m;
@@ -137,7 +144,7 @@ Motion<S> solve_free(Articulated<S> const& a) {
     return {{{x[0], x[1], x[2]}}, {{x[3], x[4], x[5]}}};
 }
 
-/// q'' of a joint; `motion`: the acceleration the body would have without it.
+/// Returns q'' of a joint. `motion` is the acceleration that the body would have at q'' = 0.
 template <class S>
 V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S> motion) {
     if (link.driven) return link.prescribed;
@@ -154,6 +161,7 @@ V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S>
     return qdd;
 }
 
+/// Inward and outward pass over the bodies of one chain.
 template <class S>
 class Solver {
   public:
@@ -171,7 +179,7 @@ class Solver {
     }
 
   private:
-    /// A free body 1 is taken about its centre of mass: about its origin m c^2 would cover a small
+    /// Refers a free body 1 to its centre of mass. About its origin, m c^2 would mask a small
     /// inertia in the 6 x 6 solve.
     void refer_to_com() {
         from_origin_ = links_[0].com;
@@ -179,7 +187,8 @@ class Solver {
         if (links_.size() > 1) links_[1].translation = links_[1].translation - from_origin_;
     }
 
-    /// From the tip: completes the articulated inertia of body k and hands it inboard.
+    /// Inward pass: completes the articulated-body inertia of body k and adds it to the inboard
+    /// body.
     void gather(std::size_t k) {
         Articulated<S>& a = bodies_[k];
         Link<S> const& link = links_[k];
@@ -200,8 +209,8 @@ class Solver {
         if (k > 0) hand_inboard(link, a, bodies_[k - 1]);
     }
 
-    /// From the base: acceleration of body k from that of its inboard body, and everything that is
-    /// reported about it.
+    /// Outward pass: computes the acceleration of body k from that of its inboard body, and stores
+    /// the results of body k.
     Motion<S> release(std::size_t k, Motion<S> const& inboard, OracleResult<S>& result) const {
         Link<S> const& link = links_[k];
         Articulated<S> const& a = bodies_[k];
@@ -250,8 +259,8 @@ class Solver {
     std::vector<Attitude<S>> attitude_;
     std::vector<Articulated<S>> bodies_;
     V3<S> gravity_;
-    V3<S> from_origin_ =
-        V3<S>::zero();  // free base: from the origin of body 1 to its centre of mass, B
+    /// Free base: vector from the origin of body 1 to its centre of mass, B.
+    V3<S> from_origin_ = V3<S>::zero();
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Links between beads, and forces on beads.
 #include "error.hpp"
 #include "oracle/joint.hpp"
 

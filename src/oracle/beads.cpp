@@ -3,19 +3,22 @@
 #include "error.hpp"
 #include "oracle/joint.hpp"
 
-// Articulated masses of point beads on rigid links: a bead and everything outboard of it answers
-// the force lambda u of its inboard link by M a + p = lambda u. The link pushes the inboard bead
-// with -lambda u; the tension is -lambda.
+// Articulated masses of point beads on rigid links. A bead and everything outboard of it respond to
+// the force lambda u of the inboard link by M a + p = lambda u. The link exerts -lambda u on the
+// inboard bead; the tension is -lambda.
 namespace catena::oracle {
 namespace {
 
+/// Articulated mass M and bias force p of a bead, and the terms that eliminate its inboard link.
 template <class S>
 struct ArticulatedBead {
     M3<S> mass;
     V3<S> bias;
-    S compliance = S(0), drive = S(0);  // lambda = (closure + drive + u . a_inboard) / compliance
+    /// Terms of lambda = (closure + drive + u . a_inboard) / compliance.
+    S compliance = S(0), drive = S(0);
 };
 
+/// Factors the articulated mass of bead k. Throws ComputationError if it is not positive definite.
 template <class S>
 Cholesky<S, 3> factor(ArticulatedBead<S> const& bead, std::size_t k) {
     Cholesky<S, 3> const f(bead.mass);
@@ -25,7 +28,7 @@ Cholesky<S, 3> factor(ArticulatedBead<S> const& bead, std::size_t k) {
     return f;
 }
 
-/// The chain without its tip link, under `forces`.
+/// Solves the chain without its tip link under `forces`.
 template <class S>
 OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> const& links,
                            std::vector<V3<S>> const& forces) {
@@ -33,6 +36,7 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
     std::vector<ArticulatedBead<S>> beads(n);
     for (std::size_t k = 0; k < n; ++k)
         beads[k] = {scaled(S(chain.beads.mass[k]), M3<S>::identity()), -forces[k], S(0), S(0)};
+    // Inward pass: eliminate each link and add the outboard mass and bias to the inboard bead.
     for (std::size_t k = n; k-- > first;) {
         V3<S> const& u = links[k].direction;
         V3<S> const softness = factor(beads[k], k).solve(u);
@@ -43,6 +47,7 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
         beads[k - 1].bias = plus_scaled(
             beads[k - 1].bias, S((links[k].closure + beads[k].drive) / beads[k].compliance), u);
     }
+    // Outward pass: link force, then acceleration, from the inboard bead's acceleration.
     OracleResult<S> result;
     V3<S> a = V3<S>::zero();
     for (std::size_t k = 0; k < n; ++k) {
@@ -57,15 +62,15 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
     return result;
 }
 
-/// Acceleration of the last bead against what its tip's link joins it to.
+/// Acceleration of the last bead relative to the other end of the tip link.
 template <class S>
 V3<S> apart_at_tip(ChainSpec const& chain, OracleResult<S> const& r) {
     return chain.is_ring() ? r.com_acceleration.back() - r.com_acceleration.front()
                            : r.com_acceleration.back();
 }
 
-/// How the last bead yields along u to a unit force along u, in a ring with the opposite force on
-/// the first.
+/// Compliance of the tip: acceleration along u per unit force along u on the last bead; in a ring,
+/// the opposite force acts on the first bead.
 template <class S>
 S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
     V3<S> const u = links.back().direction;
@@ -95,7 +100,8 @@ OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
     V3<S> const u = links.back().direction, applied = forces.back(), on_first = forces.front();
     S const yields = tip_compliance(chain, links);
     S lambda(0);
-    for (int pass = 0; pass < 2; ++pass) {  // the second takes back the rounding of the first
+    // The second pass corrects the rounding errors of the first.
+    for (int pass = 0; pass < 2; ++pass) {
         lambda += (links.back().closure + dot(u, apart_at_tip(chain, result))) / yields;
         forces.back() = applied - lambda * u;
         if (chain.is_ring()) forces.front() = on_first + lambda * u;

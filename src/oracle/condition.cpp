@@ -1,3 +1,4 @@
+// Condition numbers of the joint-space inertia and of the links' matrix.
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
 #include "oracle/linked.hpp"
@@ -5,8 +6,8 @@
 namespace catena::oracle {
 namespace {
 
-/// First row of each body's freedoms; behind the last, the number of freedoms. A free base's linear
-/// part comes first.
+/// Returns the first row of each body's degrees of freedom, then their number. The linear ones of a
+/// free base come first.
 template <class S>
 std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
     Index dof = !links.empty() && links[0].type == JointType::free ? 3 : 0;
@@ -19,8 +20,8 @@ std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
     return first;
 }
 
-/// Joint-space inertia: column j holds the joint forces that a unit acceleration of freedom j
-/// needs, at rest and unloaded.
+/// Returns the joint-space inertia. Column j has the joint efforts for a unit acceleration of
+/// degree of freedom j, at rest and without loads.
 template <class S>
 Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
     std::vector<Link<S>> links = read_links<S>(chain, loads);
@@ -49,7 +50,7 @@ Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
     return inertia;
 }
 
-/// G M^-1 G^T of the links, G the gradients of their lengths.
+/// Returns G M^-1 G^T of a chain of beads, where G has the gradients of the link lengths.
 template <class S>
 Dense<S> bead_link_matrix(ChainSpec const& chain) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
@@ -68,6 +69,7 @@ Dense<S> bead_link_matrix(ChainSpec const& chain) {
     return t;
 }
 
+/// Returns G M^-1 G^T of a chain of linked bodies.
 template <class S>
 Dense<S> linked_matrix(ChainSpec const& chain) {
     LinkedModel<S> const model = read_linked<S>(chain, {});

@@ -2,29 +2,32 @@
 
 #include "oracle/system.hpp"
 
-// Newton's and Euler's equations of every body beside the second time derivative of every joint's
-// closure, all in ground axes about the centres of mass, as one linear system for the accelerations
-// and the joint forces.
+// One linear system for all accelerations and joint forces. Its equations are Newton's and Euler's
+// equations of every body, and the second time derivative of every joint's closure, in ground axes
+// about the centres of mass.
 namespace catena::oracle {
 namespace {
 
 /// Body k and its inboard joint in ground axes.
 template <class S>
 struct Body {
-    M3<S> orientation;        // B to W
-    V3<S> omega, to_inboard;  // to_inboard: from com to the body's origin, where the joint acts
-    Motion<S>
-        closure;  // relative acceleration across the joint that its coordinates' q'' do not give
-    SpatialForce<S> given;          // of the joint along its coordinates
+    M3<S> orientation;  // maps B to W
+    /// Angular velocity, and vector from com to the body's origin, where the joint acts.
+    V3<S> omega, to_inboard;
+    /// Relative acceleration across the joint that is not due to its coordinates' q''.
+    Motion<S> closure;
+    SpatialForce<S> given;          // wrench of the joint along its coordinates
     std::vector<Motion<S>> locked;  // directions of the constraint wrench
     Index motion = 0, joint = 0;    // first rows of [a; alpha] and of the constraint's components
 };
 
+/// Returns the motion with both vectors multiplied by r.
 template <class S>
 Motion<S> rotated(M3<S> const& r, Motion<S> const& m) {
     return {r * m.angular, r * m.linear};
 }
 
+/// Assembly of the system for one chain, and interpretation of its solution.
 template <class S>
 class Assembly {
   public:
@@ -47,6 +50,7 @@ class Assembly {
         if (chain.tip == Tip::jointed) close_tip(chain);
     }
 
+    /// Returns the assembled system.
     System<S> system() const {
         System<S> s(size_);
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -65,6 +69,7 @@ class Assembly {
         return s;
     }
 
+    /// Returns the result that corresponds to the solution x.
     OracleResult<S> read(Column<S> const& x) const {
         OracleResult<S> result;
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -94,6 +99,7 @@ class Assembly {
     }
 
   private:
+    /// Sets the inboard joint of body k and numbers its constraint rows.
     void add_joint(std::size_t k, Body<S>& b) {
         Link<S> const& link = links_[k];
         V3<S> const inboard = k == 0 ? V3<S>::zero() : bodies_[k - 1].omega,
@@ -109,6 +115,7 @@ class Assembly {
         size_ += static_cast<Index>(b.locked.size());
     }
 
+    /// Adds the constraint rows of the tip joint.
     void close_tip(ChainSpec const& chain) {
         tip_ = read_tip(chain, links_, attitude_);
         tip_joint_.locked = tip_->locked;
@@ -117,11 +124,12 @@ class Assembly {
         size_ += static_cast<Index>(tip_->locked.size());
     }
 
-    /// From the centre of mass of joint k's inboard body to the joint.
+    /// Vector from the centre of mass of joint k's inboard body to the joint, W.
     V3<S> to_outboard(std::size_t k) const {
         return bodies_[k - 1].orientation * (links_[k].translation - links_[k - 1].com);
     }
 
+    /// Adds Newton's and Euler's equations of body k.
     void add_body(std::size_t k, System<S>& s) const {
         Body<S> const& b = bodies_[k];
         Link<S> const& link = links_[k];
@@ -137,8 +145,8 @@ class Assembly {
         s.add(b.motion + 3, -next.torque - cross(to_outboard(k + 1), next.force));
     }
 
-    /// One end of a joint: `arm` from the body's centre of mass to the joint; sign +1 on the
-    /// outboard body, -1 on the inboard.
+    /// Adds one end of a joint. `arm`: vector from the body's centre of mass to the joint. `sign`:
+    /// +1 on the outboard body, -1 on the inboard one.
     void add_joint_end(Body<S> const& body, V3<S> const& arm, Body<S> const& joint, S sign,
                        System<S>& s) const {
         V3<S> const centripetal = cross(body.omega, cross(body.omega, arm));
@@ -149,6 +157,7 @@ class Assembly {
             s.right[row++] -= sign * dot(d.linear, centripetal);
         }
     }
+    /// Adds the velocity-dependent terms of a joint's closure to the right-hand side.
     void add_closure(Body<S> const& joint, System<S>& s) const {
         Index row = joint.joint;
         for (Motion<S> const& d : joint.locked)
@@ -156,6 +165,7 @@ class Assembly {
                 dot(d.angular, joint.closure.angular) + dot(d.linear, joint.closure.linear);
     }
 
+    /// Constraint wrench of a joint in the solution x.
     SpatialForce<S> constraint(Body<S> const& joint, Column<S> const& x) const {
         SpatialForce<S> f;
         Index row = joint.joint;
@@ -172,6 +182,7 @@ class Assembly {
         return {alpha, a + cross(alpha, arm) + cross(b.omega, cross(b.omega, arm))};
     }
 
+    /// Second derivatives of joint k's coordinates in the solution x.
     V3<S> joint_acceleration(std::size_t k, Column<S> const& x) const {
         Body<S> const& b = bodies_[k];
         if (links_[k].driven) return links_[k].prescribed;
@@ -190,7 +201,7 @@ class Assembly {
     std::vector<Attitude<S>> attitude_;
     std::vector<Body<S>> bodies_;
     std::optional<TipClosure<S>> tip_;
-    Body<S> tip_joint_;  // of it only the joint counts
+    Body<S> tip_joint_;  // only the joint's members are used
     V3<S> gravity_;
     Index size_ = 0;
 };

@@ -1,9 +1,11 @@
 #include "oracle/linked.hpp"
 #include "oracle/system.hpp"
 
-// Newton's (and Euler's) equations beside the second time derivative of every link's length.
+// Dense systems of chains on links: Newton's (and Euler's) equations of every body, and the second
+// time derivative of every link's length.
 namespace catena::oracle {
 
+// Unknowns are three accelerations per bead, then one force per link.
 template <class S>
 OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
@@ -34,6 +36,7 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
     return result;
 }
 
+// Unknowns are six accelerations per body, then one force per link.
 template <class S>
 OracleResult<S> dense_linked(ChainSpec const& chain, Loads const& loads) {
     LinkedModel<S> const model = read_linked<S>(chain, loads);
@@ -43,7 +46,7 @@ OracleResult<S> dense_linked(ChainSpec const& chain, Loads const& loads) {
     for (Index k = 0; k < n; ++k) {
         LinkedBody<S> const& body = model.bodies[static_cast<std::size_t>(k)];
         s.add(6 * k, 6 * k, scaled(body.mass, M3<S>::identity()));
-        s.add(6 * k + 3, 6 * k + 3, body.inertia);  // a bead: angular acceleration zero
+        s.add(6 * k + 3, 6 * k + 3, body.inertia);  // a bead has zero angular acceleration
         s.add(6 * k, body.force);
         s.add(6 * k + 3, body.torque);
     }

@@ -1,4 +1,4 @@
-// Inside the oracles: dense matrices of any oracle scalar.
+// Dense Eigen matrices of any oracle scalar. Internal to the oracles.
 #pragma once
 
 #include <Eigen/Dense>
@@ -6,6 +6,7 @@
 #include "oracle/algebra.hpp"
 
 namespace Eigen {
+/// Properties of Quad for Eigen.
 template <>
 struct NumTraits<catena::oracle::Quad> : GenericNumTraits<double> {
     using Real = catena::oracle::Quad;
@@ -30,8 +31,10 @@ struct NumTraits<catena::oracle::Quad> : GenericNumTraits<double> {
 namespace catena::oracle {
 
 using Index = Eigen::Index;
+/// Matrix of dynamic size.
 template <class S>
 using Dense = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
+/// Vector of dynamic size.
 template <class S>
 using Column = Eigen::Matrix<S, Eigen::Dynamic, 1>;
 

@@ -1,5 +1,5 @@
-// Inside the oracles: recursive Newton-Euler inverse dynamics in ground axes (Featherstone 2008,
-// section 5.3).
+// Recursive Newton-Euler inverse dynamics in ground axes (Featherstone 2008, section 5.3). Internal
+// to the oracles.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace catena::oracle {
 
-/// A moment or force balance: the sum and the largest norm among its terms.
+/// Moment or force balance: the sum of its terms and the largest norm among them.
 template <class S>
 struct Balance {
     V3<S> sum = V3<S>::zero();
@@ -19,21 +19,27 @@ struct Balance {
     }
 };
 
+/// Motion of a body and balances at its inboard joint, in W.
 template <class S>
 struct InverseBody {
-    V3<S> omega, alpha, com_acceleration;  // W
-    V3<S> to_com, from_inboard;  // from the body's origin; from the inboard body's origin to it, W
-    Balance<S> force, torque;    // through the inboard joint, W, about its centre
+    /// Angular velocity and acceleration, and acceleration of the centre of mass.
+    V3<S> omega, alpha, com_acceleration;
+    /// Vectors from the body's origin to its centre of mass, and from the inboard body's origin to
+    /// its own.
+    V3<S> to_com, from_inboard;
+    /// Balances of the force and torque through the inboard joint, about the joint's centre.
+    Balance<S> force, torque;
 };
 
+/// Inverse dynamics of a chain at a given state.
 template <class S>
 class Inverse {
   public:
     Inverse(std::vector<Link<S>> const& links, V3<S> const& gravity)
         : links_(links), attitude_(attitudes(links)), gravity_(gravity) {}
 
-    /// Joint wrenches that the accelerations need; `qdd` and `base_acceleration` as in
-    /// OracleResult.
+    /// Returns the joint wrenches required by the accelerations. `qdd` and `base_acceleration` are
+    /// as in OracleResult.
     std::vector<InverseBody<S>> operator()(std::vector<V3<S>> const& qdd,
                                            V3<S> const& base_acceleration) const {
         std::vector<InverseBody<S>> bodies(links_.size());
@@ -42,34 +48,36 @@ class Inverse {
         return bodies;
     }
 
-    /// Wrenches at the last and first bodies' centres of mass beside their own loads, W: a jointed
-    /// tip's.
+    /// Sets wrenches at the centres of mass of the last and the first body, in addition to their
+    /// loads, W. They represent a jointed tip.
     void push_ends(SpatialForce<S> const& last, SpatialForce<S> const& first) {
         pushed_ = last;
         pushed_first_ = first;
     }
 
-    /// Components in body k's axes of a vector given in W.
+    /// Returns the components in body k's axes of a vector given in W.
     V3<S> in_body(std::size_t k, V3<S> const& v) const {
         return transposed_times(attitude_[k].orientation, v);
     }
-    /// What the accelerations need along the coordinates of joint k.
+    /// Efforts along the coordinates of joint k that the accelerations require.
     V3<S> needed(std::size_t k, InverseBody<S> const& b) const {
         return efforts(links_[k],
                        SpatialForce<S>{in_body(k, b.torque.sum), in_body(k, b.force.sum)});
     }
 
   private:
+    /// Outward recursion: velocities and accelerations.
     void forward(std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration,
                  std::vector<InverseBody<S>>& bodies) const {
         M3<S> inboard = M3<S>::identity();
         V3<S> omega = V3<S>::zero(), alpha = omega,
-              linear = omega;  // of the inboard body; linear: its origin's acceleration
+              // Motion of the inboard body; `linear` is the acceleration of its origin.
+            linear = omega;
         for (std::size_t k = 0; k < links_.size(); ++k) {
             Link<S> const& link = links_[k];
             InverseBody<S>& b = bodies[k];
             M3<S> const& r = attitude_[k].orientation;
-            b.from_inboard = inboard * link.translation;  // the joint's shift included
+            b.from_inboard = inboard * link.translation;  // includes the joint's displacement
             linear =
                 linear + cross(alpha, b.from_inboard) + cross(omega, cross(omega, b.from_inboard));
             if (link.type == JointType::free) linear = base_acceleration;
@@ -87,6 +95,7 @@ class Inverse {
         }
     }
 
+    /// Inward recursion: balances of body k and everything outboard of it.
     void backward(std::size_t k, std::vector<InverseBody<S>>& bodies) const {
         InverseBody<S>& b = bodies[k];
         Link<S> const& link = links_[k];
@@ -111,6 +120,7 @@ class Inverse {
         b.torque.add(cross(next.from_inboard, next.force.sum));
     }
 
+    /// Subtracts a wrench at the centre of mass from the balances.
     static void add_push(InverseBody<S>& b, SpatialForce<S> const& wrench) {
         b.force.add(-wrench.force);
         b.torque.add(-wrench.torque - cross(b.to_com, wrench.force));
@@ -119,6 +129,7 @@ class Inverse {
     std::vector<Link<S>> const& links_;
     std::vector<Attitude<S>> attitude_;
     V3<S> gravity_;
+    /// Wrenches of push_ends() on the last and the first body.
     SpatialForce<S> pushed_, pushed_first_;
 };
 

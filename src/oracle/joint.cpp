@@ -1,3 +1,4 @@
+// Reading of bodies and joints, and projections on the directions of a joint.
 #include "oracle/joint.hpp"
 
 #include <algorithm>
@@ -9,11 +10,12 @@
 namespace catena::oracle {
 namespace {
 
-/// Arrays of BodyArrays that may be empty, which means zero.
+/// Entry k of an array of BodyArrays; an empty array means zero.
 template <class T>
 T entry(std::vector<T> const& values, std::size_t k) {
     return values.empty() ? T{} : values[k];
 }
+/// Unit vector along axis i.
 template <class S>
 V3<S> unit_direction(int i) {
     V3<S> e = V3<S>::zero();
@@ -21,10 +23,12 @@ V3<S> unit_direction(int i) {
     return e;
 }
 
+/// Coordinate of a prescribed motion and its derivatives at one time.
 template <class S>
 struct PrescribedMotionAt {
     S q, rate, acceleration;
 };
+/// Evaluates a prescribed motion.
 template <class S>
 PrescribedMotionAt<S> at(PrescribedMotion const& c, double time) {
     using std::atan2;
@@ -36,12 +40,14 @@ PrescribedMotionAt<S> at(PrescribedMotion const& c, double time) {
             -a * turns * turns * S(sin(phase))};
 }
 
-/// Coordinates and rates of joint k, by its course where it is driven.
+/// Coordinates of joint k and their derivatives; prescribed motion determines them if the joint has
+/// one.
 template <class S>
 struct JointState {
     std::array<S, 2> q;
     V3<S> rates, accelerations = V3<S>::zero();
 };
+/// Returns the state of joint k, and sets `driven` of its link.
 template <class S>
 JointState<S> state_of(BodyArrays const& b, std::size_t k, double time, Link<S>& link) {
     JointState<S> state{{S(b.q[k][0]), S(b.q[k][1])}, lift<S>(b.qd[k])};
@@ -61,6 +67,7 @@ JointState<S> state_of(BodyArrays const& b, std::size_t k, double time, Link<S>&
     return state;
 }
 
+/// Sets effort and spring energy of a joint with scalar coordinates.
 template <class S>
 void read_springs(BodyArrays const& b, std::size_t k, JointState<S> const& state, Link<S>& link) {
     V3<S> const stiffness = lift<S>(entry(b.stiffness, k)), damping = lift<S>(entry(b.damping, k));
@@ -74,6 +81,7 @@ void read_springs(BodyArrays const& b, std::size_t k, JointState<S> const& state
     }
 }
 
+/// Sets effort and spring energy of a spherical joint.
 template <class S>
 void read_spherical_springs(BodyArrays const& b, std::size_t k, Link<S>& link) {
     V3<S> const damping = lift<S>(entry(b.damping, k)), stiffness = lift<S>(entry(b.stiffness, k));
@@ -87,6 +95,7 @@ void read_spherical_springs(BodyArrays const& b, std::size_t k, Link<S>& link) {
     link.spring_energy = dot(e, moment) / S(2);
 }
 
+/// Reads joint k: geometry, rates, and forces along its coordinates.
 template <class S>
 void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<S>& link) {
     BodyArrays const& b = chain.bodies;
@@ -123,7 +132,7 @@ void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<
         read_springs(b, k, state, link);
 }
 
-/// Forces of OpenMM's beads at the body's centre of mass.
+/// Adds the forces on the beads that a body carries, referred to its centre of mass.
 template <class S>
 void add_bead_forces(CarriedBeads const& beads, std::size_t k, Loads const& loads,
                      M3<S> const& orientation, Link<S>& link) {
@@ -137,6 +146,7 @@ void add_bead_forces(CarriedBeads const& beads, std::size_t k, Loads const& load
     }
 }
 
+/// Reads external wrenches, drag, forces on carried beads, and closure errors.
 template <class S>
 void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& links) {
     std::vector<Attitude<S>> const attitude = attitudes(links);
@@ -158,14 +168,15 @@ void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& l
     }
 }
 
-/// (P^T P)^-1 x.
+/// Returns (P^T P)^-1 x, with P the directions of a joint.
 template <class S>
 V3<S> over_gram(Link<S> const& link, V3<S> x) {
     Motion<S> const &p = link.free[0], &p2 = link.free[1];
     if (link.dof == 1) x[0] = x[0] / (dot(p.angular, p.angular) + dot(p.linear, p.linear));
     if (link.dof != 2) return x;
     V3<S> const normal =
-        cross(p.angular, p2.angular);  // both are rotations: Cramer's rule with |a1 x a2|^2
+        // The directions are rotations: Cramer's rule with determinant |a1 x a2|^2.
+        cross(p.angular, p2.angular);
     S const a = dot(p.angular, p.angular), b = dot(p.angular, p2.angular),
             c = dot(p2.angular, p2.angular), det = dot(normal, normal);
     return {{(c * x[0] - b * x[1]) / det, (a * x[1] - b * x[0]) / det, S(0)}};
@@ -255,19 +266,22 @@ std::vector<Motion<S>> restricted(Link<S> const& link) {
         !link.driven && link.type != JointType::weld && link.type != JointType::prismatic;
     bool const shifts =
         !link.driven && (link.type == JointType::prismatic || link.type == JointType::helical);
+    // Constrained rotations: all of them, those across the axis, or the one normal to both axes.
     if (!turns)
         for (int i = 0; i < 3; ++i) d.push_back({unit_direction<S>(i), none});
     else if (link.dof == 1)
         for (V3<S> const& e : across(link.free[0].angular)) d.push_back({e, none});
     else if (link.dof == 2)
         d.push_back({unit(cross(link.free[0].angular, link.free[1].angular)), none});
+    // Constrained translations: all of them, or those across the axis.
     if (!shifts) {
         for (int i = 0; i < 3; ++i) d.push_back({none, unit_direction<S>(i)});
         return d;
     }
     V3<S> const axis = unit(turns ? link.free[0].angular : link.free[0].linear);
     for (V3<S> const& e : across(axis)) d.push_back({none, e});
-    if (turns) d.push_back({-link.free[0].linear, axis});  // helical: what the thread holds
+    if (turns)
+        d.push_back({-link.free[0].linear, axis});  // helical: translation coupled to the rotation
     return d;
 }
 

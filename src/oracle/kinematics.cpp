@@ -1,8 +1,10 @@
+// Forward kinematics and energies of beads, rigid bodies and linked bodies.
 #include "oracle/linked.hpp"
 
 namespace catena::oracle {
 namespace {
 
+/// Kinematics of a chain of beads.
 template <class S>
 Kinematics<S> of_beads(ChainSpec const& chain, Loads const& loads) {
     Kinematics<S> result;
@@ -18,6 +20,7 @@ Kinematics<S> of_beads(ChainSpec const& chain, Loads const& loads) {
     return result;
 }
 
+/// Kinematics of a chain of rigid bodies.
 template <class S>
 Kinematics<S> of_bodies(ChainSpec const& chain, Loads const& loads) {
     Kinematics<S> result;
@@ -41,6 +44,7 @@ Kinematics<S> of_bodies(ChainSpec const& chain, Loads const& loads) {
     return result;
 }
 
+/// Kinematics of a chain of linked bodies.
 template <class S>
 Kinematics<S> of_linked(ChainSpec const& chain, Loads const& loads) {
     Kinematics<S> result;

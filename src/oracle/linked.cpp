@@ -5,12 +5,13 @@
 #include "error.hpp"
 #include "oracle/rotations.hpp"
 
-// Forces of the links of a chain of bodies and beads: T lambda = r, T symmetric, positive definite
-// and tridiagonal. A link pushes its outboard end with lambda u and its inboard end with -lambda u;
-// the tension is -lambda.
+// Link forces of a chain of bodies and beads. They solve T lambda = r, where T is symmetric,
+// positive definite and tridiagonal. A link exerts lambda u on its outboard end and -lambda u on
+// its inboard end; the tension is -lambda.
 namespace catena::oracle {
 namespace {
 
+/// Reads body k with the forces on it.
 template <class S>
 LinkedBody<S> read_body(ChainSpec const& chain, Loads const& loads, std::size_t k) {
     LinkedArrays const& b = chain.linked;
@@ -46,14 +47,14 @@ LinkedBody<S> read_body(ChainSpec const& chain, Loads const& loads, std::size_t 
     return body;
 }
 
-/// z_k(at, from) v: acceleration of the point `at` under the force v at `from`.
+/// Returns z_k(at, from) v: acceleration of the point `at` due to the force v at `from`.
 template <class S>
 V3<S> mobility(LinkedBody<S> const& body, V3<S> const& at, V3<S> const& from, V3<S> const& v) {
     V3<S> const linear = S(S(1) / body.mass) * v;
     if (body.bead) return linear;
     return linear + cross(Cholesky<S, 3>(body.inertia).solve(cross(from, v)), at);
 }
-/// Acceleration of an end without the links' forces.
+/// Returns the acceleration of an end without link forces.
 template <class S>
 V3<S> bias(LinkedBody<S> const& body, std::size_t end) {
     V3<S> const linear = S(S(1) / body.mass) * body.force;
@@ -128,6 +129,7 @@ OracleResult<S> tridiagonal_linked(ChainSpec const& chain, Loads const& loads) {
     std::size_t const n = model.bodies.size(), links = model.links.size();
     std::vector<S> pivot, beside, lambda(links + 1, S(0));
     link_compliance(model, pivot, beside);
+    // Forward elimination.
     for (std::size_t k = model.first; k < links; ++k) {
         V3<S> const& u = model.links[k].direction;
         lambda[k] = model.links[k].closure;
@@ -143,8 +145,10 @@ OracleResult<S> tridiagonal_linked(ChainSpec const& chain, Loads const& loads) {
                                    std::to_string(k + 1) +
                                    "): a chain stretched straight between its ends has no answer");
     }
+    // Back substitution; lambda[links] = 0.
     for (std::size_t k = links; k-- > model.first;)
         lambda[k] = (lambda[k] - beside[k] * lambda[k + 1]) / pivot[k];
+    // Accelerations under the link forces on both ends of every body.
     OracleResult<S> result;
     for (std::size_t k = 0; k < n; ++k) {
         LinkedBody<S> const& body = model.bodies[k];

@@ -1,15 +1,17 @@
+// Least-squares projection of velocities on the constraints of tips and links.
 #include "oracle/eigen.hpp"
 #include "oracle/linked.hpp"
 
 namespace catena::oracle {
 namespace {
 
-/// The least change dx with J dx = - defect.
+/// Returns the smallest change dx with J dx = - defect.
 Column<double> least_change(Dense<double> const& jacobian, Column<double> const& defect) {
     if (jacobian.rows() == 0) return Column<double>::Zero(jacobian.cols());
     return -jacobian.completeOrthogonalDecomposition().solve(defect);
 }
 
+/// Velocity of the tip joint along its locked directions; zero if the velocities are consistent.
 Column<double> tip_velocity(TipClosure<double> const& tip, std::vector<Link<double>> const& links) {
     std::vector<Attitude<double>> const all = attitudes(links);
     Attitude<double> const &last = all.back(), &first = all.front();
@@ -27,6 +29,8 @@ Column<double> tip_velocity(TipClosure<double> const& tip, std::vector<Link<doub
     return v;
 }
 
+/// Projects the velocities of a joint chain with a jointed tip. Column i of the Jacobian is the tip
+/// velocity for a unit of velocity i.
 void project_bodies(ChainSpec& chain, double time) {
     Loads loads;
     loads.time = time;
@@ -59,7 +63,8 @@ void project_bodies(ChainSpec& chain, double time) {
     for (std::size_t i = 0; i < numbers.size(); ++i) *numbers[i] += change[static_cast<Index>(i)];
 }
 
-/// Rates at which the links lengthen, by every component of every velocity.
+/// Calls add_end(link, body, end, sign) for both ends of every link; these are the entries of the
+/// Jacobian of the link lengths.
 template <class Directions, class AddEnd>
 void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& chain,
                    AddEnd const& add_end) {
@@ -70,6 +75,7 @@ void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& 
     }
 }
 
+/// Projects the velocities of beads.
 void project_beads(ChainSpec& chain) {
     std::vector<BeadLink<double>> const links = read_bead_links<double>(chain);
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
@@ -91,6 +97,7 @@ void project_beads(ChainSpec& chain) {
             velocity[i];
 }
 
+/// Projects the velocities of linked bodies.
 void project_linked(ChainSpec& chain) {
     LinkedModel<double> const model = read_linked<double>(chain, {});
     std::size_t const n = chain.size();
@@ -122,8 +129,8 @@ void project_linked(ChainSpec& chain) {
 }  // namespace
 
 void project_velocities(ChainSpec& chain, double time) {
-    for (int pass = 0; pass < 2 && chain.size() > 0;
-         ++pass) {  // the second takes back the rounding of the first
+    // The second pass corrects the rounding errors of the first.
+    for (int pass = 0; pass < 2 && chain.size() > 0; ++pass) {
         if (chain.is_beads())
             project_beads(chain);
         else if (chain.is_linked())

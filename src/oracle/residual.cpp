@@ -1,3 +1,4 @@
+// Residuals of given accelerations by inverse dynamics.
 #include "error.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
@@ -5,13 +6,14 @@
 namespace catena::oracle {
 namespace {
 
+/// Returns error / size, and 0 for size 0.
 template <class S>
 S ratio(S error, S size) {
     return size > S(0) ? S(error / size) : S(0);
 }
 
-/// Along the coordinates of one joint: what is needed less what is given, over the largest term of
-/// its balance (a sliding coordinate: of the forces; a helical one: of both).
+/// Residual along the coordinates of one joint: required minus given efforts, over the largest term
+/// of its balance. A sliding coordinate uses the force balance, a helical one both balances.
 template <class S>
 S joint_residual(Link<S> const& link, V3<S> const& needed, InverseBody<S> const& body) {
     S size = norm(link.effort);
@@ -21,8 +23,8 @@ S joint_residual(Link<S> const& link, V3<S> const& needed, InverseBody<S> const&
     return ratio(norm(needed - link.effort), size);
 }
 
-/// What is needed less what is given, along all coordinates and (free base) in the force balance of
-/// the whole.
+/// Returns required minus given efforts along all coordinates and, for a free base, the force
+/// balance of the whole chain.
 template <class S>
 std::vector<S> errors(std::vector<Link<S>> const& links, Inverse<S> const& inverse,
                       std::vector<InverseBody<S>> const& bodies) {
@@ -41,13 +43,14 @@ Column<S> as_column(std::vector<S> const& values) {
     return Eigen::Map<Column<S> const>(values.data(), static_cast<Index>(values.size()));
 }
 
+/// Sets the wrenches on the end bodies for given components of the tip wrench.
 template <class S>
 void push(Inverse<S>& inverse, TipClosure<S> const& tip, std::vector<S> const& components) {
     inverse.push_ends(tip_wrench(tip, components, V3<S>::zero()),
                       wrench_on_first(tip, components, tip.first_arm));
 }
 
-/// Components of the tip joint's wrench that fit the accelerations best.
+/// Returns the components of the tip joint's wrench that fit the accelerations best.
 template <class S>
 std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& links,
                         Inverse<S> inverse, std::vector<V3<S>> const& qdd,
@@ -58,6 +61,7 @@ std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& li
     };
     std::vector<S> const none(tip.locked.size(), S(0));
     Column<S> const open = error(none);
+    // The errors depend linearly on the components: column j is the change per unit of component j.
     Dense<S> response(open.size(), static_cast<Index>(none.size()));
     for (std::size_t j = 0; j < none.size(); ++j) {
         std::vector<S> one = none;
@@ -65,14 +69,15 @@ std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& li
         response.col(static_cast<Index>(j)) = error(one) - open;
     }
     if (open.size() == 0 || none.empty()) return none;
-    // Differences of large numbers: a column below this is their rounding, of a component that no
-    // coordinate feels.
+    // The columns are differences of large numbers. A column below the threshold is rounding error,
+    // of a component that affects no coordinate.
     Eigen::ColPivHouseholderQR<Dense<S>> responses;
     responses.setThreshold(S(1e-9));
     Column<S> const found = responses.compute(response).solve(-open);
     return {found.data(), found.data() + found.size()};
 }
 
+/// Residual of a chain of rigid bodies.
 template <class S>
 S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& qdd,
                      V3<S> const& base_acceleration) {
@@ -94,8 +99,8 @@ S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<
     return worst;
 }
 
-/// Balances of the beads from the last to the first, under a force `pushed` on the last; each but
-/// for what its link can take.
+/// Returns the force balances of the beads from the last to the first, with the force `pushed` on
+/// the last. `left` receives each balance without the component that the bead's link carries.
 template <class S>
 std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads,
                                       std::vector<V3<S>> const& acceleration, V3<S> const& pushed,
@@ -118,13 +123,15 @@ std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads
     return all;
 }
 
+/// Residual of a chain of beads.
 template <class S>
 S residual_of_beads(ChainSpec const& chain, Loads const& loads,
                     std::vector<V3<S>> const& acceleration) {
     std::vector<V3<S>> left, with_unit;
     V3<S> pushed = V3<S>::zero();
     std::vector<Balance<S>> balances = bead_balances(chain, loads, acceleration, pushed, left);
-    if (chain.tip == Tip::jointed) {  // the tip link's force that fits best
+    // The tip link's force is the least-squares fit.
+    if (chain.tip == Tip::jointed) {
         V3<S> const u = read_bead_links<S>(chain).back().direction;
         bead_balances(chain, loads, acceleration, u, with_unit);
         S against(0), square(0);

@@ -1,4 +1,4 @@
-// Inside the oracles: rotations and the spring of a spherical joint.
+// Rotations, and the spring of a spherical joint. Internal to the oracles.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 
 namespace catena::oracle {
 
+/// Returns the normalised quaternion q.
 template <class S>
 Quaternion<S> unit(std::array<double, 4> const& q) {
     using std::sqrt;
@@ -15,21 +16,24 @@ Quaternion<S> unit(std::array<double, 4> const& q) {
     S const n = sqrt(w * w + x * x + y * y + z * z);
     return {w / n, x / n, y / n, z / n};
 }
+/// Returns v / |v|.
 template <class S>
 V3<S> unit(V3<S> const& v) {
     return S(S(1) / norm(v)) * v;
 }
 
-/// 1 + sine [a]x + versine [a]x^2 (Rodrigues).
+/// Returns 1 + sine [a]x + versine [a]x^2 (Rodrigues' formula).
 template <class S>
 M3<S> rodrigues(V3<S> const& a, S sine, S versine) {
     M3<S> const ax = skew(a);
     return plus(M3<S>::identity(), plus(scaled(sine, ax), scaled(versine, ax * ax)));
 }
+/// Returns the rotation matrix of a unit quaternion.
 template <class S>
 M3<S> matrix(Quaternion<S> const& q) {
     return rodrigues(V3<S>{{q.x, q.y, q.z}}, S(2) * q.w, S(2));
 }
+/// Returns the rotation matrix by `angle` about the unit vector `axis`.
 template <class S>
 M3<S> turn_about(V3<S> const& axis, S angle) {
     using std::cos;
@@ -38,8 +42,8 @@ M3<S> turn_about(V3<S> const& axis, S angle) {
     return rodrigues(axis, S(sin(angle)), S(S(2) * half * half));
 }
 
-/// The rotation nearest to r, which is one to about double precision: Newton's iteration for the
-/// polar factor, so that the transpose is the inverse in wider scalars too.
+/// Returns the rotation matrix nearest to r, which is orthogonal to about double precision.
+/// Newton's iteration for the polar factor makes its transpose the inverse in wider scalars too.
 template <class S>
 M3<S> orthonormal(Mat3 const& r) {
     M3<S> m;
@@ -51,8 +55,8 @@ M3<S> orthonormal(Mat3 const& r) {
     return m;
 }
 
-/// Rotation vector (length at most pi) of rest^-1 q; its components are the same in B and in the
-/// rest frame.
+/// Returns the rotation vector (length at most pi) of rest^-1 q; its components are the same in B
+/// and in the rest frame.
 template <class S>
 V3<S> deflection(Quaternion<S> const& rest, Quaternion<S> const& q) {
     using std::atan2;
@@ -67,9 +71,9 @@ V3<S> deflection(Quaternion<S> const& rest, Quaternion<S> const& q) {
     return s > S(0) ? S(S(2) * atan2(s, w) / s) * v : v;
 }
 
-/// Torque (B) of the potential 1/2 sum k_i e_i^2 in the rotation vector e, moment = K e: - J^-T K e
-/// with J^-1 the matrix of e' = J^-1(e) omega_B (inverse right Jacobian of the rotation group). For
-/// equal k_i it is - k e.
+/// Returns the torque (B) of the potential 1/2 sum k_i e_i^2 in the rotation vector e, with moment
+/// = K e. The torque is - J^-T K e, where e' = J^-1(e) omega_B (J^-1 is the inverse right Jacobian
+/// of the rotation group). For equal k_i it is - k e.
 template <class S>
 V3<S> spring_torque(V3<S> const& e, V3<S> const& moment) {
     using std::cos;
@@ -80,7 +84,7 @@ V3<S> spring_torque(V3<S> const& e, V3<S> const& moment) {
     return S(1) / S(2) * turned_moment - c * cross(e, turned_moment) - moment;
 }
 
-/// Two unit vectors at right angles to the unit vector `axis` and to each other.
+/// Returns two unit vectors that are orthogonal to the unit vector `axis` and to each other.
 template <class S>
 std::array<V3<S>, 2> across(V3<S> const& axis) {
     using std::abs;

@@ -1,3 +1,4 @@
+// Chains with a jointed tip: closure of the tip joint, and the wrench that satisfies it.
 #include <cmath>
 
 #include "oracle/eigen.hpp"
@@ -7,7 +8,8 @@
 namespace catena::oracle {
 namespace {
 
-/// A link with nothing that moves or pushes it: what is left answers to applied forces linearly.
+/// Returns the link without velocities and loads. Its chain then responds linearly to applied
+/// forces.
 template <class S>
 Link<S> silent(Link<S> link) {
     link.rate = link.slide = link.drift = link.prescribed = link.effort = link.applied_torque =
@@ -16,7 +18,7 @@ Link<S> silent(Link<S> link) {
     return link;
 }
 
-/// Open-chain accelerations under a wrench along the locked directions of the tip.
+/// Open chain under a wrench along the locked directions of its tip.
 template <class S>
 class OpenChain {
   public:
@@ -29,13 +31,16 @@ class OpenChain {
         for (Link<S> const& link : links_) silent_.push_back(silent(link));
     }
     TipClosure<S> const& tip() const { return tip_; }
+    /// Solves the open chain under the given components of the tip wrench.
     OracleResult<S> solve(std::vector<S> const& components) const {
         return aba_links(pushed(links_, components), gravity_);
     }
+    /// Residual of the tip's closure.
     Column<S> defect(OracleResult<S> const& r) const {
         return as_column(tip_, omega_, first_omega_, r);
     }
-    /// Minus the change of `defect` for a unit of component j: symmetric, positive (semi)definite.
+    /// Minus the change of `defect` per unit of component j; the matrix of all columns is symmetric
+    /// and positive (semi)definite.
     Column<S> response(std::size_t j) const {
         std::vector<S> components(tip_.locked.size(), S(0));
         components[j] = S(1);
@@ -46,6 +51,7 @@ class OpenChain {
     }
 
   private:
+    /// Returns the links with the tip wrench added to the loads of the end bodies.
     std::vector<Link<S>> pushed(std::vector<Link<S>> links,
                                 std::vector<S> const& components) const {
         SpatialForce<S> const f = tip_wrench(tip_, components, V3<S>::zero());
@@ -69,8 +75,8 @@ class OpenChain {
     TipClosure<S> tip_;
 };
 
-/// Rows and columns scaled to a unit diagonal: moments and forces then weigh alike when the rank is
-/// judged.
+/// System for the components of the tip wrench. Rows and columns are scaled to a unit diagonal, so
+/// that moments and forces have equal weight when the rank is determined.
 template <class S>
 class TipSystem {
   public:
@@ -85,6 +91,7 @@ class TipSystem {
         lu_.setThreshold(S(64 * bodies) * Eigen::NumTraits<S>::epsilon());
         lu_.compute(matrix);
     }
+    /// Adds to `components` the change that removes the residual `defect`.
     void correct(Column<S> const& defect, std::vector<S>& components) const {
         if (components.empty()) return;
         Column<S> const scaled = scale_.cwiseProduct(defect);
@@ -115,14 +122,16 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
                               j.q};
     place(shape, "tip", g);
     Attitude<S> const &last = attitude.back(), &first = attitude.front();
+    // The first body of a ring determines the pose.
     if (j.ring) {
         g.rotation = transposed_times(last.orientation, first.orientation);
         g.translation = transposed_times(last.orientation, first.origin - last.origin);
-        // The first axis in G, where it is not constant.
+        // This is the first axis in G, where it is not constant.
         if (g.type == JointType::universal)
             g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
     }
-    M3<S> const axes = last.orientation * g.rotation;  // of G
+    // The velocity of G relative to the last body, in G's axes, gives the joint rates.
+    M3<S> const axes = last.orientation * g.rotation;  // axes of G in W
     V3<S> const omega = last.orientation * last.omega, to_g = last.orientation * g.translation;
     V3<S> const com = last.orientation * links.back().com;
     V3<S> const turning = j.ring ? first.orientation * first.omega : V3<S>::zero(),
@@ -132,6 +141,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         transposed_times(axes, moving_g - (last.velocity + cross(omega, to_g)))};
     V3<S> const rates = coordinates(g, relative);
     Motion<S> const moving = along(g, rates);
+    // The closure consists of the Coriolis terms of the rates and of the universal joint's drift.
     TipClosure<S> tip{
         j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
     if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
@@ -192,11 +202,13 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
     OpenChain<S> const open(chain, loads);
     std::size_t const m = open.tip().locked.size();
     Dense<S> matrix(m, m);
+    // Column j of the matrix is the open chain's response to a unit of component j.
     for (std::size_t j = 0; j < m; ++j) matrix.col(static_cast<Index>(j)) = open.response(j);
     TipSystem<S> const system(matrix, static_cast<double>(chain.size()));
     std::vector<S> components(m, S(0));
     OracleResult<S> result = open.solve(components);
-    for (int pass = 0; pass < 2; ++pass) {  // the second takes back the rounding of the first
+    // The second pass corrects the rounding errors of the first.
+    for (int pass = 0; pass < 2; ++pass) {
         system.correct(open.defect(result), components);
         result = open.solve(components);
     }

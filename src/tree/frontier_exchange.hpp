@@ -1,4 +1,4 @@
-// What ranks show each other of the units of chains that several of them share.
+// Exchange between ranks of the frontier: the units of chains that several ranks share.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,14 @@
 
 namespace catena::dca {
 
-/// Loops over numbers that pass through the host's memory.
+/// Loop body that copies numbers of own units to a buffer in host memory.
 template <class Numbers>
 struct PublishNumbers {
     Numbers numbers;
     double* out;
     CATENA_HD void operator()(std::int64_t i) const { out[i] = numbers.show(i); }
 };
+/// Loop body that copies numbers of all units from a buffer in host memory.
 template <class Numbers>
 struct TakeNumbers {
     Numbers numbers;
@@ -26,10 +27,11 @@ struct TakeNumbers {
     CATENA_HD void operator()(std::int64_t i) const { numbers.take(i, in[i]); }
 };
 
-/// Brings `width` numbers of every rank's own units to all ranks: show(), then bring(), both with
-/// the same Numbers of that width. Straight from one GPU's memory to another's where the space can
-/// (Space::connect), else by a collective. Bodies' numbers for neighbours, `beside` of them at
-/// most, may go along (BodyExchange): they are ready when show() is.
+/// Exchanges `width` numbers of every shared unit, so that all ranks have those of all units. Call
+/// show(), then bring(), with the same Numbers. The exchange is direct from GPU memory to GPU
+/// memory if the space supports that (Space::connect), else an all-gather through host memory. Up
+/// to `beside` numbers of bodies for neighbouring ranks may be exchanged together with them
+/// (BodyExchange). They must be ready when show() is called.
 template <class Space>
 class FrontierExchange {
   public:
@@ -48,19 +50,22 @@ class FrontierExchange {
             bytes_[static_cast<std::size_t>(unit.owner)] +=
                 width * static_cast<std::int64_t>(sizeof(double));
     }
-    /// Whether ranks show each other anything, and by their hosts.
+    /// True if the ranks exchange units through host memory.
     bool asks_host() const { return !shared_.empty() && !direct_; }
     bool is_direct() const { return static_cast<bool>(direct_); }
+    /// Units that this rank owns, in the memory of the space.
     FrontierUnit const* own_units() const { return own_units_.data(); }
-    /// In the schedule's order.
+    /// Units of all ranks in the schedule's order, in the memory of the space.
     FrontierUnit const* units() const { return units_.data(); }
 
+    /// Publishes the numbers of own units; on the direct path this is left to bring().
     template <class Numbers>
     void show(Space const& space, Numbers const& numbers) {
         if (!direct_)
             space.for_each(width_ * std::ssize(own_list_),
                            PublishNumbers<Numbers>{numbers, own_.data()});
     }
+    /// Completes the exchange. Collective.
     template <class Numbers, class... Beside>
     void bring(Space const& space, Communicator const& communicator, Numbers const& numbers,
                Beside const&... beside) {
@@ -78,9 +83,10 @@ class FrontierExchange {
             bytes_);
         space.for_each(width_ * std::ssize(shared_), TakeNumbers<Numbers>{numbers, all_.data()});
     }
-    /// Both, with a sweep's way up `tree` before and its way down after them, and up and down the
-    /// `top` in between, if the space does all that in one; else nothing is done. Ranks that do and
-    /// ranks that do not find together. `sweep` may be a ScanThen.
+    /// Exchanges in one fused operation: the inward pass over `tree`, show() and bring(), both
+    /// passes over `top`, and the outward pass over `tree`. `sweep` defines the passes and may be a
+    /// ScanThen. Returns false and does nothing if the space cannot fuse them. Ranks that fuse and
+    /// ranks that do not can exchange with each other. Collective.
     template <class Numbers, class Tree, class Sweep, class... Beside>
     bool turn(Space const& space, Communicator const& communicator, Numbers const& numbers,
               Tree const& tree, Tree const& top, Sweep const& sweep, Beside const&... beside) {
@@ -91,6 +97,7 @@ class FrontierExchange {
     }
 
   private:
+    /// Traffic of one exchange: the all-gather and the numbers exchanged together with it.
     template <class... Beside>
     Traffic message_with(Beside const&... beside) const {
         Traffic message;

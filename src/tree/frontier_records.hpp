@@ -1,4 +1,5 @@
-// What ranks show each other of shared units' records, number by number, host and device.
+// Access to the records of shared units number by number, for exchange between ranks; host and
+// device.
 #pragma once
 
 #include "math/records.hpp"
@@ -6,7 +7,8 @@
 
 namespace catena::dca {
 
-/// Numbers of records: number i is i % width of unit i / width, of this rank's units or of all.
+/// Numbers of records: number i is entry i % width of unit i / width. show() counts the units of
+/// this rank, take() those of all ranks.
 template <class T>
 struct RecordNumbers {
     static constexpr int width = RecordsView<T, Order::plain>::numbers;
@@ -20,7 +22,8 @@ struct RecordNumbers {
     }
 };
 
-/// As RecordNumbers, of two records a unit: those of the one, then those of the other.
+/// Numbers of two records per unit: those of `first`, then those of `second`. Otherwise as
+/// RecordNumbers.
 template <class A, class B>
 struct NumbersOfBoth {
     static constexpr int of_first = RecordNumbers<A>::width,

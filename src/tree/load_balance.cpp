@@ -1,3 +1,4 @@
+// Cuts a partition by the shares of the ranks, and derives shares from measured speeds.
 #include "tree/load_balance.hpp"
 
 #include <algorithm>
@@ -7,11 +8,12 @@
 namespace catena::dca {
 namespace {
 
-/// A chain is too short to be shared where so many make a rank's equal share: then ranks need not
-/// speak to solve it.
+/// A chain is not shared if at least this many chains of its length make a rank's equal share. Such
+/// short chains are solved without communication.
 std::int64_t constexpr chains_of_share = 16;
 
-/// First bodies of all that goes to one rank as a whole, and the number of bodies.
+/// Returns the first bodies of all indivisible parts (units, or chains too short to be shared),
+/// then the number of bodies.
 std::vector<std::int64_t> wholes_of(Partition const& partition, int ranks) {
     std::vector<std::int64_t> first;
     for (int chain = 0; chain < partition.chains(); ++chain) {
@@ -25,7 +27,8 @@ std::vector<std::int64_t> wholes_of(Partition const& partition, int ranks) {
     return first;
 }
 
-/// Index of each rank's first whole; [ranks + 1].
+/// Returns the index of each rank's first part; [ranks + 1]. A part belongs to the rank whose share
+/// contains the part's middle.
 std::vector<std::int64_t> deal(std::vector<std::int64_t> const& wholes,
                                std::vector<std::int64_t> const& begins) {
     auto const count = std::ssize(wholes) - 1;
@@ -41,8 +44,8 @@ std::vector<std::int64_t> deal(std::vector<std::int64_t> const& wholes,
     return first;
 }
 
-/// Moves what `first` says as little as it takes for every rank that has something by `equal` to
-/// have something.
+/// Moves the cuts in `first` as little as possible so that every rank with parts by `equal` has at
+/// least one.
 void keep_some(std::vector<std::int64_t>& first, std::vector<std::int64_t> const& equal) {
     auto const least = [&](std::size_t rank) { return equal[rank] < equal[rank + 1] ? 1 : 0; };
     std::size_t const ranks = first.size() - 1;
@@ -61,7 +64,7 @@ Shares shares_of_speeds(std::span<double const> speeds) {
     for (double const speed : speeds)
         largest = is_known(speed) ? std::max(largest, speed) : largest;
     if (largest == 0) return Shares(speeds.size(), parts_of_equal_share);
-    std::vector<double> weight;  // of the largest
+    std::vector<double> weight;  // relative to the largest speed; 0: unknown
     for (double const speed : speeds) {
         weight.push_back(is_known(speed) ? std::max(least_of_largest_share, speed / largest) : 0);
         sum += weight.back();

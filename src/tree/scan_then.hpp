@@ -1,9 +1,10 @@
-// A scan along chains and what comes after it, where one launch may do both.
+// Pair of a scan along chains and an action after it, for execution in one launch.
 #pragma once
 
 namespace catena::dca {
 
-/// And then action(item) for each of a space's list. All must outlive it.
+/// Runs `scan`, then action(item) for each of a space's `items`. All three must outlive this
+/// object.
 template <class Scan, class Items, class Action>
 struct ScanThen {
     Scan const& scan;

@@ -1,3 +1,4 @@
+// Encoding of stages into the words that blocks of a GPU load.
 #include "tree/stage_encoding.hpp"
 
 #include <algorithm>
@@ -7,17 +8,20 @@
 namespace catena::dca {
 namespace {
 
+/// Length of the longest range.
 int most(std::vector<Range> const& ranges) {
     std::int64_t found = 0;
     for (Range const& range : ranges) found = std::max(found, range.end - range.begin);
     return static_cast<int>(found);
 }
+/// Writes entry i of the array of T that begins at `word`.
 template <class T>
 void put(std::span<StageWord> words, int word, std::int64_t i, T const& value) {
     std::memcpy(
         reinterpret_cast<std::byte*>(words.data() + word) + static_cast<std::size_t>(i) * sizeof(T),
         &value, sizeof(T));
 }
+/// Calls action(index within the range, index) for every index of a range.
 template <class Action>
 void each(Range const& range, Action const& action) {
     for (std::int64_t i = range.begin; i < range.end; ++i)

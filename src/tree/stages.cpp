@@ -1,3 +1,4 @@
+// Planning of stages: distribution of a tree's runs and merges over the blocks of a GPU.
 #include "tree/stages.hpp"
 
 #include <algorithm>
@@ -8,20 +9,22 @@
 namespace catena::dca {
 namespace {
 
-/// So many runs keep a GPU busy with one thread each and no help from others.
+/// Number of runs that keep a GPU busy with one thread for each.
 constexpr std::int64_t many_runs = 16384;
-/// Runs that are worth a block of their own, where blocks have that many threads.
+/// Smallest number of runs for a block, if blocks have that many threads.
 constexpr std::int64_t fewest_of_block = 32;
 
+/// Returns the smallest power of two that is at least n, and at least 1.
 std::int64_t bit_ceil(std::int64_t n) {
     return static_cast<std::int64_t>(
         std::bit_ceil(static_cast<std::uint64_t>(std::max<std::int64_t>(n, 1))));
 }
-/// Of merges above so many items.
+/// Number of levels of merges above so many items.
 int levels_above(std::int64_t items) {
     return std::bit_width(static_cast<std::uint64_t>(items)) - 1;
 }
 
+/// Builds stages from the runs, merges and roots of a schedule.
 class Planner {
   public:
     Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
@@ -58,8 +61,8 @@ class Planner {
         for (Run const& run : runs_) slots.push_back(run.slot);
         return slots;
     }
-    /// What the merges of levels `first` to `end_level` - 1 need and do not make themselves, along
-    /// the chains.
+    /// Returns the segments that merges of levels `first` to `end_level` - 1 need and do not
+    /// produce themselves, along the chains.
     std::vector<std::int64_t> needed(int first, int end_level) const {
         std::vector<std::uint8_t> made(node_.size(), 0);
         std::vector<std::int64_t> slots;
@@ -73,10 +76,10 @@ class Planner {
         return slots;
     }
 
-    /// All levels from `level` on, up to `most` items to a block. More than that are halved, level
-    /// by level, where `together` blocks do. The last stage takes as well what other ranks want
-    /// that stages below it have made: where its one block has all of that, it can speak to these
-    /// ranks.
+    /// Appends stages for all levels from `level` on, with up to `most` items per block. Larger
+    /// sets are reduced by several levels, by up to `together` narrower blocks if these suffice.
+    /// The last stage also loads segments of earlier stages that other ranks need. If one block has
+    /// all of these, it can exchange them with the other ranks.
     void add_upper(int level, std::int64_t most, std::int64_t together,
                    std::vector<Stage>& stages) {
         for (std::vector<std::int64_t> left = needed(level, end()); !left.empty();
@@ -96,7 +99,8 @@ class Planner {
             level = end_level;
         }
     }
-    /// Where several blocks of the last stage have units that other ranks want, one above them.
+    /// Appends a stage of one block if several blocks of the last stage produce units that other
+    /// ranks need.
     void gather_units(std::int64_t most, std::vector<Stage>& stages) {
         if (stages.empty() || stages.back().blocks() == 1) return;
         std::vector<std::int64_t> units;
@@ -105,7 +109,8 @@ class Planner {
         stages.push_back(stage(units, most, end(), end()));
         stages.back().gathers = true;
     }
-    /// Levels `first` to `end_level` - 1 above these items, up to `width` of them to a block.
+    /// Returns the stage of levels `first` to `end_level` - 1 above `items`, with up to `width` of
+    /// them per block.
     Stage stage(std::vector<std::int64_t> const& items, std::int64_t width, int first,
                 int end_level) {
         Stage s;
@@ -121,17 +126,19 @@ class Planner {
     }
 
   private:
+    /// Segment during planning, indexed by slot.
     struct Node {
-        std::int64_t joint = 0, next = 0;  // of storage
-        std::int64_t up = -1;              // what it becomes part of
-        int met = -1;                      // at this level; -1: never
-        std::int64_t whole = 0;            // the first joint of all that it becomes part of
-        std::int64_t leaves = 1,
-                     along = 0;  // how many it is made of, how many of the whole's come before it
+        std::int64_t joint = 0, next = 0;  // storage indices of the joints at its ends
+        std::int64_t up = -1;              // slot of the segment that it is merged into; -1: none
+        int met = -1;                      // level of that merge; -1: none
+        std::int64_t whole = 0;            // first joint of the largest segment that contains it
+        // Number of its leaves, and number of leaves of the largest segment that precede them.
+        std::int64_t leaves = 1, along = 0;
         std::int64_t block = -1;
         std::int32_t place = 0, next_place = 0;
     };
-    /// To the items, each once and along the chains: what other ranks want that these stages give.
+    /// Adds to `items` the segments of these stages that other ranks need, each once and along the
+    /// chains.
     void add_units(std::vector<Stage> const& stages, std::vector<std::int64_t>& items) const {
         for (Stage const& s : stages)
             for (StageTransfer const& up : s.segments_up)
@@ -139,8 +146,8 @@ class Planner {
         sort(items);
         items.erase(std::unique(items.begin(), items.end()), items.end());
     }
-    /// Along the chains. Not by joints: those at the top of a chain that ranks share are stored in
-    /// another order.
+    /// Sorts segments along the chains. Joint indices would not do: joints above the units of a
+    /// shared chain are stored in another order.
     void sort(std::vector<std::int64_t>& slots) const {
         std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) {
             return std::pair(of(a).whole, of(a).along) < std::pair(of(b).whole, of(b).along);
@@ -151,15 +158,17 @@ class Planner {
     void know(std::int64_t slot, std::int64_t joint, std::int64_t next) {
         of(slot).joint = joint, of(slot).next = next;
     }
+    /// True if the segment is not merged below `end_level`.
     bool is_top(std::int64_t slot, int end_level) const {
         return of(slot).met < 0 || of(slot).met >= end_level;
     }
+    /// Slot of the largest segment below `end_level` that contains the given one.
     std::int64_t ancestor(std::int64_t slot, int end_level) const {
         while (!is_top(slot, end_level)) slot = of(slot).up;
         return slot;
     }
 
-    /// Blocks of neighbours: what meets below `end_level` stays together.
+    /// Assigns neighbouring items to blocks; items that are merged below `end_level` share a block.
     void deal(std::vector<std::int64_t> const& items, std::int64_t width, int end_level, Stage& s) {
         for (std::int64_t i = 0; i < std::ssize(items);) {
             std::int64_t next = i;
@@ -173,7 +182,8 @@ class Planner {
         }
         for (std::int64_t const slot : items) s.items.push_back({slot, of(slot).joint, 0, false});
     }
-    /// A force after an item that is not the block's next item's comes from elsewhere.
+    /// Assigns places to a block's items and forces. The force after an item comes from another
+    /// stage if it is not the inboard force of the block's next item.
     void place_items(Stage& s, std::size_t b) {
         Range const range = s.item[b];
         std::vector<StageTransfer> from_elsewhere;
@@ -203,6 +213,7 @@ class Planner {
         s.down.back().end = std::ssize(s.forces_down);
         s.forces = std::max(s.forces, range.end - range.begin + std::ssize(from_elsewhere));
     }
+    /// Appends the merges of one level, in the blocks of their inboard segments.
     void add_level(Stage& s, int level, int l) {
         for (Merge const& m : levels_[static_cast<std::size_t>(level)]) {
             Node const inboard = of(m.inboard), outboard = of(m.outboard);
@@ -219,6 +230,7 @@ class Planner {
     std::int32_t restricted_at(std::int64_t joint) const {
         return restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(joint)];
     }
+    /// Sorts the merges by block, then by level.
     static void sort_by_block(Stage& s) {
         std::vector<StageMerge> sorted;
         sorted.reserve(s.merges.size());
@@ -230,8 +242,9 @@ class Planner {
         }
         s.merges = std::move(sorted);
     }
-    /// What is complete below `end_level`: roots are closed, other segments go up, and the forces
-    /// at all of their first joints come down.
+    /// Determines what a stage passes on below `end_level`. Roots are closed; all other complete
+    /// segments are stored for later stages. The forces at the first joints of both come from there
+    /// in the outward pass.
     void hand_over(Stage& s, std::vector<std::int64_t> const& items, int first, int end_level) {
         std::vector<std::vector<std::int64_t>> tops(s.item.size());
         auto const see = [&](std::int64_t slot) {
@@ -276,25 +289,26 @@ class Planner {
     std::vector<std::vector<Merge>> const& levels_;
     std::vector<Root> const& roots_;
     std::span<std::uint8_t const> restricted_;
-    std::vector<Node> node_;             // by slot
-    std::vector<std::int64_t> root_of_;  // by slot
+    std::vector<Node> node_;             // indexed by slot
+    std::vector<std::int64_t> root_of_;  // indexed by slot
 };
 
-/// Of a block with a thread for every part.
+/// Number of runs of a block with one thread for every part.
 std::int64_t runs_at_once(StageSizes const& sizes) {
     return std::max<std::int64_t>(1, sizes.threads / parts_of_run);
 }
-/// Whether trees of so many levels find place in it.
+/// True if a tree of so many levels fits in one block.
 bool are_low(int levels, StageSizes const& sizes) {
     return levels <= levels_above(std::min(sizes.most, runs_at_once(sizes)));
 }
-/// More than so many go before all stages.
+/// Largest number of runs within a stage; more of them are processed by a separate launch.
 std::int64_t most_in_stage(int levels, StageSizes const& sizes) {
     return sizes.together == 0 || are_low(levels, sizes)
                ? many_runs
                : std::min(many_runs, sizes.together * runs_at_once(sizes));
 }
-/// Of the first stage's blocks, under so many levels.
+/// Number of items per block of the first stage, below so many levels of merges. `apart`: a
+/// separate launch has processed the runs.
 std::int64_t width_of_runs(std::int64_t runs, bool apart, int levels, StageSizes const& sizes) {
     if (apart) {
         if (sizes.at_once > 0 && runs <= sizes.most)
@@ -311,6 +325,7 @@ std::int64_t width_of_runs(std::int64_t runs, bool apart, int levels, StageSizes
     return std::min({sizes.most, at_once, of_block});
 }
 
+/// Returns the scan's counterpart of a stage.
 ScanStage scan_stage_of(Stage const& stage) {
     ScanStage s;
     s.levels = stage.levels, s.of_runs = stage.of_runs, s.width = stage.width;
@@ -334,6 +349,7 @@ ScanStage scan_stage_of(Stage const& stage) {
     return s;
 }
 
+/// Finds the lower stage's segments and forces among the places of the upper stage.
 PlacesAbove places_above(Stage const& lower, Stage const& upper) {
     std::unordered_map<std::int64_t, std::int32_t> item_of, place_of;
     for (std::size_t i = 0; i < upper.items.size(); ++i) {
@@ -384,7 +400,7 @@ StagesTogether::StagesTogether(StagePlan const& plan, StageSizes const& sizes) {
     Stage const& below = plan.stages[plan.stages.size() - 2];
     if (below.blocks() > sizes.together) return;
     places = places_above(below, plan.stages.back());
-    // Units that other ranks want may be elsewhere.
+    // An earlier stage may need the units that other ranks need; then one launch does not suffice.
     if (std::find(places.segment.begin(), places.segment.end(), -1) != places.segment.end()) return;
     lower = &below, upper = &plan.stages.back();
 }
@@ -432,15 +448,14 @@ StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes,
                        std::int64_t at_once) {
     StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs,
                      records.at_once};
+    // `words` counts the description of a merge, an item and a transfer; `heads` that of the block.
     auto const bytes = [&](std::int64_t items) {
-        constexpr std::int64_t words = 10,
-                               heads =
-                                   24;  // of a merge, of an item, of what is handed over; of all
+        constexpr std::int64_t words = 10, heads = 24;
         return 8 * (packed_numbers(records.segment, items) +
                     2 * packed_numbers(records.state, items) + words * items + heads);
     };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
-    // A stage of runs has a segment a thread besides, for the parts.
+    // A stage of runs also stores one segment per thread, for the parts of runs.
     auto const of_runs = [&](std::int64_t threads) {
         constexpr std::int64_t ranges = 16;
         return bytes(threads / parts_of_run) +
@@ -461,8 +476,8 @@ std::int64_t kept_numbers(Stage const& stage, StageRecords const& records) {
 int threads_for(Stage const& stage, StageSizes const& sizes) {
     constexpr std::int64_t fewest = 32;
     if (stage.of_runs)
-        return static_cast<int>(
-            std::max(fewest, bit_ceil(parts_of_run * stage.width)));  // a thread a part
+        // one thread per part
+        return static_cast<int>(std::max(fewest, bit_ceil(parts_of_run * stage.width)));
     return static_cast<int>(
         std::clamp(bit_ceil(stage.width / 2), fewest, std::max(fewest, sizes.threads)));
 }

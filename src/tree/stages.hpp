@@ -1,5 +1,6 @@
-// How the runs, merges and roots of a tree are dealt out to blocks of threads: a block climbs
-// several levels of its own subtrees before others need them, so that a sweep takes few launches.
+// Distribution of a tree's runs, merges and roots over the blocks of a GPU. A block merges several
+// levels of its own subtrees before other blocks need the result, so that a sweep takes few
+// launches.
 #pragma once
 
 #include <cstdint>
@@ -11,95 +12,114 @@
 
 namespace catena::dca {
 
+/// Half-open range [begin, end) of indices.
 struct Range {
     std::int64_t begin = 0, end = 0;
 };
 
-/// What a block starts from, a run or what another stage made. Item i has place i of the block's
-/// segments, and its inboard joint place i of the block's forces.
+/// Input of a block: a run, or a segment that another stage produced. Item i has place i among the
+/// block's segments; its inboard joint has place i among the block's forces.
 struct StageItem {
-    std::int64_t slot = 0, joint = 0;  // where its segment and its inboard joint are for everybody
-    std::int32_t next = 0;             // place of the force after it
-    bool given = false;                // its inboard joint's force comes from above
+    /// Slot of its segment and storage index of its inboard joint, in global memory.
+    std::int64_t slot = 0, joint = 0;
+    std::int32_t next = 0;  // place of the force at its outboard joint
+    bool given = false;     // true if a root or a later stage supplies its inboard force
 };
-/// The joined segment takes the place of the inboard one.
+/// Merge within a block, by places. The merged segment replaces the inboard one.
 struct StageMerge {
     std::int32_t inboard = 0, outboard = 0;
-    std::int32_t next = 0;        // place of the force after it
-    std::int32_t restricted = 0;  // directions of the joint
+    std::int32_t next = 0;  // place of the force at the outboard joint
+    /// Number of handle directions that the eliminated joint constrains.
+    std::int32_t restricted = 0;
+    /// Storage index of the eliminated joint.
     std::int64_t joint = 0;
 };
+/// Root that a block closes.
 struct StageRoot {
-    std::int32_t place = 0, restricted = 0;  // directions of its first joint
+    std::int32_t place = 0, restricted = 0;  // `restricted`: as StageMerge, first joint
     Root root;
 };
-/// A segment or a force that comes from or goes to another stage.
+/// Segment or force that a block receives from another stage or passes to it.
 struct StageTransfer {
     std::int32_t place = 0;
-    std::int64_t at = 0;  // slot or joint
+    std::int64_t at = 0;  // slot or storage index of the joint
 };
 
-/// One launch upwards and one downwards. A block's merges stand together. Block b takes the items
-/// of `item[b]`, does, level by level, the merges of `merge[b * levels + l]`, gives the segments of
-/// `up[b]` away and closes `root[b]`; on its way back it is given the forces of `down[b]`. Between
-/// blocks of a stage nothing is shared.
+/// Work of one launch of the inward pass and one of the outward pass. Inward, block b loads the
+/// items of `item[b]` and does the merges of `merge[b * levels + l]`, level by level. It then
+/// stores the segments of `up[b]` and closes the roots of `root[b]`. Outward, it loads the forces
+/// of `down[b]` first. Blocks of one stage share no data; the merges of a block are consecutive.
 struct Stage {
     int levels = 0;
-    bool of_runs = false;  // items are the schedule's runs
-    bool gathers = false;  // the last one, of one block and no merges, which has what others have
-                           // made for other ranks
-    std::int64_t width = 0, forces = 0;  // most places of a block
+    bool of_runs = false;  // true if items are the schedule's runs
+    /// True for a last stage of one block without merges, which collects the segments that other
+    /// ranks need.
+    bool gathers = false;
+    std::int64_t width = 0, forces = 0;  // largest numbers of places of a block
     std::vector<StageItem> items;
     std::vector<StageMerge> merges;
     std::vector<StageRoot> roots;
     std::vector<StageTransfer> segments_up, forces_down;
     std::vector<Range> item, merge, root, up, down;
+    /// Number of blocks.
     std::int64_t blocks() const { return std::ssize(item); }
 };
 
-/// All ranges of a block, of `merges` those of all levels.
+/// Ranges of one block; `merge` covers all levels.
 struct StageBlock {
     Range item, merge, root, up, down;
 };
+/// Returns the ranges of every block.
 std::vector<StageBlock> blocks_of(Stage const&);
-/// Of every block and level: where its merges end among the block's.
+/// Returns, for every block and level, the end of its merges, counted within the block.
 std::vector<std::int32_t> level_ends_of(Stage const&);
 
-/// Where a stage has what the one below gives away and is given.
+/// Places in a stage of the segments and forces that it exchanges with the stage below.
 struct PlacesAbove {
-    std::vector<std::int32_t> segment;  // of all segments_up: the item; -1: there is none
-    std::vector<std::int32_t>
-        force;  // of all forces_down: the force's place; -1: it comes from elsewhere
-    std::vector<std::uint8_t> comes_from_below;  // of all items above: whether the stage below
-                                                 // gives it, and not one before
+    /// Item of the upper stage for each of the lower stage's segments_up; -1: none.
+    std::vector<std::int32_t> segment;
+    /// Place in the upper stage of each of the lower stage's forces_down; -1: another stage has it.
+    std::vector<std::int32_t> force;
+    /// For each item of the upper stage: 1 if the lower stage produces it, 0 if an earlier one
+    /// does.
+    std::vector<std::uint8_t> comes_from_below;
 };
 
+/// Stages of a sweep.
 struct StagePlan {
-    std::vector<Stage> stages;  // from the leaves up
-    bool runs_apart = false;    // runs come before all stages, which find them in their slots
+    std::vector<Stage> stages;  // order: from the leaves upwards
+    /// True if a separate launch processes the runs before all stages, which then load the runs'
+    /// segments from their slots.
+    bool runs_apart = false;
 };
 
+/// Limits of a device for the planning of stages.
 struct StageSizes {
-    std::int64_t threads = 0;   // of a block
-    std::int64_t most = 0;      // items of a block, 2 or more
-    std::int64_t together = 0;  // blocks that run at once beside one of the stage above: one launch
-                                // takes all of them up and down
-    bool runs_apart = false;    // also where they are few
-    std::int64_t at_once = 0;   // merges that keep a block busy; 0: one for each of its threads
+    std::int64_t threads = 0;  // threads per block
+    std::int64_t most = 0;     // items per block, 2 or more
+    /// Number of blocks that are resident together with one block of the stage above. One launch
+    /// can execute both stages, inwards and outwards, if the lower one has no more blocks.
+    std::int64_t together = 0;
+    /// True if a separate launch processes the runs even if they are few.
+    bool runs_apart = false;
+    /// Number of merges that keep a block busy; 0: one per thread.
+    std::int64_t at_once = 0;
 };
-/// What a sweep keeps in a block: numbers of a segment with its biases, or of a joint's node in its
-/// place, and of what is known at a joint on the way down; threads that find registers for merges;
-/// whether a thread takes a whole run; where several threads share a merge, merges that keep a
-/// block busy, and numbers of a place that a stage keeps for its way down.
+/// Sizes of what a sweep keeps in a block, in doubles. `segment`: a segment with its bias terms, or
+/// the record of an eliminated joint in the same place. `state`: what the outward pass knows at a
+/// joint. `threads`: threads per block for which the registers suffice. `whole_runs`: one thread
+/// processes a whole run. `at_once`: if several threads share a merge, the number of merges that
+/// keep a block busy. `kept`: numbers per place that a stage keeps for its outward pass.
 struct StageRecords {
     int segment = 0, state = 0, threads = 0;
     bool whole_runs = false;
     int at_once = 0, kept = 0;
 };
-/// Directions of the handles that a thread merges alone, matrices and biases at once.
-constexpr int most_directions_of_a_thread = 3;
-/// Of mobilities along so many directions. `evaluates`: sweeps may take matrices and biases
+/// Largest number of handle directions with which one thread merges alone, matrix and bias
 /// together.
+constexpr int most_directions_of_a_thread = 3;
+/// Returns the sizes for mobilities along `directions` directions. `evaluates`: sweeps may compute
+/// matrices and biases together.
 constexpr StageRecords stage_records(int directions, bool evaluates, bool whole_runs = false) {
     int const segment = directions * (2 * directions + 3),
               node = directions * (5 * directions + 3) / 2;
@@ -108,33 +128,36 @@ constexpr StageRecords stage_records(int directions, bool evaluates, bool whole_
     int const place = segment > node ? segment : node;
     return {place, directions, 128, whole_runs, 32, place};
 }
-/// What `count` records of so many numbers take one after the other where neighbours, and those a
-/// power of two apart, are not to meet in a bank of a GPU's shared memory.
+/// Number of doubles for `count` consecutive records of `numbers` doubles in shared memory. The
+/// padding keeps neighbouring records, and records a power of two apart, in different banks.
 CATENA_HD constexpr std::int64_t packed_numbers(int numbers, std::int64_t count) {
     return (numbers | 1) * count + count / 16 + 1;
 }
-/// That a stage keeps for its way down: none where its items are runs, which no threads share.
+/// Number of doubles that a stage keeps for its outward pass; 0 if its items are runs, whose merges
+/// are not shared by threads.
 std::int64_t kept_numbers(Stage const&, StageRecords const&);
-/// Of a GPU whose blocks may share so many bytes, and which runs so many blocks at once.
+/// Returns the limits for a GPU with `shared_bytes` of shared memory per block and `at_once`
+/// resident blocks.
 StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t at_once);
-/// That a stage needs.
+/// Number of threads per block that a stage needs.
 int threads_for(Stage const&, StageSizes const&);
 
-/// With enough blocks together: five launches for a sweep up and down of any chain, one for a small
-/// one. `restricted`: directions of every joint.
+/// Plans the stages of a sweep. With enough resident blocks, a sweep in both directions takes five
+/// launches for any chain, and one for a small chain. `restricted`: number of constrained
+/// directions of every joint.
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
                       std::vector<Root> const& roots, std::int64_t slots,
                       std::span<std::uint8_t const> restricted, StageSizes const& sizes);
 
-/// The last two stages of a plan, where one launch takes both up and down again; else nothing.
+/// The last two stages of a plan if one launch can execute both, inwards and outwards; else empty.
 struct StagesTogether {
     StagesTogether(StagePlan const&, StageSizes const&);
     explicit operator bool() const { return lower != nullptr; }
-    Stage const *lower = nullptr, *upper = nullptr;  // of the plan
+    Stage const *lower = nullptr, *upper = nullptr;  // stages of the plan
     PlacesAbove places;
 
-    // Precondition of these: there are such stages. Numbers that go up and down between blocks, and
-    // blocks.
+    // Precondition of the following functions: the object is not empty. They return the numbers
+    // exchanged between blocks in either direction, and the number of blocks.
     std::size_t numbers_up(StageRecords const& records) const {
         return static_cast<std::size_t>(upper->width * records.segment);
     }
@@ -144,47 +167,56 @@ struct StagesTogether {
     std::size_t blocks() const { return static_cast<std::size_t>(lower->blocks() + 1); }
 };
 
-/// A scan's launches, as a sweep's stages: values of segments join on the way up, what lies before
-/// them is handed out on the way down. The joined value takes the inboard one's place, and that the
-/// outboard one's, which needs it on the way down.
+/// Merge of a scan along chains, whose launches have stages like those of a sweep. The inward pass
+/// combines the values of segments; the outward pass distributes to each segment the combined value
+/// of all before it. The combined value replaces the inboard one; the inboard value replaces the
+/// outboard one, because the outward pass needs it.
 struct ScanMerge {
     std::int32_t inboard = 0, outboard = 0;  // places
 };
-/// What is complete in its block and has what lies before it from elsewhere.
+/// Segment that is complete within its block; the value of all before it comes from another stage.
 struct ScanTop {
     std::int32_t place = 0, slot = 0;
 };
+/// Ranges of one block.
 struct ScanBlock {
     Range item, merge, top;
 };
+/// Work of one launch of a scan in each direction.
 struct ScanStage {
     int levels = 0;
-    bool of_runs = false;            // items are the schedule's runs
-    std::int64_t width = 0;          // most items of a block
-    std::vector<std::int32_t> slot;  // of items
+    bool of_runs = false;            // true if items are the schedule's runs
+    std::int64_t width = 0;          // largest number of items of a block
+    std::vector<std::int32_t> slot;  // slots of the items
     std::vector<ScanMerge> merges;
     std::vector<ScanTop> tops;
     std::vector<ScanBlock> blocks;
-    std::vector<std::int32_t> level_end;  // as level_ends_of
+    std::vector<std::int32_t> level_end;  // see level_ends_of()
 };
-/// Of a block, which has a thread for each.
+/// Largest number of items of a scan's block, which has one thread for each.
 constexpr std::int64_t most_of_scan = 256;
-/// Up to `most` items to a block, a power of two. Precondition: slots find place in 32 bits.
+/// Plans the stages of a scan with up to `most` items per block, a power of two. Precondition:
+/// slots fit in 32 bits.
 std::vector<ScanStage> plan_scan(std::vector<Run> const& runs,
                                  std::vector<std::vector<Merge>> const& levels,
                                  std::vector<Root> const& roots, std::int64_t slots,
                                  std::int64_t most);
 
-/// Chains that one thread of the host takes whole: nothing is shared.
+/// Plan for a host in which one thread processes whole chains. Blocks share no data.
 struct BlockPlan {
     int levels = 0;
-    std::vector<Range> body, tip;  // of every block: its bodies, and its chains' jointed tips
-    std::vector<Range> run, root;  // of the schedule
-    std::vector<Range> merge;  // merge[b * levels + l]: of all levels' merges, one after the other
+    /// Ranges per block of its bodies, and of its chains' jointed tips.
+    std::vector<Range> body, tip;
+    /// Ranges per block of the schedule's runs and roots.
+    std::vector<Range> run, root;
+    /// Range of merges at merge[b * levels + l], counted over the lists of all levels one after the
+    /// other.
+    std::vector<Range> merge;
+    /// Number of blocks.
     std::int64_t blocks() const { return std::ssize(body); }
 };
-/// A chain a block. `tip`: the last bodies of chains with a jointed tip. Precondition: no chain is
-/// shared with other ranks.
+/// Plans one block per chain. `tip`: last bodies of the chains with a jointed tip, ascending.
+/// Precondition: no chain is shared with other ranks.
 BlockPlan plan_blocks(Schedule const&, std::vector<std::int64_t> const& tip);
 
 }  // namespace catena::dca

@@ -1,3 +1,4 @@
+// Construction of chain trees, of the partition into units, and of a rank's schedule.
 #include "tree/tree.hpp"
 
 #include <algorithm>
@@ -74,14 +75,14 @@ std::vector<Piece> pieces_of(Partition const& partition, int rank) {
 
 namespace {
 
-/// A node while the tree is built: its slot and the storage indices of its first body's joint and
-/// of the joint after it.
+/// Node during construction: its slot, the storage index of its first body's inboard joint
+/// (`first`), and that of the joint after its last body (`next`).
 struct Node {
     std::int64_t slot, first, next;
 };
 
-/// Pairs the nodes of one level whose indices start at `first_index`; an odd last node of the chain
-/// goes up unchanged.
+/// Pairs the nodes of one level and appends the merges. An odd last node of the chain moves to the
+/// next level unchanged. `slots` counts the segments allocated so far.
 std::vector<Node> pair_up(std::vector<Node> const& nodes, std::vector<Merge>& merges,
                           std::int64_t& slots) {
     std::vector<Node> up;
@@ -98,11 +99,13 @@ std::vector<Node> pair_up(std::vector<Node> const& nodes, std::vector<Merge>& me
     return up;
 }
 
+/// Returns the merges of `level`, after extending the list of levels if necessary.
 std::vector<Merge>& level_of(std::vector<std::vector<Merge>>& levels, std::size_t level) {
     if (levels.size() <= level) levels.resize(level + 1);
     return levels[level];
 }
 
+/// Builds the schedule of one rank: runs, then merges up to the units, then shared chains.
 class Builder {
   public:
     Builder(Partition const& partition, int rank)
@@ -125,6 +128,7 @@ class Builder {
     }
 
   private:
+    /// Appends the runs of one piece.
     void add_runs(Piece const& piece) {
         std::int64_t const length = partition_.trees[piece.chain].run_length;
         first_run_.push_back(static_cast<std::int64_t>(s_.runs.size()));
@@ -139,13 +143,14 @@ class Builder {
         }
     }
 
-    /// Storage index of what follows the last body of a chain that ends here.
+    /// Storage index of the joint after the last body of a chain that ends on this rank.
     std::int64_t after(int chain) const {
         auto const found = std::find(s_.tip_chain.begin(), s_.tip_chain.end(), chain);
         return found == s_.tip_chain.end() ? s_.none
                                            : s_.first_tip() + (found - s_.tip_chain.begin());
     }
 
+    /// Appends the merges up to the units; a whole chain is merged up to its root.
     void add_units(Piece const& piece) {
         ChainTree const& tree = partition_.trees[piece.chain];
         std::int64_t const first_run =
@@ -173,6 +178,8 @@ class Builder {
                             piece.chain, partition_.tip[piece.chain]});
     }
 
+    /// Appends the frontier units of a shared chain and, if this rank owns a part of it, the
+    /// merges above them.
     void add_shared(int chain) {
         ChainTree const& tree = partition_.trees[chain];
         std::int64_t const chain_first = partition_.first_of_chain[chain];
@@ -205,6 +212,7 @@ class Builder {
                                 partition_.tip[chain]});
     }
 
+    /// Allocates storage for a joint that only the top of a shared chain uses.
     std::int64_t top_joint(int chain, std::int64_t body) {
         s_.top_chain_of_joint.push_back(chain);
         s_.top_body_of_joint.push_back(body);
