@@ -10,8 +10,8 @@ namespace catena {
 /// Upper bound on the heating by external loads: gravity, constant wrenches and joint torques,
 /// whose work on chains is removed by friction. Friction removes kinetic energy at the rate 2
 /// friction (K - K_equilibrium), so that work of power P raises the mean of K by P / (2 friction).
-/// A constant load f in coordinates gives at most P = f M^-1 f / friction. A free body reaches
-/// exactly that; potentials and joints reduce it.
+/// The power of a constant load f in coordinates is at most P = f M^-1 f / friction. A free body
+/// reaches exactly that; potentials and joints reduce it.
 struct Heating {
     bool is_pushed = false;  // external loads exist
     double excess =
