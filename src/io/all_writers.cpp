@@ -110,8 +110,8 @@ class AllWriters final : public Writers {
     /// Reserves disk space up to the expected length of the file. Rank 0 only.
     void reserve(std::string const& file, std::string const& doing) {
         Descriptor const opened(file, O_RDWR, file, doing);
-        // Parallel HDF5 does not tell how long the file will be. Its initial length is the one that
-        // the root left.
+        // Parallel HDF5 does not report how long the file will be. Its initial length is the one
+        // that the root left.
         if (reserved_ == 0) reserved_ = first_ = ::lseek(opened.get(), 0, SEEK_END);
         off_t const wanted = first_ + grown_ + grown_ / 64 +
                              (16 << 10);  // metadata: 100 bytes per chunk of at least 8 kB

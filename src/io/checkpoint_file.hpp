@@ -49,8 +49,8 @@ void put_checksum(std::string const& name, std::string const& file, std::uint64_
 struct Reader {
     int number = 0, of = 1;
 };
-/// Tells read_checkpoint_file() to return the reader's share of every array, or only to add it to
-/// the checksum. The latter needs memory for a single piece of an array.
+/// Instructs read_checkpoint_file() to return the reader's share of every array, or only to add it
+/// to the checksum. The latter needs memory for a single piece of an array.
 enum class Arrays { keep, only_check };
 /// Contents of a checkpoint file as one Reader sees them.
 struct CheckpointRead {

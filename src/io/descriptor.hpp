@@ -1,4 +1,4 @@
-// Owner of an open file descriptor that turns failures of the system into exceptions.
+// Owner of an open file descriptor that converts failures of the system to exceptions.
 #pragma once
 
 #include <fcntl.h>

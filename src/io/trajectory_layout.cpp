@@ -189,7 +189,7 @@ class Builder {
         std::string("restart with the scene that wrote it, or ") + Continuation::way_beside);
 }
 
-/// Throws InputError unless `group` exists exactly if it is wanted.
+/// Throws InputError if the presence of `group` differs from `wanted`.
 void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
     bool const present = has(root, group);
     if (present != wanted)

@@ -150,7 +150,7 @@ std::optional<RunCheck> EnergyWatch::energy() const {
     if (!conserves_energy(scene_) || !series_.has_potential() || n < 2) return std::nullopt;
     std::vector<double> at, later;
     for (std::size_t i = from; i < n; ++i)
-        // A line needs four entries; fewer yield the difference of last and first.
+        // A line needs four entries; fewer are fitted by the difference of last and first.
         at.push_back(series_.middle(i)), later.push_back(series_.total(i));
     Fit fit{later.back() - later.front(), 0, mean_of(later)};
     if (later.size() >= 4) fit = fit_line(at, later);

@@ -14,7 +14,7 @@
 
 namespace catena {
 
-/// Options of a run, which come from the command line.
+/// Options of a run, mostly from the command line.
 struct RunOptions {
     std::string output = "catena-run";  // folder of all output files
     std::optional<std::int64_t>
