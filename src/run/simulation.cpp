@@ -598,7 +598,7 @@ class Run {
         bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(),
                                       [](auto const& g) { return g->has_tips(); });
         if (!system_.absolute().empty() ||
-            tips)  // other joint coordinates have no constraint error
+            tips)  // joint coordinates without jointed tips have no constraint error
             s["constraints"] = {{"largest_error", verdict_.largest_error()},
                                 {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (system_.openmm()) s["forces"] = forces;
