@@ -1,7 +1,8 @@
-// All ranks by parallel HDF5. A write that fails on one rank leaves the others waiting within HDF5,
-// and at times that rank as well: MPI tells of it before HDF5 does, and there the program ends. So
-// the failure to be expected, a full disk, is looked for before: rank 0 takes the room for a frame
-// or a checkpoint from the system before anybody writes, and all ranks end in good order.
+// Writers of all ranks, by parallel HDF5. A write that fails on one rank leaves the other ranks
+// waiting within HDF5, and at times that rank as well. MPI reports the failure before HDF5 does,
+// and the program ends there. The failure to be expected, a full disk, is therefore tested
+// beforehand. Rank 0 reserves the space of a frame or a checkpoint before any rank writes, so that
+// all ranks end in good order.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -18,8 +19,8 @@
 namespace catena::hdf5 {
 namespace {
 
-/// Open MPI's own way to files (OMPIO, 4.1) keeps quiet about writes that fail; its other one is
-/// everybody's ROMIO (mpi_communicator.cpp).
+/// True if MPI's file layer does not report failed writes: OMPIO, Open MPI's own (4.1). Open MPI's
+/// alternative is ROMIO, which other MPI libraries use too (mpi_communicator.cpp).
 bool is_quiet_about_failures() {
     if (!message_passing_library().starts_with("Open MPI")) return false;
     char const* const chosen = std::getenv("OMPI_MCA_io");
@@ -28,7 +29,7 @@ bool is_quiet_about_failures() {
            !(word.starts_with("^") && word.find("ompio") != word.npos);
 }
 
-/// Files whose failure ends the program, while their writers live.
+/// Files whose failure ends the program, as long as their writers exist.
 struct Watched {
     void const* owner;
     MPI_File file;
@@ -40,8 +41,8 @@ std::vector<Watched>& watched() {
     return all;
 }
 
-/// Rank 0 has the first word, and the others are ended before they would have theirs, on a busy
-/// machine too.
+/// MPI error handler that prints the failure and ends all ranks. Rank 0 prints first. The other
+/// ranks wait 10 s, so that they are ended before they print, even on a busy machine.
 void end_all(MPI_File* file, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's signature
     char text[MPI_MAX_ERROR_STRING] = "";
     int length = 0;
@@ -58,6 +59,7 @@ void end_all(MPI_File* file, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's
     failed->communicator->abort(1);
 }
 
+/// Collective access to a file by MPI-IO (H5FD_MPIO_COLLECTIVE).
 class AllWriters final : public Writers {
   public:
     explicit AllWriters(Communicator const& communicator)
@@ -98,20 +100,21 @@ class AllWriters final : public Writers {
     }
     void flush_to_disk(File const& handle, std::string const& file,
                        std::string const& doing) const override {
-        check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);  // MPI_File_sync is part of it
+        check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);  // includes MPI_File_sync
     }
-    /// Metadata are in HDF5's memory alone, data of frames that they do not tell of harm nobody:
-    /// what is never closed stays as it is.
+    /// Returns false. Metadata exist only in HDF5's memory, and data of frames that no metadata
+    /// mention are harmless. A file that is never closed thus stays as it is.
     bool leave_as_flushed(File const&) const override { return false; }
 
   private:
+    /// Reserves disk space up to the expected length of the file. Rank 0 only.
     void reserve(std::string const& file, std::string const& doing) {
         Descriptor const opened(file, O_RDWR, file, doing);
-        // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left
-        // it.
+        // Parallel HDF5 does not report how long the file will be. Its initial length is the one
+        // that the root left.
         if (reserved_ == 0) reserved_ = first_ = ::lseek(opened.get(), 0, SEEK_END);
         off_t const wanted = first_ + grown_ + grown_ / 64 +
-                             (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
+                             (16 << 10);  // metadata: 100 bytes per chunk of at least 8 kB
         if (wanted <= reserved_) return;
         take_from_system(opened.get(), reserved_, wanted - reserved_, file, doing);
         reserved_ = wanted;
@@ -120,7 +123,7 @@ class AllWriters final : public Writers {
     Communicator const& communicator_;
     Properties transfer_;
     off_t first_ = 0, grown_ = 0,
-          reserved_ = 0;  // bytes: at first, of frames since, taken from the system
+          reserved_ = 0;  // bytes: initial length, frames since then, reserved on disk
 };
 
 }  // namespace

@@ -5,9 +5,9 @@
 
 namespace catena {
 
-/// Numbers [first, first + values.size()) of an array that ranks have between them.
+/// Consecutive elements [first, first + values.size()) of an array that is distributed over ranks.
 struct ArrayPart {
-    std::int64_t first = 0;
+    std::int64_t first = 0;  // global index of values[0]
     std::span<double const> values;
 };
 

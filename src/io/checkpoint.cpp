@@ -1,5 +1,5 @@
-// Reads a checkpoint, as far as its seal and its checksums hold; what lies where in the file:
-// checkpoint_file.hpp.
+// Reader of checkpoints, which uses a file only if its seal and its checksums hold. Layout of the
+// file: checkpoint_file.hpp.
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -17,12 +17,13 @@ namespace {
 
 using namespace hdf5;
 
-/// A checkpoint as it is when it is opened: a run that writes puts others under its name.
+/// Checkpoint file as it is at the time of opening: a run that writes replaces the file of that
+/// name.
 class OpenedCheckpoint {
   public:
     explicit OpenedCheckpoint(std::string const& file)
         : file_(file), descriptor_(file, O_RDONLY | O_NONBLOCK, file, reading_checkpoint) {}
-    /// Leads to what is open, whatever has the name by now; where the system has no such paths, by
+    /// Returns a path to the opened file, whatever has its name by now. Systems without /proc use
     /// the name.
     std::string path() const {
         std::string const opened = "/proc/self/fd/" + std::to_string(descriptor_.get());
@@ -34,6 +35,7 @@ class OpenedCheckpoint {
     Descriptor descriptor_;
 };
 
+/// Opens a checkpoint. Throws InputError with `remedy` if that fails.
 std::unique_ptr<OpenedCheckpoint const> open_checkpoint(std::string const& file,
                                                         std::string const& remedy) {
     try {
@@ -44,6 +46,7 @@ std::unique_ptr<OpenedCheckpoint const> open_checkpoint(std::string const& file,
     }
 }
 
+/// True if the file starts with HDF5's signature and therefore has no seal.
 bool is_plain_hdf5(std::string const& file) {
     if (!std::filesystem::is_regular_file(file)) return false;
     std::string start(8, '\0');
@@ -51,7 +54,8 @@ bool is_plain_hdf5(std::string const& file) {
     return start == "\x89HDF\r\n\x1a\n";
 }
 
-/// Throws InputError for what HDF5 had better not see at `path`; messages name `file`.
+/// Throws InputError for a file that HDF5 must not parse, i.e. one without a valid seal. `path`:
+/// the opened file; messages name `file`.
 void require_seal(std::string const& path, std::string const& file, bool has_previous,
                   std::string const& remedy) {
     std::string const name_one = "name the checkpoint.h5 of a run";

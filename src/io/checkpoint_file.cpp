@@ -1,3 +1,4 @@
+// Implements creation, checksums and reading of checkpoint files.
 #include "io/checkpoint_file.hpp"
 
 #include <algorithm>
@@ -13,12 +14,14 @@ namespace {
 std::string const format = "catena checkpoint";
 constexpr std::int64_t format_version = 3;
 
+/// Throws ComputationError if `key` cannot name a dataset.
 void require_key(std::string const& key, std::string const& file) {
     if (key.empty() || key == "." || key.find('/') != std::string::npos)
         throw ComputationError("cannot write the checkpoint (" + file + "): '" + key +
                                "' is no name for a dataset");
 }
 
+/// Writes the entries of a map as datasets of a new group, by the function `put`.
 template <class Map, class Put>
 void put_all(Place const& root, std::string const& group, Map const& entries, Put put) {
     Group const owner = make_group(root, group);
@@ -30,7 +33,8 @@ void put_all(Place const& root, std::string const& group, Map const& entries, Pu
     }
 }
 
-/// Its place in the file is found now: any rank may write into it.
+/// Creates a dataset without contents. Its space in the file is allocated at once, so that any rank
+/// may write into it.
 Dataset put_room(Place const& place, std::string const& key, std::int64_t size) {
     auto const count = static_cast<hsize_t>(size);
     Space const space(check(H5Screate_simple(1, &count, nullptr), place.file, place.doing));
@@ -42,6 +46,7 @@ Dataset put_room(Place const& place, std::string const& key, std::int64_t size) 
                          place.file + ", " + key, place.doing));
 }
 
+/// Names of all datasets in a group, in ascending order.
 std::vector<std::string> keys_of(Place const& group) {
     H5G_info_t info;
     check(H5Gget_info(group.id, &info), group.file, group.doing);
@@ -60,7 +65,7 @@ std::vector<std::string> keys_of(Place const& group) {
     return keys;
 }
 
-/// Of the file that the group is in, whatever it is called by now.
+/// Size of the file that contains the group, whatever its name is by now.
 std::size_t bytes_of_file(Place const& group) {
     File const file(check(H5Iget_file_id(group.id), group.file, group.doing));
     hsize_t bytes = 0;
@@ -68,7 +73,8 @@ std::size_t bytes_of_file(Place const& group) {
     return bytes;
 }
 
-/// Opens a dataset and its space; the number of elements comes with it.
+/// Opened dataset and its number of elements. Throws ComputationError for arrays of more
+/// dimensions.
 struct Entry {
     Entry(Place const& group, std::string const& key)
         : data(check(H5Dopen2(group.id, key.c_str(), H5P_DEFAULT), group.file, group.doing)) {
@@ -77,7 +83,8 @@ struct Entry {
             throw ComputationError(key + " is a table");
         size = static_cast<std::size_t>(
             check(H5Sget_simple_extent_npoints(space.get()), group.file, group.doing));
-        // What claims to be larger than its file is damaged, and not worth the memory.
+        // An array that claims to be larger than its file is damaged, and no memory is allocated
+        // for it.
         if (size > bytes_of_file(group) / sizeof(double))
             throw ComputationError(key + " is larger than the file");
     }
@@ -85,6 +92,7 @@ struct Entry {
     std::size_t size = 0;
 };
 
+/// Reads a dataset that must be a single text of fixed length.
 std::string get_note(Place const& group, std::string const& key) {
     Entry const entry(group, key);
     Type const type(check(H5Dget_type(entry.data.get()), group.file, group.doing));
@@ -99,6 +107,7 @@ std::string get_note(Place const& group, std::string const& key) {
     return text;
 }
 
+/// Reads a dataset that must be a single integer.
 std::int64_t get_value(Place const& group, std::string const& key) {
     Entry const entry(group, key);
     if (entry.size != 1) throw ComputationError(key + " is not one number");
@@ -116,7 +125,8 @@ std::int64_t get_integer(Place const& root, std::string const& name) {
     return value;
 }
 
-/// Never of variable length: HDF5 goes beyond its buffers where such texts are damaged.
+/// Returns a string attribute of fixed length. Variable length is refused: HDF5 reads beyond its
+/// buffers on damaged texts of that kind.
 std::string get_fixed_text(Place const& root, std::string const& name) {
     Attribute const attribute(
         check(H5Aopen(root.id, name.c_str(), H5P_DEFAULT), root.file, root.doing));
@@ -129,10 +139,11 @@ Group open_group(Place const& root, char const* name) {
     return Group(check(H5Gopen2(root.id, name, H5P_DEFAULT), root.file, root.doing));
 }
 
-/// The reader's share goes through the checksum in pieces, and into `kept` where that is not null.
+/// Adds the reader's share of an array to the checksum, piece by piece, and copies it to `kept`
+/// unless that is null.
 void read_array(Place const& group, std::string const& key, Reader const& reader,
                 CheckpointRead& read, std::vector<double>* kept) {
-    constexpr std::int64_t most = 1 << 18;
+    constexpr std::int64_t most = 1 << 18;  // elements of a piece
     Entry const entry(group, key);
     auto const size = static_cast<std::int64_t>(entry.size);
     read.sizes[key] = size;

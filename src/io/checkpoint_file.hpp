@@ -1,8 +1,9 @@
-// What a checkpoint's file holds: attributes format, version, step, time_bits, scene_hash and
-// checksum at the root; groups notes (texts), integers and arrays (doubles), one dataset an entry.
-// The checksum runs over all of it, of arrays over their numbers at their places, so that several
-// ranks can write and read them: what was handed over is what is read. A seal in front of HDF5's
-// own bytes tells of damage before HDF5 meets it (file_seal.hpp).
+// Layout of a checkpoint file. The root holds the attributes format, version, step, time_bits,
+// scene_hash and checksum. The groups notes (texts), integers and arrays (doubles) hold one dataset
+// per entry. The checksum covers all of them. Elements of arrays enter it together with their
+// positions, so that several ranks can write and read them. The checksum thus proves that what is
+// read is what was handed to the writer. A seal in front of HDF5's own bytes reveals damage before
+// HDF5 parses the file (file_seal.hpp).
 #pragma once
 
 #include <cstdint>
@@ -15,43 +16,51 @@
 
 namespace catena {
 
-/// Where the checkpoint is kept that came before this one.
+/// Returns the path of the preceding checkpoint: `checkpoint.previous.h5` next to `checkpoint.h5`.
 std::string previous_checkpoint(std::string const& file);
 
 namespace hdf5 {
 
+/// Actions that error messages name ("cannot write the checkpoint").
 inline std::string const writing_checkpoint = "write the checkpoint",
                          reading_checkpoint = "read the checkpoint";
 
-/// Numbers of arrays, by their names.
+/// Number of elements of each array, by the array's name.
 using ArraySizes = std::map<std::string, std::int64_t>;
-/// Of an array's numbers from `first` on. Those of all numbers of all arrays are added, in any
-/// order.
+/// Checksum of the elements [first, first + values.size()) of `array`. The checksums of all parts
+/// of all arrays are summed modulo 2^64, in any order.
 std::uint64_t checksum_of_values(std::string const& array, std::int64_t first,
                                  std::span<double const> values);
-/// Over everything. `head`: its arrays do not matter; `sizes`, `of_values`: of all there are.
+/// Checksum of a whole checkpoint. The arrays of `head` are ignored. `sizes`: sizes of all arrays;
+/// `of_values`: sum of checksum_of_values() over all their elements.
 std::uint64_t checksum_of(Checkpoint const& head, ArraySizes const& sizes, std::uint64_t of_values);
 
-/// Makes the file `name` of everything but the checksum and the numbers of the arrays `later`, for
-/// which it has the room on disk. Messages name `file`.
+/// Creates the file `name` with everything except the checksum and the elements of the arrays
+/// `later`. Disk space for those elements is reserved. Error messages name `file`.
 void make_checkpoint_file(std::string const& name, std::string const& file, Checkpoint const&,
                           ArraySizes const& later);
+/// Opens a dataset of the group arrays.
 Dataset open_array(Place const& root, std::string const& name);
+/// Overwrites the attribute checksum of the file `name` and syncs it to disk. Error messages name
+/// `file`.
 void put_checksum(std::string const& name, std::string const& file, std::uint64_t checksum);
 
-/// One of several that share the reading of a file.
+/// Share of one of several readers of a file: reader `number` of `of` readers.
 struct Reader {
     int number = 0, of = 1;
 };
-/// Whether a reader keeps its share of the arrays, or takes the memory of a piece of one.
+/// Instructs read_checkpoint_file() to return the reader's share of every array, or only to add it
+/// to the checksum. The latter needs memory for a single piece of an array.
 enum class Arrays { keep, only_check };
+/// Contents of a checkpoint file as one Reader sees them.
 struct CheckpointRead {
-    Checkpoint contents;
-    ArraySizes sizes;
-    std::uint64_t of_values = 0;  // of the reader's share
-    std::uint64_t checksum = 0;   // as the file tells it
+    Checkpoint contents;          // arrays: the reader's share, absent with only_check
+    ArraySizes sizes;             // sizes of the whole arrays
+    std::uint64_t of_values = 0;  // sum of checksum_of_values() over the reader's share
+    std::uint64_t checksum = 0;   // attribute of the file, not compared here
 };
-/// Throws ComputationError for what is damaged, InputError for another version's.
+/// Reads a checkpoint file. Throws ComputationError for damaged contents and InputError for another
+/// version of the format.
 CheckpointRead read_checkpoint_file(Place const& root, Arrays, Reader);
 
 }  // namespace hdf5

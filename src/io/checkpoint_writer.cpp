@@ -1,3 +1,4 @@
+// Writer of checkpoints, by the root alone or by all ranks together.
 #include <unistd.h>
 
 #include <exception>
@@ -18,19 +19,19 @@ using namespace hdf5;
 
 std::string const& writing = writing_checkpoint;
 
-/// The file of this name stays; `previous` becomes another name of it, so that no moment is without
-/// a checkpoint.
+/// Makes `previous` a second name of the existing file, so that a checkpoint exists at every
+/// moment.
 void keep_previous(std::string const& file) {
     std::string const previous = previous_checkpoint(file), spare = previous + ".writing";
     ::unlink(spare.c_str());
     if (!std::filesystem::exists(file)) return;
-    // A run that ended between the two renames left both names to one file.
+    // A run that ended between the two renames left both names for one file.
     if (std::filesystem::exists(previous) && std::filesystem::equivalent(file, previous)) return;
     if (::link(file.c_str(), spare.c_str()) == 0) return rename_file(spare, previous);
     rename_file(file, previous);  // a file system without hard links
 }
 
-/// Over all ranks, whole: in halves, which do not run over.
+/// Sum over all ranks modulo 2^64. The halves are summed separately, so that they do not overflow.
 std::uint64_t sum_over(Communicator const& communicator, std::uint64_t value) {
     auto const low = static_cast<std::uint64_t>(
         communicator.sum(static_cast<std::int64_t>(value & 0xffffffffU)));
@@ -39,6 +40,7 @@ std::uint64_t sum_over(Communicator const& communicator, std::uint64_t value) {
     return low + (high << 32);
 }
 
+/// Bytes of all elements.
 std::int64_t bytes_of(ArraySizes const& sizes) {
     std::int64_t bytes = 0;
     for (auto const& [name, size] : sizes)
@@ -48,21 +50,22 @@ std::int64_t bytes_of(ArraySizes const& sizes) {
 
 }  // namespace
 
-/// `name` is written; messages name `file`.
+/// Checkpoint that is being written under the temporary name `name`. Messages name the final
+/// `file`.
 struct CheckpointWriter::Draft {
     Communicator const& communicator;
     std::string file, name;
-    Checkpoint head;              // without arrays
-    ArraySizes later, sizes;      // of arrays that put() brings, and of all
-    std::uint64_t of_values = 0;  // of those that are this rank's
+    Checkpoint head;              // arrays are empty
+    ArraySizes later, sizes;      // arrays written by put(); all arrays
+    std::uint64_t of_values = 0;  // checksum of this rank's elements
     ParallelIoMode way;
-    std::unique_ptr<Writers> writers;  // null on ranks that leave it to the root
+    std::unique_ptr<Writers> writers;  // null on ranks that do not write
     File handle;
     std::map<std::string, Dataset> data;
-    std::exception_ptr failure;  // of the root's, which writes alone
+    std::exception_ptr failure;  // failure of put() on the root that writes alone
     bool is_finished = false;
-    int to_other_host = 0;  // ranks from one to the next that looks at its share: on another host
-                            // where ranks lie host by host
+    int to_other_host = 0;  // distance to the rank whose share this rank verifies: on another host
+                            // if ranks are numbered host by host
 
     Draft(Communicator const& of, std::string const& written, Checkpoint const& checkpoint,
           ArraySizes const& by_put)
@@ -86,7 +89,7 @@ struct CheckpointWriter::Draft {
     }
     bool is_first() const { return communicator.rank() == 0; }
 
-    /// The arrays' datasets with it.
+    /// Opens the file and the datasets of the arrays `later`.
     void open(std::unique_ptr<Writers> by) {
         writers = std::move(by);
         Properties const access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
@@ -96,12 +99,14 @@ struct CheckpointWriter::Draft {
         for (auto const& [array, size] : later)
             data[array] = open_array({handle.get(), file, writing}, array);
     }
-    /// Others may not know that this rank ends here: then nothing is closed together.
+    /// Leaves all objects open. The other ranks may not know that this rank stops here, and closing
+    /// is collective.
     void leave_open() {
         for (auto& [array, dataset] : data) dataset.release();
         data.clear();
         handle.release();
     }
+    /// Writes parts of an array and adds them to the checksum.
     void put(std::string const& array, std::span<ArrayPart const> parts) {
         Dataset const& dataset = data.at(array);
         Space const in_file(check(H5Dget_space(dataset.get()), file, writing));
@@ -125,12 +130,14 @@ struct CheckpointWriter::Draft {
                        writers->transfer(), values),
               file, writing);
     }
+    /// Closes the file after a flush to disk.
     void close() {
         for (auto& [array, dataset] : data) check(dataset.close(), file, writing);
         writers->flush_to_disk(handle, file, writing);
         check(handle.close(), file, writing);
     }
-    /// look(reader) on ranks that have the file, of the shares of the ranks so many further on.
+    /// Calls look(reader) on the ranks that have the file, for the share of the rank `apart`
+    /// further on.
     template <class Look>
     void share(int apart, Look const& look) const {
         on_every_rank(communicator, [&] {
@@ -141,6 +148,8 @@ struct CheckpointWriter::Draft {
                 look(Reader{});
         });
     }
+    /// Size and checksum of the sealed contents, each rank reading the share of the rank `apart`
+    /// further on. Collective.
     Sealed sum_of_pieces(int apart) const {
         Sealed own;
         share(apart, [&](Reader reader) {
@@ -148,16 +157,18 @@ struct CheckpointWriter::Draft {
         });
         return {communicator.sum(own.bytes), sum_over(communicator, own.checksum)};
     }
+    /// Writes the seal, then verifies that ranks see the same file. Collective.
     void seal() const {
         Sealed const sealed = sum_of_pieces(0);
         on_first_rank(communicator, [&] { put_seal(name, sealed, file, writing); });
         if (!way.collective) return;
-        Sealed const again =
-            sum_of_pieces(to_other_host);  // one that does not see yet what another one has written
+        Sealed const again = sum_of_pieces(
+            to_other_host);  // fails on a host that does not see yet what another one has written
         on_first_rank(communicator, [&] {
             if (again != sealed) refuse("ranks do not see the same file");
         });
     }
+    /// Reopens the file and compares its checksum with its contents. Collective.
     void require_that_it_reads_back() const {
         CheckpointRead read;
         share(to_other_host, [&](Reader reader) {

@@ -1,5 +1,5 @@
-// Numbers with a few decimals, as fmt writes them but in a tenth of its time: text files hold them
-// by the ten million.
+// Text of numbers with a few decimals, as fmt writes it but in a tenth of the time. Text files hold
+// such numbers by the ten million.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,14 +10,15 @@
 
 namespace catena {
 
-/// What "{:.{places}f}" makes of a number. Precondition: places from 0 to 3.
+/// Text that fmt writes for "{:.{places}f}". The text lies in a buffer of the object itself.
+/// Precondition: places from 0 to 3.
 class Decimals {
   public:
     Decimals(double value, int places) {
         constexpr double ten_to_the[] = {1, 10, 100, 1000}, most = 1e12, doubt = 1e-3;
         double const scaled = std::abs(value) * ten_to_the[places], whole = std::floor(scaled),
                      rest = scaled - whole;
-        // The product is a little off: what lies so near to a half may belong on its other side.
+        // The product is rounded: a remainder this close to one half may belong on the other side.
         if (!(scaled < most) || std::abs(rest - 0.5) < doubt) {
             begin_ = text_;
             end_ = fmt::format_to_n(text_, sizeof(text_), "{:.{}f}", value, places).out;
@@ -39,7 +40,7 @@ class Decimals {
 
   private:
     void put(std::uint64_t digits) { *--begin_ = static_cast<char>('0' + digits % 10); }
-    char text_[336];  // the largest double has 309 digits
+    char text_[336];  // size suffices for the largest double, which has 309 digits
     char* begin_;
     char* end_;
 };

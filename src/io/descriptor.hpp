@@ -1,4 +1,4 @@
-// A file that the system has open, and its failures as errors.
+// Owner of an open file descriptor that converts failures of the system to exceptions.
 #pragma once
 
 #include <fcntl.h>
@@ -15,9 +15,11 @@
 
 namespace catena {
 
+/// File that is opened with open(2) and closed on destruction. Every failure throws
+/// ComputationError.
 class Descriptor {
   public:
-    /// Messages say "cannot <doing> (<shown>)".
+    /// Opens `file`. Error messages read "cannot <doing> (<shown>): <cause>".
     Descriptor(std::string const& file, int flags, std::string shown, std::string doing)
         : shown_(std::move(shown)),
           doing_(std::move(doing)),
@@ -29,7 +31,7 @@ class Descriptor {
     Descriptor& operator=(Descriptor const&) = delete;
     int get() const { return descriptor_; }
 
-    /// As many bytes as there are, `most` at most.
+    /// Reads up to `most` bytes from offset `at`. Returns fewer only at the end of the file.
     std::size_t read(char* to, std::size_t most, std::int64_t at) const {
         std::size_t done = 0;
         while (done < most) {
@@ -42,6 +44,7 @@ class Descriptor {
         }
         return done;
     }
+    /// Writes all bytes at offset `at`.
     void write(std::string_view bytes, std::int64_t at) const {
         while (!bytes.empty()) {
             ssize_t const count = ::pwrite(descriptor_, bytes.data(), bytes.size(), at);

@@ -1,3 +1,4 @@
+// Implements the seal in front of a finished file.
 #include "io/file_seal.hpp"
 
 #include <fmt/format.h>
@@ -17,10 +18,12 @@ namespace {
 constexpr std::int64_t piece_size = 4 << 20;
 constexpr std::string_view name = "Catena, sealed file", words = " bytes, checksum ",
                            by_places = "by places ";
+/// Text of the seal, without its padding to seal_size.
 std::string seal_of(Sealed const& of) {
     return fmt::format("{}: {}{}{}{:016x}\n", name, of.bytes, words, by_places, of.checksum);
 }
 
+/// Returns the seal's bytes, fewer if the file is shorter.
 std::string first_bytes(Descriptor const& file) {
     std::string seal(seal_size, '\0');
     seal.resize(file.read(seal.data(), seal.size(), 0));

@@ -1,3 +1,4 @@
+// Implements attributes, arrays and series by calls of the HDF5 C library.
 #include "io/hdf5_data.hpp"
 
 #include <algorithm>
@@ -7,24 +8,28 @@
 namespace catena::hdf5 {
 namespace {
 
-constexpr hsize_t chunk_bytes = 1 << 18;
+constexpr hsize_t chunk_bytes = 1 << 18;  // about this size
 constexpr hsize_t most_frames_in_chunk = 1024;
 
+/// Type of strings of `length` bytes, or of variable length for H5T_VARIABLE.
 Type text_type(std::size_t length, Place const& place) {
     Type type(check(H5Tcopy(H5T_C_S1), place.file, place.doing));
     check(H5Tset_size(type.get(), length), place.file, place.doing);
     return type;
 }
 
+/// Dataspace of a single element.
 Space scalar(Place const& place) {
     return Space(check(H5Screate(H5S_SCALAR), place.file, place.doing));
 }
 
+/// Dataspace of fixed shape.
 Space simple(Place const& place, std::span<hsize_t const> shape) {
     return Space(check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                        place.file, place.doing));
 }
 
+/// Creates an attribute and writes its values. Error messages name the attribute.
 void put(Place const& place, std::string const& name, hid_t type, Space const& space,
          void const* values) {
     Attribute attribute(
@@ -33,7 +38,7 @@ void put(Place const& place, std::string const& name, hid_t type, Space const& s
     check(H5Awrite(attribute.get(), type, values), place.file + ", " + name, place.doing);
 }
 
-/// Strings of one length, one behind the other.
+/// Joins strings, each padded to the length of the longest. Returns that length and the characters.
 std::pair<std::size_t, std::string> pack(std::span<std::string const> texts) {
     std::size_t length = 1;
     for (std::string const& text : texts) length = std::max(length, text.size() + 1);
@@ -42,8 +47,8 @@ std::pair<std::size_t, std::string> pack(std::span<std::string const> texts) {
     return {length, packed};
 }
 
-/// Chunks of about 256 kB that hold whole frames where these are small and part of one where they
-/// are large.
+/// Shape of chunks of about 256 kB. They hold whole frames if these are small, and part of a frame
+/// if it is large.
 std::vector<hsize_t> chunk_for(std::vector<hsize_t> const& row, std::size_t element) {
     hsize_t const row_bytes = std::max<hsize_t>(
         1, std::accumulate(row.begin(), row.end(), hsize_t{element}, std::multiplies<>()));
@@ -64,7 +69,7 @@ Group make_group(Place const& place, std::string const& name) {
 }
 
 bool has(Place const& place, std::string const& name) {
-    // H5Lexists fails where a group on the way is missing: for us that is "no" as well.
+    // H5Lexists fails if a group on the path is missing, which also means "no" here.
     for (std::size_t end = name.find('/'); end != std::string::npos; end = name.find('/', end + 1))
         if (H5Lexists(place.id, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
     return H5Lexists(place.id, name.c_str(), H5P_DEFAULT) > 0;
@@ -157,8 +162,8 @@ Series Series::create(Place const& place, std::string const& name, hid_t type,
     Properties const properties(check(H5Pcreate(H5P_DATASET_CREATE), place.file, place.doing));
     check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), place.file,
           place.doing);
-    // The same file whoever writes it: parallel HDF5 has to know where a row lies before ranks
-    // write it, and every row is written whole.
+    // The file is the same whoever writes it. Parallel HDF5 must know where a row lies before ranks
+    // write it, and every row is written completely.
     check(H5Pset_alloc_time(properties.get(), H5D_ALLOC_TIME_EARLY), place.file, place.doing);
     check(H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER), place.file, place.doing);
     Series series;

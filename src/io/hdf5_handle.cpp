@@ -1,3 +1,4 @@
+// Implements error texts, reservation of disk space and clean-up for files of HDF5.
 #include "io/hdf5_handle.hpp"
 
 #include <fcntl.h>
@@ -15,9 +16,10 @@
 namespace catena::hdf5 {
 namespace {
 
-/// HDF5's drivers quote the system between these marks.
+/// Mark in front of the system's message in the errors of HDF5's file drivers.
 constexpr char const* system_words = "error message = '";
 
+/// Callback of H5Ewalk2 that stores the system's message, or else the first description.
 herr_t innermost_first(unsigned, H5E_error2_t const* error, void* found) {
     auto& text = *static_cast<std::string*>(found);
     std::string const description = error->desc != nullptr ? error->desc : "";
@@ -34,8 +36,8 @@ herr_t innermost_first(unsigned, H5E_error2_t const* error, void* found) {
 }  // namespace
 
 Quiet::Quiet() {
-    // At exit HDF5 would try once more to close files that a full disk kept open, and crash. All
-    // that is ours is closed by then.
+    // HDF5's exit handler would try again to close files that a full disk kept open, and crash. All
+    // files of this program are closed by then.
     [[maybe_unused]] static herr_t const no_clean_up_at_exit = H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -83,8 +85,8 @@ std::int64_t size_of(File const& handle, std::string const& file, std::string co
 void make_room(File const& handle, hsize_t more, std::string const& file,
                std::string const& doing) {
     std::int64_t const written = size_of(handle, file, doing) + static_cast<std::int64_t>(more);
-    std::int64_t const not_placed_yet =
-        std::min<std::int64_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
+    std::int64_t const not_placed_yet = std::min<std::int64_t>(
+        8 << 20, written / 4 + (16 << 10));  // space for chunks in HDF5's caches
     take_from_system(descriptor_of(handle, file, doing), 0, written + not_placed_yet, file, doing);
 }
 

@@ -1,5 +1,4 @@
-// Owners of HDF5 handles, and the one way an HDF5 failure becomes an error: one line with file and
-// cause.
+// Owners of HDF5 handles. Every failure of HDF5 becomes an error of one line with file and cause.
 #pragma once
 
 #include <hdf5.h>
@@ -10,8 +9,8 @@
 
 namespace catena::hdf5 {
 
-/// HDF5 prints its error stack on stderr unless told not to; while a Quiet lives it does not. Every
-/// use of HDF5 starts with one: the first also takes HDF5 out of the process's exit.
+/// Suppresses HDF5's error stack on stderr during its lifetime. Every use of HDF5 begins with a
+/// Quiet. The first Quiet also removes HDF5's clean-up from the exit of the process.
 class Quiet {
   public:
     Quiet();
@@ -42,9 +41,9 @@ class Handle {
     }
     hid_t get() const { return id_; }
     explicit operator bool() const { return id_ >= 0; }
-    /// Leaves it open for ever.
+    /// Releases ownership: the HDF5 object stays open until the process ends.
     void release() { id_ = H5I_INVALID_HID; }
-    /// Closes now; the status tells of data that could not be written.
+    /// Closes the object now. A negative status reports data that could not be written.
     herr_t close() { return id_ < 0 ? 0 : Close(std::exchange(id_, H5I_INVALID_HID)); }
 
   private:
@@ -60,37 +59,37 @@ using Attribute = Handle<&H5Aclose>;
 using Object = Handle<&H5Oclose>;
 using Properties = Handle<&H5Pclose>;
 
-/// The innermost reason on HDF5's error stack, the system's own words where it holds them ("No
-/// space left on device").
+/// Returns the innermost reason on HDF5's error stack. The system's own message is preferred if the
+/// stack holds one ("No space left on device").
 std::string cause();
 
 /// Throws ComputationError "cannot <doing> (<file>): <cause>".
 [[noreturn]] void fail(std::string const& file, std::string const& doing);
 
-/// Hands a status or an identifier through; a negative one becomes a ComputationError.
+/// Passes a status or an identifier through. A negative one throws ComputationError.
 template <class Status>
 Status check(Status status, std::string const& file, std::string const& doing) {
     if (status < 0) fail(file, doing);
     return status;
 }
 
-/// H5Fcreate of a file that nobody else has: what was there is removed, a link or a pipe too, and
-/// nothing is followed.
+/// Creates a file with H5Fcreate that no other process uses. An existing file, link or pipe of that
+/// name is removed first, and links are not followed.
 hid_t create_anew(std::string const& file, hid_t creation, hid_t access);
 
-/// Takes these bytes of a file from the system before anybody writes them. Where the file system
-/// cannot, a full disk shows at the writes.
+/// Reserves the bytes [from, from + bytes) of a file on disk before anything is written there. File
+/// systems without fallocate report a full disk only at the writes.
 void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes,
                       std::string const& file, std::string const& doing);
-/// On the disk for all that a flush writes and `more` bytes: a full one is found before anything in
-/// the file is overwritten.
+/// Reserves disk space for everything that a flush writes and for `more` further bytes. A full disk
+/// is thus detected before anything in the file is overwritten.
 void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing);
-/// On the disk for all that has its place in the file.
+/// Reserves disk space for everything that already has an offset in the file.
 void take_room(File const&, std::string const& file, std::string const& doing);
-/// Everything written so far reaches the disk: H5Fflush, then fsync.
+/// Flushes everything written so far to disk: H5Fflush, then fsync.
 void flush_to_disk(File const&, std::string const& file, std::string const& doing);
-/// For a file in which something could not be written: as its last flush left it, whatever HDF5
-/// still does to it.
+/// Keeps a file as its last flush left it after a failed write: later writes of HDF5 are redirected
+/// to memory.
 void leave_as_flushed(File const&);
 
 }  // namespace catena::hdf5

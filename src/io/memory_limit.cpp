@@ -1,3 +1,4 @@
+// Reads the memory limits of the machine, of control groups (versions 1 and 2) and of the process.
 #include "io/memory_limit.hpp"
 
 #include <sys/resource.h>
@@ -10,16 +11,16 @@
 namespace catena {
 namespace {
 
-constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();  // no limit
 
-/// The first number of a file; `none` where there is no number ("max").
+/// Returns the first number of a file; `none` if there is no number ("max").
 std::int64_t number_in(std::string const& file) {
     std::ifstream in(file);
     std::int64_t value = 0;
     return in >> value && value > 0 ? value : none;
 }
 
-/// The least of a group and those above it: `path` is "/job/step" or "/".
+/// Returns the smallest limit of a control group and its ancestors. `path`: "/job/step" or "/".
 std::int64_t least_of(std::string const& mounted, std::string path, char const* file) {
     std::int64_t least = none;
     while (true) {
@@ -29,8 +30,8 @@ std::int64_t least_of(std::string const& mounted, std::string path, char const* 
     }
 }
 
-/// Lines of `own` are "number:controllers:path"; of version 2, whose limits are in one tree,
-/// "0::path".
+/// Returns the smallest limit of this process's control groups. Lines of `own` are
+/// "number:controllers:path". Version 2, whose limits form one tree, has "0::path".
 std::int64_t limit_of_groups(std::string const& groups, std::string const& own) {
     std::int64_t least = std::min(number_in(groups + "/memory.max"),
                                   number_in(groups + "/memory/memory.limit_in_bytes"));

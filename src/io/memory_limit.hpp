@@ -1,4 +1,4 @@
-// How much memory this process may have.
+// Amount of memory that this process may use.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,9 @@
 
 namespace catena {
 
-/// Bytes: the machine's memory, or less where a control group (a container, a batch job) or
-/// RLIMIT_AS sets a limit. `groups`: where the control groups' files are mounted; `own`: the file
-/// that names this process's.
+/// Returns the machine's memory in bytes, or less if a control group (a container, a batch job) or
+/// RLIMIT_AS sets a limit. `groups`: mount point of the control groups' files; `own`: file that
+/// names the control groups of this process.
 std::int64_t memory_limit(std::string const& groups = "/sys/fs/cgroup",
                           std::string const& own = "/proc/self/cgroup");
 

@@ -1,4 +1,4 @@
-// In the place of all_writers.cpp in a build whose HDF5 is serial.
+// Replaces all_writers.cpp in a build whose HDF5 is serial.
 #include "error.hpp"
 #include "io/writers.hpp"
 

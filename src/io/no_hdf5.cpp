@@ -1,5 +1,5 @@
-// Stands in for the HDF5 files in a build without HDF5; topology, tables, texts and reports are
-// written all the same.
+// Replaces the HDF5 files in a build without HDF5. Topology, tables, texts and reports are still
+// written.
 #include "error.hpp"
 #include "io/output.hpp"
 

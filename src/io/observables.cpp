@@ -1,3 +1,4 @@
+// Writer and reader of observables.csv.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -18,6 +19,7 @@ std::string header_of(std::vector<std::string> const& columns, std::string const
     return header + "\n";
 }
 
+/// Step at the start of a line; empty if the line does not begin with one.
 std::optional<std::int64_t> step_of(std::string_view line) {
     std::int64_t step = 0;
     auto const [end, error] = std::from_chars(line.data(), line.data() + line.size(), step);
@@ -26,7 +28,8 @@ std::optional<std::int64_t> step_of(std::string_view line) {
     return step;
 }
 
-/// How many bytes of an earlier run's table stay: its header and the whole lines up to a step.
+/// Returns the number of bytes of an existing table that are kept: its header and the whole lines
+/// up to a step.
 std::int64_t kept_size(std::string const& file, std::string const& header,
                        Continuation const& go_on) {
     std::string const beside = Continuation::way_beside;
@@ -41,7 +44,7 @@ std::int64_t kept_size(std::string const& file, std::string const& header,
     std::int64_t records = 0;
     for (std::size_t line = 2; kept < text.size(); ++line) {
         std::size_t const end = text.find('\n', kept);
-        if (end == std::string::npos) break;  // a run that was killed while it wrote
+        if (end == std::string::npos) break;  // a run was killed while it wrote this line
         auto const step = step_of(std::string_view(text).substr(kept, end - kept));
         if (!step)
             throw InputError("not a record of observables", file + ", line " + std::to_string(line),
@@ -58,6 +61,7 @@ std::int64_t kept_size(std::string const& file, std::string const& header,
     return static_cast<std::int64_t>(kept);
 }
 
+/// Cells between the commas of a line.
 std::vector<std::string> split(std::string_view line) {
     std::vector<std::string> cells;
     for (std::size_t begin = 0; begin <= line.size();) {
@@ -68,6 +72,7 @@ std::vector<std::string> split(std::string_view line) {
     return cells;
 }
 
+/// Number in a cell. `where` names file and line for the InputError.
 double number(std::string const& cell, std::string const& where) {
     double value = 0;
     auto const [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);

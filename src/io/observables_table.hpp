@@ -1,4 +1,4 @@
-// observables.csv read back, for the report.
+// Reader of observables.csv for the run report.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace catena {
 
+/// Columns of a table of observables.
 struct ObservablesTable {
     std::vector<std::string> names;            // "step", "time [ps]", "total_energy [kJ/mol]", ...
     std::vector<std::vector<double>> columns;  // one for each name
 };
 
-/// InputError naming file and line for anything but a table of ObservablesWriter; a last line
-/// without its end is left out.
+/// Reads a table that ObservablesWriter wrote. Throws InputError naming file and line for any other
+/// contents. A last line without a line end is ignored.
 ObservablesTable read_observables(std::string const& file);
 
 }  // namespace catena

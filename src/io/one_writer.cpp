@@ -1,3 +1,4 @@
+// Writer of one rank, by serial HDF5.
 #include "io/writers.hpp"
 
 namespace catena::hdf5 {

@@ -1,3 +1,4 @@
+// Implements checked output files by system calls of POSIX.
 #include "io/output_file.hpp"
 
 #include <fcntl.h>
@@ -18,7 +19,7 @@
 namespace catena {
 namespace {
 
-constexpr std::size_t buffer_size = 1 << 16;
+constexpr std::size_t buffer_size = 1 << 16;  // bytes
 
 [[noreturn]] void fail(std::string const& doing, std::string const& file, int error) {
     throw ComputationError("cannot " + doing + " (" + file +
@@ -46,7 +47,7 @@ void sync_folder_of(std::string const& file) {
     int const status = ::fsync(descriptor);
     int const error = errno;
     ::close(descriptor);
-    // Some network file systems cannot sync folders; the rename itself is theirs to keep.
+    // Some network file systems cannot sync folders; keeping the rename is their duty.
     if (status != 0 && error != EINVAL && error != ENOTSUP && error != EBADF)
         fail("write the folder to disk", folder, error);
 }
@@ -149,7 +150,7 @@ void write_text_file(std::string const& file, std::string const& text) {
     auto const kind = std::filesystem::symlink_status(file).type();
     if (kind != std::filesystem::file_type::not_found &&
         kind != std::filesystem::file_type::regular) {
-        // A device, a pipe or a link (/dev/stdout): renaming would put a file in its place.
+        // A rename would replace a device, a pipe or a link (/dev/stdout) by a file.
         OutputFile out = OutputFile::create(file);
         out.write(text);
         out.sync();

@@ -1,4 +1,4 @@
-// Plain files written with every step checked: a full disk is an error, never a short file.
+// Plain files of which every operation is checked: a full disk causes an error, never a short file.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace catena {
 
-/// fsync; a device or pipe that cannot be synced is no error. Throws ComputationError naming `file`
-/// and the cause.
+/// Calls fsync. A device or pipe that cannot be synced is no error. Throws ComputationError naming
+/// `file` and the cause.
 void sync_to_disk(int descriptor, std::string const& file);
 
-/// Makes a rename in the folder of `file` lasting.
+/// Syncs the folder of `file`, which makes a rename in it durable.
 void sync_folder_of(std::string const& file);
 
-/// Renames within one folder and makes it lasting.
+/// Renames a file within one folder and makes the rename durable.
 void rename_file(std::string const& from, std::string const& to);
 
 /// Buffered writer that owns its descriptor. Every member throws ComputationError naming file and
@@ -22,30 +22,32 @@ void rename_file(std::string const& from, std::string const& to);
 class OutputFile {
   public:
     OutputFile() = default;
-    /// Starts an empty file, whatever was there.
+    /// Creates an empty file, or empties an existing one.
     static OutputFile create(std::string const& file);
-    /// The same, but for a file that nobody else has: what was there is removed, a link or a pipe
-    /// too, and nothing is followed.
+    /// Creates a file that no other process uses. An existing file, link or pipe of that name is
+    /// removed first, and links are not followed.
     static OutputFile create_anew(std::string const& file);
-    /// Opens a file that exists, cuts it to `size` bytes and goes on behind them.
+    /// Opens an existing file, shortens it to `size` bytes and appends.
     static OutputFile append(std::string const& file, std::int64_t size);
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) noexcept;
-    /// Closes without a word; what was not flushed may be lost.
+    /// Closes without reporting errors. Text that was not flushed is lost.
     ~OutputFile();
 
-    /// Text whose write() throws is lost.
+    /// Appends text to the buffer. Text whose write() throws is lost.
     void write(std::string_view text);
-    /// Hands the buffer to the system.
+    /// Passes the buffer to the system.
     void flush();
-    /// As flush, and on disk when this returns.
+    /// Flushes and returns after the data are on disk.
     void sync();
+    /// Flushes and closes.
     void close();
     std::string const& name() const { return name_; }
-    /// Whether its name still leads to it.
+    /// True if the file's name still refers to this file.
     bool is_in_place() const;
 
   private:
+    /// Writes past the buffer. After a failure the unwritten rest is the buffer.
     void hand_over(std::string_view rest);
     OutputFile(int descriptor, std::string name)
         : descriptor_(descriptor), name_(std::move(name)) {}
@@ -53,8 +55,9 @@ class OutputFile {
     std::string name_, buffer_;
 };
 
-/// A file that appears under its name only when it is whole: written beside it, synced and renamed
-/// by `publish`; unpublished work is removed.
+/// File that appears under its name only when it is complete. Its text is written to a temporary
+/// file in the same folder. publish() syncs and renames that file; the destructor removes
+/// unpublished work.
 class AtomicFile {
   public:
     explicit AtomicFile(std::string file);
@@ -62,6 +65,7 @@ class AtomicFile {
     AtomicFile& operator=(AtomicFile const&) = delete;
     ~AtomicFile();
     void write(std::string_view text) { out_.write(text); }
+    /// Publishes the file. Throws ComputationError if another process replaced the temporary file.
     void publish();
 
   private:
@@ -70,14 +74,14 @@ class AtomicFile {
     bool published_ = false;
 };
 
-/// Puts the text under this name by an AtomicFile: a link of that name is replaced, not followed.
+/// Writes a text file by means of AtomicFile. A link of that name is replaced, not followed.
 void replace_text_file(std::string const& file, std::string const& text);
 
-/// With the folders above it, where they are not there yet; InputError naming it when it cannot be
-/// made.
+/// Creates a folder and those above it that are missing. Throws InputError naming the folder if
+/// that fails.
 void make_output_folder(std::string const& folder);
 
-/// The whole of a text file; InputError naming it when it cannot be read.
+/// Returns the whole text of a file. Throws InputError naming the file if it cannot be read.
 std::string read_text_file(std::string const& file);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Decides whether the ranks can and should write an HDF5 file together.
 #include "io/parallel_io_mode.hpp"
 
 #include <fcntl.h>
@@ -15,16 +16,17 @@
 namespace catena {
 namespace {
 
-/// What ranks send to the root in one piece (chain/scene_windows.hpp). Small frames take 0.15 ms
-/// longer together, tens of ms where ranks share cores.
+/// Smallest write in bytes that all ranks share: what ranks send to the root in one piece
+/// (chain/scene_windows.hpp). Collective writing of smaller frames takes 0.15 ms longer, and tens
+/// of ms if ranks share cores.
 constexpr std::int64_t worth_it = 4 << 20;
 
-/// The same on every host that sees the same file.
+/// Inode and size of a file, which are the same on every host that sees the same file.
 using Marks = std::array<std::int64_t, 2>;
 
 Marks marks_of(std::string const& file) {
     int const descriptor =
-        ::open(file.c_str(), O_RDWR | O_CLOEXEC);  // asks the server, where there is one
+        ::open(file.c_str(), O_RDWR | O_CLOEXEC);  // open() asks the file server, if there is one
     if (descriptor < 0) return {-1, -1};
     struct stat status{};
     bool const told = ::fstat(descriptor, &status) == 0;
@@ -33,7 +35,7 @@ Marks marks_of(std::string const& file) {
     return {static_cast<std::int64_t>(status.st_ino), static_cast<std::int64_t>(status.st_size)};
 }
 
-/// The last rank on whose host the file is another one or none; -1: none.
+/// Returns the last rank whose host sees another file or none of that name, or -1. Collective.
 int rank_without(Communicator const& communicator, std::string const& file) {
     Marks const own = marks_of(file);
     Marks of_root = own;
@@ -41,7 +43,8 @@ int rank_without(Communicator const& communicator, std::string const& file) {
     return static_cast<int>(communicator.max(own == of_root ? -1 : communicator.rank()));
 }
 
-/// MPI's files take locks on many file systems, and end the program where they get none.
+/// True if the file system grants locks. MPI-IO locks files on many file systems and ends the
+/// program if it cannot.
 bool has_locks(std::string const& file) {
     int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
     struct flock lock{};
@@ -52,6 +55,7 @@ bool has_locks(std::string const& file) {
     return locked;
 }
 
+/// Reason why the root must write alone; empty if all ranks can write. Collective.
 std::string why_by_the_root(Communicator const& communicator, std::string const& file) {
     std::string const why = hdf5::why_not_by_all(communicator);
     if (communicator.sum(why.empty() ? 0 : 1) > 0)

@@ -1,4 +1,4 @@
-// How the ranks of a run write a file of HDF5's: the root alone, or all of them together.
+// Choice of who writes an HDF5 file: the root alone or all ranks together.
 #pragma once
 
 #include <cstdint>
@@ -10,30 +10,33 @@
 
 namespace catena {
 
-/// What CATENA_HDF5 wants: nothing (collective where that is possible), `root` or `collective` (of
-/// frames an error where it is not).
+/// Request made by CATENA_HDF5. best: variable unset, collective if possible; root; collective:
+/// frames that cannot be written together are an error.
 enum class RequestedIoMode { best, root, collective };
-/// InputError for other words.
+/// Parses the value of CATENA_HDF5. Throws InputError for unknown words.
 RequestedIoMode file_wish(std::string const& word);
-/// Of rank 0's environment: launchers bring variables to other hosts only when told to. Collective.
+/// Reads CATENA_HDF5 from rank 0's environment: launchers pass variables to other hosts only on
+/// request. Collective.
 RequestedIoMode requested_io_mode_of_run(Communicator const&);
 
+/// Mode in which a file is written.
 struct ParallelIoMode {
-    bool collective = false;
-    std::string text = "by the root";  // with the reason where several ranks might have; else
-                                       // "collective, 3 ranks"
-    std::string why_not = {};
+    bool collective = false;           // all ranks write
+    std::string text = "by the root";  // for the summary: with the reason if several ranks could
+                                       // have written; else "collective, 3 ranks"
+    std::string why_not = {};          // reason why ranks do not write together; may be empty
 };
+/// Mode of writing by the root, for the reason `why`.
 ParallelIoMode by_the_root(std::string const& why);
-/// For `file`, which the root has made, and so many bytes of `what` at once (the root knows): few
-/// are sooner written by one. Collective.
+/// Chooses the mode for `file`, which the root has created. `bytes`: size of one write of `what`,
+/// which the root knows. Small writes are faster by one rank. Collective.
 ParallelIoMode choose_file_way(Communicator const&, RequestedIoMode, std::string const& file,
                                std::int64_t bytes, std::string const& what);
-/// Has every rank do what brings it to a collective way, in steps: none begins before the one
-/// before has succeeded on all. Empty; or why some rank cannot. Collective.
+/// Runs `steps` on every rank, a step only after the preceding one has succeeded on all ranks.
+/// Returns an empty text, or the reason why some rank failed. Collective.
 std::string why_not_together(Communicator const&,
                              std::initializer_list<std::function<void()>> steps);
-/// InputError where collective writing was wished for and is not what became of it.
+/// Throws InputError if collective writing was requested but is not the mode.
 void require_wished(RequestedIoMode, ParallelIoMode const&, std::string const& file);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the check for valid UTF-8 and the replacement of control characters.
 #include "io/printable.hpp"
 
 #include <array>
@@ -8,9 +9,10 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 
-/// Bytes of the UTF-8 character at the start of `text`, 0 where there is none (RFC 3629: no
-/// overlong forms, surrogates, nor beyond U+10FFFF).
+/// Returns the bytes of the UTF-8 character at the start of `text`, or 0 if there is none. RFC 3629
+/// excludes overlong forms, surrogates and characters beyond U+10FFFF.
 std::size_t character_at(std::string_view text) {
+    // Ranges of the first and the second byte, and the length.
     struct Form {
         unsigned char first, last, second_from, second_to;
         std::size_t bytes;
@@ -37,8 +39,8 @@ std::size_t character_at(std::string_view text) {
     return 0;
 }
 
-/// U+2028 to U+202E and U+2066 to U+2069: ends of lines, and marks that turn around the text that
-/// follows.
+/// True for U+2028 to U+202E and U+2066 to U+2069: line separators, and marks that reverse the
+/// direction of the text that follows.
 bool rearranges_lines(std::string_view character) {
     bool const marks =
         character.starts_with("\xE2\x80") && character[2] >= '\xA8' && character[2] <= '\xAE';

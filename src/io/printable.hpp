@@ -1,4 +1,4 @@
-// Text from outside as it may be shown: on a terminal, in a page, in a table.
+// External text made safe to be shown on a terminal, in a page or in a table.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace catena {
 
-/// The text as valid UTF-8 without control characters: bytes that are not UTF-8 become U+FFFD,
-/// control characters (C0 but for the line's end and the tabulator, DEL, C1, and the marks of
-/// Unicode that end or turn around lines) become `?`.
+/// Returns the text as valid UTF-8 without control characters. Bytes that are not UTF-8 become
+/// U+FFFD. Control characters become `?`: C0 except line feed and tab, DEL, C1, and Unicode's line
+/// separators and direction marks.
 std::string printable(std::string_view text);
 
 }  // namespace catena

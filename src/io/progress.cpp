@@ -1,3 +1,4 @@
+// Implements the progress line.
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -12,9 +13,10 @@ namespace catena {
 namespace {
 
 constexpr double seconds_between_redraws = 0.2;
-constexpr double first_interval = 1, longest_interval = 30;  // seconds, of a log
+constexpr double first_interval = 1, longest_interval = 30;  // seconds between the lines of a log
 constexpr std::int64_t widest_bar = 30, narrowest_bar = 8;   // characters
 
+/// Formats a duration as "2 d 03 h", "1:02:03" or "2:03".
 std::string duration(double seconds) {
     if (!std::isfinite(seconds) || seconds > 1e8) return "?";
     auto const whole = static_cast<std::int64_t>(std::llround(seconds));
@@ -24,11 +26,13 @@ std::string duration(double seconds) {
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+/// Bar of `length` characters between brackets.
 std::string bar(double fraction, std::size_t length) {
     auto const filled = static_cast<std::size_t>(fraction * static_cast<double>(length));
     return "[" + std::string(filled, '=') + std::string(length - filled, ' ') + "]";
 }
 
+/// Columns of the terminal, or 80 if unknown.
 std::size_t width_of(int descriptor) {
     winsize size{};
     return ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;

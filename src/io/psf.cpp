@@ -1,3 +1,4 @@
+// Implements topology.psf.
 #include "io/psf.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@ namespace {
 
 using Bond = std::pair<std::int64_t, std::int64_t>;
 
-/// Of neighbours along chains; sites from 1.
+/// Bonds between neighbours along chains and between the ends of rings. Sites are numbered from 1.
 std::vector<Bond> bonds_of(Topology const& topology) {
     std::vector<Bond> bonds;
     for (Topology::Chain const& chain : topology.chains) {
@@ -23,7 +24,7 @@ std::vector<Bond> bonds_of(Topology const& topology) {
     return bonds;
 }
 
-/// No blank, which would end a field.
+/// Replaces blanks, which would end a field.
 std::string field(std::string text) {
     std::replace(text.begin(), text.end(), ' ', '_');
     return text.empty() ? "UNK" : text;

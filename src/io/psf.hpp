@@ -1,6 +1,7 @@
-// topology.psf: what topology.pdb has no room for, masses and bonds, as MDAnalysis and VMD read
-// them (https://www.ks.uiuc.edu/Research/vmd/current/devel.html, psfplugin: fields between blanks,
-// marked NAMD).
+// Writer of topology.psf: masses and bonds, for which topology.pdb has no room, in the form that
+// MDAnalysis and VMD read. Source of the format:
+// https://www.ks.uiuc.edu/Research/vmd/current/devel.html, psfplugin; fields between blanks, marked
+// NAMD.
 #pragma once
 
 #include <string>
@@ -10,14 +11,15 @@
 
 namespace catena {
 
-/// A, B, ..., Z, AA, AB, ...: chain names of any width.
+/// Returns the chain name A, B, ..., Z, AA, AB, ..., of any length.
 std::string chain_name(std::size_t number);
 
-/// As the formats hold it: three characters of printable ASCII at most, UNK where there is none.
+/// Residue name of a site in the form that the formats hold: at most three characters of printable
+/// ASCII. UNK if the site has no name.
 std::string residue_of(Topology const&, std::size_t site);
 
-/// The whole file: a line a site, in the units of the scene; charges are 0, for the force field's
-/// are not the topology's.
+/// Writes the whole file: one line per site, in the units of the scene. Charges are 0, because the
+/// force field's charges are not part of the topology.
 void write_psf(AtomicFile& out, Topology const&);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the request made by the environment variable CATENA_HDF5.
 #include <cstdlib>
 #include <span>
 

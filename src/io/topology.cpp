@@ -1,5 +1,5 @@
-// topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) with
-// topology.psf and, where its columns are too narrow, topology.cif.
+// Writers of topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) and
+// topology.psf. topology.cif replaces the latter if the columns of PDB are too narrow.
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
@@ -19,11 +19,11 @@
 namespace catena {
 namespace {
 
-constexpr std::int64_t most_pdb_serials = 99999;
+constexpr std::int64_t most_pdb_serials = 99999;  // largest serial number in five decimal columns
 constexpr std::string_view chain_letters =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
-/// Printable ASCII, which is all that these formats hold.
+/// Returns the text with all but printable ASCII replaced, which is all that these formats hold.
 std::string plain(std::string_view text) {
     std::string copy(text);
     for (char& c : copy)
@@ -31,8 +31,8 @@ std::string plain(std::string_view text) {
     return copy;
 }
 
-/// Serial numbers as they are up to 99,999, then hybrid-36 (http://cci.lbl.gov/hybrid_36): A0000,
-/// A0001, ..., ZZZZZ, a0000, ...
+/// Returns a serial number: decimal up to 99,999, then hybrid-36 (http://cci.lbl.gov/hybrid_36):
+/// A0000, A0001, ..., ZZZZZ, a0000, ...
 std::string serial(std::int64_t number) {
     constexpr std::int64_t letters = 26 * 36 * 36 * 36 * 36;
     if (number <= most_pdb_serials) return fmt::format(FMT_COMPILE("{:5}"), number);
@@ -48,8 +48,8 @@ std::string serial(std::int64_t number) {
     return text;
 }
 
-/// A number in `width` columns with up to 3 decimals, fewer where it is large; blank-padded 0.000
-/// where even its integer part is too wide.
+/// Returns a number in `width` columns with up to 3 decimals, fewer if it is large. A number whose
+/// integer part is too wide becomes a blank-padded 0.000.
 std::string fixed(double value, std::size_t width) {
     for (int places = 3; places >= 0; --places)
         if (Decimals const number(value, places); number.text().size() <= width)
@@ -57,8 +57,9 @@ std::string fixed(double value, std::size_t width) {
     return fixed(0.0, width);
 }
 
-/// Angstrom for each unit of the scene: 10 for nm; with `units: si` the power of ten that makes a
-/// typical link 1 to 10 Angstrom long. `positions`: of the first sites.
+/// Returns the number of Angstrom per length unit of the scene: 10 for nm. With `units: si` it is
+/// the power of ten that makes a typical link 1 to 10 Angstrom long. `positions`: those of the
+/// first sites.
 double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& positions) {
     if (!topology.si) return 10;
     std::vector<double> links;
@@ -75,6 +76,7 @@ double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& posi
                                                  : 1;
 }
 
+/// Writes title, remarks and box of topology.pdb. `scale`: Angstrom per length unit.
 void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     std::string const title = plain(topology.title);
     for (std::size_t at = 0, part = 1; at < title.size(); at += 68, ++part)
@@ -93,6 +95,7 @@ void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     }
 }
 
+/// Writes the bonds along chains and between the ends of rings (CONECT).
 void write_bonds(AtomicFile& out, Topology const& topology) {
     for (Topology::Chain const& chain : topology.chains)
         for (std::int64_t k = 0; k < chain.count; ++k) {
@@ -107,6 +110,7 @@ void write_bonds(AtomicFile& out, Topology const& topology) {
         }
 }
 
+/// Writes topology.cif up to the column names of its atoms.
 void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
     std::string title = plain(topology.title);
     std::replace(title.begin(), title.end(), '"', '\'');
@@ -144,8 +148,9 @@ std::string residue_of(Topology const& topology, std::size_t site) {
     return name.substr(0, 3);
 }
 
+/// State of a TopologyWriter between its calls.
 struct TopologyWriter::Files {
-    /// Of neighbouring sites, in both files.
+    /// Formatted lines of consecutive sites, for both files.
     struct Lines {
         fmt::memory_buffer pdb, cif;
     };
@@ -163,6 +168,7 @@ struct TopologyWriter::Files {
         cif.emplace(written[1]);
     }
 
+    /// Determines the scale from the first positions and writes the heads of the files.
     void begin(std::vector<Vec3> const& positions) {
         scale = angstrom_per_unit(topology, positions);
         write_remarks(pdb, topology, scale);
@@ -170,6 +176,8 @@ struct TopologyWriter::Files {
         begun = true;
     }
 
+    /// Formats the lines of the next sites by the executor's threads, then writes both files
+    /// concurrently.
     void put(std::span<Vec3 const> positions, Executor const& executor) {
         std::int64_t const count = std::ssize(positions),
                            parts = std::min<std::int64_t>(executor.threads(), count);
@@ -194,7 +202,7 @@ struct TopologyWriter::Files {
         next += count;
     }
 
-    /// Sites [begin, end) of those that come next.
+    /// Formats the lines of the sites next + [begin, end). `positions` starts at the site `next`.
     void format(std::span<Vec3 const> positions, std::int64_t begin, std::int64_t end,
                 Lines& to) const {
         to.pdb.clear();
@@ -214,7 +222,7 @@ struct TopologyWriter::Files {
         }
     }
 
-    /// `number`: in its chain, from 1.
+    /// Formats the lines of one site. `number`: position in its chain, from 1; `x`: Angstrom.
     void add(std::int64_t site, std::int64_t number, std::string const& name, std::size_t chain,
              Vec3 const& x, Lines& to) const {
         std::string const residue = residue_of(topology, static_cast<std::size_t>(site));
@@ -230,6 +238,7 @@ struct TopologyWriter::Files {
                        Decimals(x[1], 3).text(), Decimals(x[2], 3).text(), number, name);
     }
 
+    /// Writes the ends of the files and publishes them.
     void finish() {
         if (!begun) begin({});
         if (sites <= most_pdb_serials) write_bonds(pdb, topology);
@@ -248,9 +257,9 @@ struct TopologyWriter::Files {
     AtomicFile pdb;
     std::optional<AtomicFile> cif, psf;
     std::vector<std::string> written;
-    std::vector<Lines> lines;          // a thread
-    std::int64_t sites = 0, next = 0;  // in all; the one that comes next
-    double scale = 1;
+    std::vector<Lines> lines;          // one entry per thread
+    std::int64_t sites = 0, next = 0;  // total number; index of the next site
+    double scale = 1;                  // Angstrom per length unit
     bool begun = false;
 };
 

@@ -1,4 +1,4 @@
-// The writer of trajectory.h5md; what lies where in the file: trajectory_layout.hpp.
+// Writer of trajectory.h5md. Layout of the file: trajectory_layout.hpp.
 #include <algorithm>
 #include <filesystem>
 
@@ -23,8 +23,8 @@ constexpr double seconds_between_flushes = 10;
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double),
               "frames are handed to HDF5 as they lie");
 
-/// Metadata stay in memory between flushes: a killed run leaves the file as its last flush left it,
-/// whole.
+/// Returns access properties that keep metadata in memory between flushes. A killed run thus leaves
+/// the file as its last flush left it, complete.
 Properties access_of(Writers const& writers, std::string const& file) {
     Properties access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
     H5AC_cache_config_t cache;
@@ -39,7 +39,7 @@ Properties access_of(Writers const& writers, std::string const& file) {
     return access;
 }
 
-/// Between two frames, what whoever writes the next one has to know.
+/// State between two frames that the next writer of the file needs.
 struct FrameContext {
     TrajectoryContents contents;
     Vec3 box;
@@ -48,6 +48,7 @@ struct FrameContext {
 };
 static_assert(std::is_trivially_copyable_v<FrameContext>, "goes from rank to rank as it lies");
 
+/// Writer of one H5MD file, by one rank or by all ranks together.
 class H5mdWriter final : public TrajectoryWriter {
   public:
     H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces,
@@ -64,7 +65,7 @@ class H5mdWriter final : public TrajectoryWriter {
         flush();
     }
 
-    /// Goes on with a file that a writer has closed.
+    /// Continues a file that another writer has closed.
     H5mdWriter(std::string file, FrameContext const& standing, std::unique_ptr<Writers> writers)
         : name_(std::move(file)), writers_(std::move(writers)), at_(standing) {
         Quiet const quiet;
@@ -80,7 +81,8 @@ class H5mdWriter final : public TrajectoryWriter {
         }
     }
 
-    /// Others may not know that this rank ends here: then nothing is closed together.
+    /// Leaves the file open if all ranks write: the others may not know that this rank stops here,
+    /// and closing is collective.
     ~H5mdWriter() override {
         Quiet const quiet;
         if (writers_->are_several()) leave_open();
@@ -122,7 +124,7 @@ class H5mdWriter final : public TrajectoryWriter {
     }
     void close() override {
         if (!file_) return;
-        // A full disk shows at the flush; H5Fclose reports success all the same.
+        // A full disk causes an error at the flush; H5Fclose always reports success.
         flush();
         Quiet const quiet;
         for (Series* series : series_.present()) series->close(place());
@@ -134,6 +136,7 @@ class H5mdWriter final : public TrajectoryWriter {
     bool is_for_all() const { return series_.position.is_for_all(place()); }
 
   private:
+    /// Runs `action`. After a failure the file stays as its last flush left it.
     template <class Action>
     void whole_or_as_flushed(Action const& action) {
         Quiet const quiet;
@@ -149,6 +152,7 @@ class H5mdWriter final : public TrajectoryWriter {
         file_.release();
     }
 
+    /// Throws ComputationError if the arrays of a part do not fit the topology or the parts before.
     void require_fit(Frame const& part) {
         TrajectoryContents const& contents = at_.contents;
         std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
@@ -164,6 +168,7 @@ class H5mdWriter final : public TrajectoryWriter {
         bodies_ += bodies;
     }
 
+    /// True if the arrays of bodies have the sizes that the contents require.
     bool states_fit(Frame const& part) const {
         std::size_t const bodies = part.orientations.size();
         auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == bodies; };
@@ -174,6 +179,7 @@ class H5mdWriter final : public TrajectoryWriter {
                fits(part.joint_rates.size(), at_.contents.joint_states);
     }
 
+    /// Reserves disk space for the next frame. Collective.
     void make_room_for_frame() {
         whole_or_as_flushed([&] {
             hsize_t more = 0;
@@ -183,6 +189,7 @@ class H5mdWriter final : public TrajectoryWriter {
         });
     }
 
+    /// Writes the arrays of the parts' sites and bodies.
     void put_parts(std::span<Frame const> parts) {
         std::vector<Series::Part> sites, bodies;
         for (Frame const& part : parts) {
@@ -211,6 +218,7 @@ class H5mdWriter final : public TrajectoryWriter {
         put_all(series_.joint_rate, bodies, parts, &Frame::joint_rates);
     }
 
+    /// Writes the values of all parts by a single call of HDF5.
     template <class Value>
     void put_all(Series& series, std::span<Series::Part const> where, std::span<Frame const> parts,
                  std::vector<Value> Frame::* values) {
@@ -223,6 +231,7 @@ class H5mdWriter final : public TrajectoryWriter {
         series.put(place(), at_.frames, where, joined.data(), writers_->transfer());
     }
 
+    /// Separates pairs [torque, force] into torques and forces.
     static std::pair<std::vector<double>, std::vector<double>> halves_of(
         std::span<Frame const> parts, std::vector<Vector<double, 6>> Frame::* wrenches) {
         std::pair<std::vector<double>, std::vector<double>> halves;
@@ -234,6 +243,7 @@ class H5mdWriter final : public TrajectoryWriter {
         return halves;
     }
 
+    /// Writes the values of the whole frame, its step last, and flushes if that is due.
     void end_frame(std::vector<Vector<double, 6>> const& tip_forces) {
         Frame tips;
         tips.tip_forces = tip_forces;
@@ -248,7 +258,7 @@ class H5mdWriter final : public TrajectoryWriter {
         ++at_.frames;
         at_.last_step = step_;
         bool const at_once = std::exchange(
-            is_first_here_, false);  // so that a run can be looked at from its first frame on
+            is_first_here_, false);  // the file can be inspected from its first frame on
         bool const due = writers_->is_first() &&
                          (at_once || seconds_now() - flushed_ >= seconds_between_flushes);
         if (writers_->sum(due ? 1 : 0) == 0) return;
@@ -256,6 +266,7 @@ class H5mdWriter final : public TrajectoryWriter {
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
         flushed_ = seconds_now();
     }
+    /// Grows a series on all ranks; only the first rank writes values.
     void put_from_first(Series& series, void const* values) {
         series.put(place(), at_.frames, writers_->is_first() ? values : nullptr);
     }
@@ -268,6 +279,7 @@ class H5mdWriter final : public TrajectoryWriter {
         series_ = create_trajectory(place(), topology, at_.contents);
     }
 
+    /// Opens an existing file after a trial, and removes the frames after the continuation's step.
     void open(Continuation const& go_on) {
         if (!std::filesystem::exists(name_))
             throw InputError("no trajectory to go on with", name_,
@@ -301,7 +313,7 @@ class H5mdWriter final : public TrajectoryWriter {
         for (Series* series : series_.present()) series->cut(place(), at_.frames);
     }
 
-    /// In a trial: all that going on will read, and the places of the last frame's numbers.
+    /// Reads, in a trial process, all that a continuation reads and a number of each last row.
     void look_through() {
         file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name_, writing));
         series_ = open_trajectory(place(), at_.contents);
@@ -309,7 +321,7 @@ class H5mdWriter final : public TrajectoryWriter {
         for (Series const* series : series_.present()) series->look_at_last(place());
     }
 
-    /// The steps of the frames that are whole.
+    /// Returns the steps of the frames that are complete.
     std::vector<std::int64_t> read_steps() {
         hsize_t whole = series_.step.frames(place());
         std::vector<std::int64_t> steps(whole);
@@ -322,6 +334,7 @@ class H5mdWriter final : public TrajectoryWriter {
         return steps;
     }
 
+    /// Throws ComputationError for a frame that cannot be written.
     [[noreturn]] void refuse(std::int64_t step, std::string const& why) const {
         throw ComputationError("cannot write the trajectory (" + name_ + ", step " +
                                std::to_string(step) + "): " + why);
@@ -335,11 +348,11 @@ class H5mdWriter final : public TrajectoryWriter {
     FrameContext at_;
     File file_;
     TrajectorySeries series_;
-    std::int64_t step_ = 0;  // of the frame on its way
+    std::int64_t step_ = 0;  // current frame
     double time_ = 0;
-    std::size_t sites_ = 0, bodies_ = 0;  // of it, from this rank, so far
-    double flushed_ = 0;
-    bool is_first_here_ = true;  // the next frame
+    std::size_t sites_ = 0, bodies_ = 0;  // this rank's part of the frame so far
+    double flushed_ = 0;                  // time of the last flush, s
+    bool is_first_here_ = true;           // no frame has been written here yet
 };
 
 }  // namespace

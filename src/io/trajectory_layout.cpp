@@ -1,3 +1,4 @@
+// Implements the creation and the opening of a trajectory's groups and datasets.
 #include "io/trajectory_layout.hpp"
 
 #include <pwd.h>
@@ -14,6 +15,7 @@ namespace {
 constexpr std::int64_t format_version = 1;
 std::string const position_group = "particles/trajectory/position";
 
+/// Texts of the attributes `unit`.
 struct Units {
     std::string length, time, velocity, mass, torque, force, rate;
 };
@@ -28,7 +30,7 @@ std::string author() {
     return user != nullptr ? user->pw_name : "unknown";
 }
 
-/// Makes the objects of a new file.
+/// Creates the groups and datasets of a new file.
 class Builder {
   public:
     Builder(Place const& root, Topology const& topology, TrajectoryContents const& contents)
@@ -58,6 +60,7 @@ class Builder {
         return {owner.get(), root_.file, root_.doing};
     }
 
+    /// Writes /h5md: version, author, creator and module of units.
     void describe_file() {
         Group const h5md = make_group(root_, "h5md");
         put_attribute(at(h5md), "version", std::array<std::int64_t, 2>{1, 1});
@@ -72,6 +75,7 @@ class Builder {
         put_text(at(units), "system", "SI");
     }
 
+    /// Writes /catena, Catena's own group.
     void add_own_group() {
         Group const own = make_group(root_, "catena");
         put_attribute(at(own), "format_version", format_version);
@@ -102,6 +106,7 @@ class Builder {
             put_array(at(*element), "chain", topology_.tips);
     }
 
+    /// Adds the coordinates of bodies and of joints.
     void add_coordinates(Place const& own) {
         std::string const at_centre = "W, of the centre of mass";
         if (contents_.body_states) {
@@ -119,6 +124,7 @@ class Builder {
                     "of the inboard joint, as qd in the scene");
     }
 
+    /// Writes /catena/chains.
     void describe_chains(Place const& own) {
         Group const chains = make_group(own, "chains");
         std::vector<std::int64_t> first, count, beads, ring;
@@ -137,7 +143,8 @@ class Builder {
         put_array(at(chains), "name", name);
     }
 
-    /// A group {step, time, value}. The first one makes step and time, the others link them.
+    /// Creates a group {step, time, value}. The first call creates step and time; later calls link
+    /// them.
     Group add_element(Place const& parent, std::string const& name, std::vector<hsize_t> row,
                       std::string const& unit, Series& value, std::string const& frame) {
         Group element = make_group(parent, name);
@@ -159,6 +166,7 @@ class Builder {
         return element;
     }
 
+    /// Writes the box, with edges in every frame if it is periodic.
     void add_box(Place const& sites) {
         Group const box = make_group(sites, "box");
         put_attribute(at(box), "dimension", std::int64_t{3});
@@ -181,6 +189,7 @@ class Builder {
         std::string("restart with the scene that wrote it, or ") + Continuation::way_beside);
 }
 
+/// Throws InputError if the presence of `group` differs from `wanted`.
 void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
     bool const present = has(root, group);
     if (present != wanted)
@@ -238,7 +247,8 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
             "has " +
                 (series.position.row().empty() ? "no" : std::to_string(series.position.row()[0])) +
                 " sites but the scene " + std::to_string(contents.sites));
-    std::string const unit = text_of("catena", "length_unit");  // none in files of earlier versions
+    std::string const unit =
+        text_of("catena", "length_unit");  // absent in files of earlier versions
     if (!unit.empty() && unit != units_of(contents.si).length)
         refuse(root, "is in " + unit + ", unlike the scene");
     require(root, "particles/trajectory/velocity", contents.velocities, "velocities");
@@ -272,7 +282,7 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
     series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);
     if (!has(root, "catena/tip_force"))
-        return series;  // none, or a file of a version that did not write them
+        return series;  // no tips, or a file of a version that did not write them
     series.tip_torque = Series::open(root, "catena/tip_torque/value", H5T_NATIVE_DOUBLE);
     series.tip_force = Series::open(root, "catena/tip_force/value", H5T_NATIVE_DOUBLE);
     if (series.tip_force.row()[0] != contents.tips) refuse(root, "has another number of tips");

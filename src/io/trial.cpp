@@ -1,3 +1,4 @@
+// Implements trials by fork(), resource limits and waitpid().
 #include "io/trial.hpp"
 
 #include <fcntl.h>
@@ -18,14 +19,16 @@
 namespace catena {
 namespace {
 
-double constexpr best_compression = 1100;  // deflate makes 1032 bytes of one
-double constexpr seconds_per_byte = 1e-8;  // of what was compressed
+double constexpr best_compression = 1100;  // deflate expands a byte to 1032 at most
+double constexpr seconds_per_byte = 1e-8;  // uncompressed bytes
 
-/// What breaking code ends with. Other signals come from outside and say nothing about a file.
+/// Signals that end a crashing process. Other signals are sent from outside and say nothing about a
+/// file.
 constexpr int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU};
 constexpr int from_outside[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
 
-/// Children are waited for even where whoever started the process has it ignore their ends.
+/// Restores the default handling of SIGCHLD, so that children can be waited for even if the parent
+/// process made this one ignore their ends.
 class Waiting {
   public:
     Waiting() {
@@ -41,6 +44,7 @@ class Waiting {
     struct sigaction before_{};
 };
 
+/// Bytes of address space that this process uses.
 std::int64_t address_space() {
     std::ifstream in("/proc/self/statm");
     std::int64_t pages = 0;
@@ -48,6 +52,7 @@ std::int64_t address_space() {
     return pages * sysconf(_SC_PAGESIZE);
 }
 
+/// Sets a soft limit of this process, at most its hard limit.
 void limit(__rlimit_resource_t resource, std::int64_t most) {
     rlimit limits{};
     if (getrlimit(resource, &limits) != 0) return;
@@ -55,7 +60,8 @@ void limit(__rlimit_resource_t resource, std::int64_t most) {
     setrlimit(resource, &limits);
 }
 
-/// A signal ends it without a word, a dump or a handler of MPI's.
+/// Silences the child: a fault ends it without output, dump or handler of MPI. Signals from outside
+/// are ignored, and the limits are set.
 void become_silent(TrialLimits const& limits) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_DUMPABLE, 0);
@@ -67,11 +73,12 @@ void become_silent(TrialLimits const& limits) {
     limit(RLIMIT_AS, address_space() + limits.bytes);
 }
 
+/// Runs the action in the child process and ends that process.
 [[noreturn]] void try_it(std::function<void()> const& action, TrialLimits const& limits) {
     become_silent(limits);
     try {
         action();
-    } catch (...) {  // the process itself comes to that and says it
+    } catch (...) {  // the process itself will fail alike and report it
     }
     ::_exit(0);
 }

@@ -1,4 +1,5 @@
-// What a damaged file does to a library that trusts it is found out in a child process.
+// Trial of an action in a child process: a library that crashes on a damaged file ends only the
+// child.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +8,17 @@
 
 namespace catena {
 
-/// What a trial may take beyond what the process has.
+/// Resources that a trial may use in addition to those of this process.
 struct TrialLimits {
-    std::int64_t bytes = 0;    // of address space
-    std::int64_t seconds = 0;  // of processor time
+    std::int64_t bytes = 0;    // address space
+    std::int64_t seconds = 0;  // processor time
 };
-/// For reading a file: more than a compressed one of its size can need.
+/// Limits for reading a file: more than a compressed file of its size can need.
 TrialLimits limits_for_file(std::string const& file);
 
-/// Runs `action` in a copy of this process, which keeps nothing of what it changes and says
-/// nothing. Returns an empty text where it came back or threw, and where the system gives no copy;
-/// else how the copy ended ("Segmentation fault").
+/// Runs `action` in a copy of this process, whose changes and output are discarded. Returns an
+/// empty text if the action returned or threw, or if the system cannot make a copy. Otherwise
+/// returns how the copy ended ("Segmentation fault").
 std::string trial(std::function<void()> const& action, TrialLimits const& limits);
 
 }  // namespace catena

@@ -1,5 +1,5 @@
-// Who has an HDF5 file open and writes into it: one rank for itself, or all of them together, each
-// what is its own. What all do together is collective: every rank calls it.
+// Writers of an HDF5 file: one rank alone, or all ranks together, each with its own data.
+// Operations of all ranks together are collective.
 #pragma once
 
 #include <memory>
@@ -10,37 +10,42 @@
 
 namespace catena::hdf5 {
 
+/// Access of one rank or of all ranks to an HDF5 file. Error messages read "cannot <doing>
+/// (<file>): <cause>".
 class Writers {
   public:
     virtual ~Writers() = default;
     virtual bool are_several() const = 0;
-    /// Of them, the one that writes what does not belong to a rank.
+    /// True on the rank that writes the data that belong to no particular rank.
     virtual bool is_first() const = 0;
-    /// Makes H5Fopen and H5Fcreate theirs.
+    /// Sets up `access`, the property list with which H5Fopen or H5Fcreate then opens the file.
     virtual void prepare(Properties const& access, std::string const& file,
                          std::string const& doing) const = 0;
-    /// To be told of the file once it is open.
+    /// Registers a file after it has been opened.
     virtual void watch(File const&, std::string const& file, std::string const& doing) = 0;
-    /// For H5Dwrite.
+    /// Property list for H5Dwrite.
     virtual hid_t transfer() const = 0;
+    /// Sum over the writing ranks.
     virtual std::int64_t sum(std::int64_t value) const = 0;
-    /// On the disk for what a flush writes, and for `more` bytes that are not in the file yet: a
-    /// full one is found before anything in the file is overwritten.
+    /// Reserves disk space for what a flush writes and for `more` bytes that are not in the file
+    /// yet. A full disk is thus detected before anything in the file is overwritten.
     virtual void make_room(File const&, hsize_t more, std::string const& file,
                            std::string const& doing) = 0;
-    /// Everything written so far reaches the disk.
+    /// Flushes everything written so far to disk.
     virtual void flush_to_disk(File const&, std::string const& file,
                                std::string const& doing) const = 0;
-    /// For a file in which something could not be written: as its last flush left it, whatever HDF5
-    /// still does to it. False where HDF5 is to do nothing more to it: it and what is open in it
-    /// are then to be left open.
+    /// Keeps a file as its last flush left it after a failed write, whatever HDF5 still does to it.
+    /// Returns false if HDF5 must not touch the file again: the file and its open objects must then
+    /// stay open.
     virtual bool leave_as_flushed(File const&) const = 0;
 };
 
+/// Writer for a single rank.
 std::unique_ptr<Writers> one_writer();
-/// Precondition: why_not_by_all() is empty.
+/// Writers for all ranks of the communicator. Precondition: why_not_by_all() is empty.
 std::unique_ptr<Writers> all_writers(Communicator const&);
-/// What keeps this rank from writing with the others: "this build's HDF5 is serial".
+/// Reason why this rank cannot write with the others ("this build's HDF5 is serial"); empty if it
+/// can.
 std::string why_not_by_all(Communicator const&);
 
 }  // namespace catena::hdf5

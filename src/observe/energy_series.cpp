@@ -1,3 +1,4 @@
+// Implements the bounded series of energies.
 #include "observe/energy_series.hpp"
 
 #include <algorithm>
@@ -7,13 +8,15 @@
 namespace catena {
 namespace {
 
-constexpr std::size_t numbers_before = 5, numbers_of_entry = 5;
-/// Frames of an entry: more than any run has.
+constexpr std::size_t numbers_before = 5,
+                      numbers_of_entry = 5;  // numbers of a state before its entries, and per entry
+/// Bound on frames per entry: more than any run has.
 constexpr double most_frames = 1e15;
 
-/// Not a number: kept, so that what is not finite is seen.
+/// Returns the larger number. A NaN is kept, so that values that are not finite show.
 double larger_of(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
+/// True for an integer from 0 to `most_frames`.
 bool is_count(double value) {
     return value >= 0 && value <= most_frames && value == std::floor(value);
 }

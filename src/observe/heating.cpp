@@ -1,3 +1,4 @@
+// Implements the bound on the heating by external loads.
 #include "observe/heating.hpp"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace catena {
 namespace {
 
-/// The inverse of a body's inertia; not finite where it has none about some axis.
+/// Inverse of a body's inertia; not finite if the body has none about some axis.
 Sym3 inverse_of(Sym3 const& m) {
     Sym3 adjoint;
     adjoint(0, 0) = m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2);
@@ -23,7 +24,7 @@ Sym3 inverse_of(Sym3 const& m) {
     return adjoint;
 }
 
-/// The largest eigenvalue at most: the root of the sum of squares.
+/// Upper bound on the largest eigenvalue: the root of the sum of squares (Frobenius norm).
 double largest_of(Sym3 const& m) {
     double sum = 0;
     for (int i = 0; i < 3; ++i)
@@ -31,22 +32,23 @@ double largest_of(Sym3 const& m) {
     return std::sqrt(sum);
 }
 
-/// Magnitudes of what acts on one body, each divided by the root of what it accelerates, added up:
-/// loads may come to point the same way.
+/// Sum of the loads on one body, each divided by the root of the inertia that it accelerates.
+/// Magnitudes are added, since loads may have equal directions at some time.
 class Pushes {
   public:
     Pushes(double mass, Sym3 const& inertia) : mass_(mass), inverse_(inverse_of(inertia)) {}
     void force(double size) {
         if (size > 0) sum_ += size / std::sqrt(mass_);
     }
-    /// Of any direction.
+    /// Adds a torque of any direction.
     void torque(double size) {
         if (size > 0) sum_ += size * std::sqrt(largest_of(inverse_));
     }
-    /// In the body's axes.
+    /// Adds a torque with components along the body's axes.
     void torque(Vec3 const& torque) {
         if (norm(torque) > 0) sum_ += std::sqrt(dot(torque, inverse_ * torque));
     }
+    /// f M^-1 f of this body at most.
     double square() const { return sum_ * sum_; }
 
   private:
@@ -55,14 +57,14 @@ class Pushes {
     double sum_ = 0;
 };
 
-/// A joint's torque on its outboard body and the opposite on the body before, with the arms at
-/// which a sliding joint's force acts.
+/// Adds a joint's torque on its outboard body and the opposite torque on its inboard body. A
+/// prismatic joint's force acts with its arms on both.
 void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
     Vec3 const& torque = b.torque[k];
     double size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
     if (b.joint[k] == JointType::universal)
-        size /=
-            norm(cross(b.first_axis[k], b.axis[k]));  // axes that are not perpendicular need more
+        size /= norm(cross(b.first_axis[k],
+                           b.axis[k]));  // axes that are not perpendicular require larger torques
     Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
     switch (b.joint[k]) {
         case JointType::revolute:
@@ -82,7 +84,8 @@ void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes)
     }
 }
 
-/// f M^-1 f at most: what bodies that no joint holds would take up.
+/// Upper bound of f M^-1 f: the value for bodies that no joint holds. `gravity`: acceleration, 0 if
+/// it does not count.
 double square_of(ChainSpec const& chain, double gravity) {
     double sum = 0;
     for (double const mass : chain.beads.mass) sum += mass * gravity * gravity;
@@ -100,6 +103,7 @@ double square_of(ChainSpec const& chain, double gravity) {
     return sum;
 }
 
+/// True if the chain has prescribed motions, joint torques or wrenches.
 bool has_load(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
     return !b.driven.empty() ||
@@ -111,6 +115,7 @@ bool has_load(ChainSpec const& chain) {
 
 }  // namespace
 
+/// x / tanh x is 1 + x^2 / 3 for small x.
 double drift_of_step(DynamicsSpec const& d) {
     double const x = 0.5 * d.friction * d.step;
     return x < 1e-4 ? 1 : x / std::tanh(x);

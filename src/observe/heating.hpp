@@ -1,4 +1,4 @@
-// What loads from outside add to the kinetic energy of chains under a thermostat.
+// Kinetic energy that external loads add to chains under a thermostat.
 #pragma once
 
 #include <string>
@@ -7,24 +7,24 @@
 
 namespace catena {
 
-/// Gravity, constant wrenches and joint torques do work on chains, which friction carries away.
-/// Friction takes kinetic energy at the rate 2 friction (K - K_equilibrium), so that work of power
-/// P raises the mean of K by P / (2 friction). A constant load f, seen from the coordinates, gives
-/// at most P = f M^-1 f / friction: exactly that to a free body, less where potentials or joints
-/// hold it back.
+/// Upper bound on the heating by external loads: gravity, constant wrenches and joint torques,
+/// whose work on chains is removed by friction. Friction removes kinetic energy at the rate 2
+/// friction (K - K_equilibrium), so that work of power P raises the mean of K by P / (2 friction).
+/// The power of a constant load f in coordinates is at most P = f M^-1 f / friction. A free body
+/// reaches exactly that; potentials and joints reduce it.
 struct Heating {
-    bool is_pushed = false;  // there are such loads
-    double excess = 0;  // K: the most by which they raise the mean kinetic temperature; gravity
-                        // counts where `with_gravity` says so
-    std::string
-        unknown;  // why no bound can be given, e.g. "motions are prescribed"; empty where one can
+    bool is_pushed = false;  // external loads exist
+    double excess =
+        0;  // largest rise of the mean kinetic temperature, K; includes gravity with `with_gravity`
+    std::string unknown;  // reason why no bound can be computed, e.g. "motions are prescribed";
+                          // empty if there is one
 };
-/// How much faster than by load / friction a step drifts under a constant load: (x / tanh x), x =
-/// friction * step / 2, of schemes that drift in halves about an exact thermostat (BAOAB;
-/// Leimkuhler & Matthews, Molecular Dynamics, 2015, ch. 7). 1 in the limit of short steps.
+/// Ratio of the drift of a step under a constant load to load / friction: x / tanh x with x =
+/// friction * step / 2. It holds for schemes that drift in halves about an exact thermostat (BAOAB;
+/// Leimkuhler & Matthews, Molecular Dynamics, 2015, ch. 7). The limit for short steps is 1.
 double drift_of_step(DynamicsSpec const&);
-/// Of a scene whose integrator has a thermostat with friction. `with_gravity`: frames do not tell
-/// gravity's potential energy.
+/// Computes the heating of a scene whose integrator has a thermostat with friction. `with_gravity`:
+/// frames do not contain gravity's potential energy, so that its work counts as heating.
 Heating heating_of(Scene const&, bool with_gravity);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements observables: energies, temperature, constraint error and shapes of chains.
 #include "observe/observables.hpp"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ double Shape::unweighted_radius_of_gyration() const {
 
 namespace {
 
+/// Column of a chain's shape and the function that computes it.
 struct ShapeColumn {
     char const* name;
     double (Shape::*value)() const;
@@ -65,6 +67,7 @@ constexpr ShapeColumn shape_columns[] = {{"radius_of_gyration", &Shape::radius_o
                                          unweighted,
                                          {"end_to_end_distance", &Shape::end_to_end_distance}};
 
+/// True if the scene selects a group of columns; an empty selection excludes the unweighted radius.
 bool asks_for(Scene const& scene, std::string const& name) {
     auto const& asked = scene.output.observables;
     if (asked.empty()) return name != unweighted.name;
@@ -80,6 +83,7 @@ Observables::Observables(Scene const& scene, Topology const& topology,
     : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)), kinetic_(scene) {
     for (ChainSpec const& chain : scene.chains)
         has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
+    // Rotors of implicit springs hold kinetic energy that frames lack, so there is no temperature.
     has_temperature_ = has_temperature_ && dof_ > 0 &&
                        !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
     std::string const energy = scene.si ? " [J]" : " [kJ/mol]",

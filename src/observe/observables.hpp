@@ -1,4 +1,4 @@
-// The numbers of observables.csv, on rank 0, from bodies that come in scene order.
+// Values of observables.csv, computed on rank 0 from bodies that arrive in scene order.
 #pragma once
 
 #include <string>
@@ -9,74 +9,78 @@
 
 namespace catena {
 
-/// Of all chains (scene/freedom.hpp).
+/// Number of degrees of freedom of all chains (scene/freedom.hpp).
 std::int64_t degrees_of_freedom(Scene const&);
 
-/// Kinetic energy of all bodies. `snapshot` in scene order.
+/// Returns the kinetic energy of all bodies, kJ/mol (J with `units: si`). `snapshot` in scene
+/// order.
 double kinetic_energy(Scene const&, ChainSystem::Snapshot const&);
 
-/// The same from parts of the scene as they come.
+/// Kinetic energy of a scene whose bodies are added in parts, in scene order.
 class KineticEnergy {
   public:
     explicit KineticEnergy(Scene const& scene) : scene_(&scene) {}
-    /// The next bodies.
+    /// Adds the next bodies.
     void add(ChainSystem::Snapshot const&);
     double value() const { return sum_; }
 
   private:
     Scene const* scene_;
-    std::size_t chain_ = 0, body_ = 0;  // of the next one
+    std::size_t chain_ = 0, body_ = 0;  // indices of the next body
     double sum_ = 0;
 };
 
-/// Of a chain's sites as they come, in one pass: mean and square follow Welford (Technometrics 4,
-/// 419, 1962).
+/// Shape of one chain, whose sites are added in their order. Mean and square are updated by the
+/// formulas of Welford (Technometrics 4, 419, 1962).
 class Shape {
   public:
     void add(double mass, Vec3 const& position);
     double radius_of_gyration()
-        const;  // weighted with masses: sqrt(sum m |x - x_m|^2 / sum m), x_m the centre of mass
-    double unweighted_radius_of_gyration() const;  // every site counts one
+        const;  // weighted by masses: sqrt(sum m |x - x_m|^2 / sum m), x_m the centre of mass
+    double unweighted_radius_of_gyration() const;  // every site has weight one
     double end_to_end_distance() const { return norm(last_ - first_); }
 
   private:
     std::int64_t sites_ = 0;
-    double mass_ = 0, square_ = 0, unweighted_square_ = 0;
+    double mass_ = 0, square_ = 0, unweighted_square_ = 0;  // sums of |x - mean|^2
     Vec3 first_ = Vec3::zero(), last_ = Vec3::zero(), mean_ = Vec3::zero(),
-         unweighted_mean_ = Vec3::zero();
+         unweighted_mean_ = Vec3::zero();  // mean positions relative to the first site
 };
 
-/// Whether rows have energies, of which potential ones may cost as much as several steps.
+/// True if rows contain energies. Potential energies may cost as much as several steps.
 bool has_energies(Scene const&);
 
+/// Columns of observables.csv, and one row per frame.
 class Observables {
   public:
-    /// `terms`: names of the potential energy terms. The scene's output.observables choose the
-    /// groups of columns; empty: all that it can have, but for the unweighted radius of gyration.
+    /// `terms`: names of the potential energy terms. output.observables of the scene selects the
+    /// groups of columns. An empty selection means all groups, except the unweighted radius of
+    /// gyration.
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
-    /// Names with units, e.g. "total_energy [kJ/mol]".
+    /// Returns names with units, e.g. "total_energy [kJ/mol]".
     std::vector<std::string> const& columns() const { return columns_; }
-    /// Another row: forgets what was added.
+    /// Begins another row: discards what was added.
     void begin();
-    /// The next bodies and their sites.
+    /// Adds the next bodies, and their sites' positions in W.
     void add(ChainSystem::Snapshot const&, std::vector<Vec3> const& positions);
-    /// Of what was added.
+    /// Returns the kinetic energy of the bodies added so far.
     double kinetic() const { return kinetic_.value(); }
+    /// Returns the values of all columns. Precondition: all bodies of the scene have been added.
     std::vector<double> row(std::vector<EnergyTerm> const& terms, double constraint_error) const;
 
   private:
+    /// True if the group of columns is selected and defined.
     bool wants(std::string const& name) const;
-    bool has_temperature_ = true;  // not where nothing moves freely, or motions are prescribed
+    bool has_temperature_ = true;  // false if nothing moves freely or motions are prescribed
     Scene const& scene_;
     Topology const& topology_;
-    std::int64_t dof_;
+    std::int64_t dof_;  // degrees of freedom
     std::vector<std::string> columns_;
     KineticEnergy kinetic_;
-    std::size_t chain_ = 0, site_ = 0;  // of the topology, next
-    Shape shape_;                       // of that chain, so far
-    std::vector<Shape> shapes_;         // of the chains before
-    static constexpr std::size_t most_single_chains_ =
-        10;  // beyond, shapes are averaged over chains
+    std::size_t chain_ = 0, site_ = 0;  // indices of the next site and its chain in the topology
+    Shape shape_;                       // chain of the next site, so far
+    std::vector<Shape> shapes_;         // completed chains
+    static constexpr std::size_t most_single_chains_ = 10;  // shapes of more chains are averaged
 };
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the collection of verdict data and their place in checkpoints.
 #include "observe/run_verdict.hpp"
 
 #include "integrate/checkpoint_values.hpp"
@@ -5,6 +6,7 @@
 namespace catena {
 namespace {
 
+// Names of arrays and integers in checkpoints.
 constexpr char const *array_of_error = "largest_constraint_error",
                      *step_of_error = "largest_constraint_error_at",
                      *array_of_coordinate = "largest_coordinate",

@@ -1,4 +1,4 @@
-// What a run keeps for its verdict while it goes, over restarts too.
+// Data that a run collects for its verdict, over restarts too.
 #pragma once
 
 #include <algorithm>
@@ -12,33 +12,36 @@
 
 namespace catena {
 
+/// Largest joint error, largest coordinate and energies of a run, from which its checks are
+/// computed. Frames count on rank 0.
 class RunVerdict {
   public:
     explicit RunVerdict(Scene const& scene) : scene_(scene), energies_(scene) {}
-    /// Of joints at a step.
+    /// Records the constraint error of joints at a step, if it is the largest so far.
     void note_error(std::int64_t step, double error);
-    /// Of joints where the run ends: no restart takes it over, since the undisturbed run need not
-    /// have looked there.
+    /// Records the constraint error where the run ends. A restart does not inherit it, because the
+    /// undisturbed run need not have computed it there.
     void note_end(std::int64_t step, double error) { end_ = {step, error}; }
-    /// Distances from the origin.
+    /// Records the distance of a body from the origin.
     void note_coordinate(double distance) {
         largest_coordinate_ = std::max(largest_coordinate_, distance);
     }
-    /// A frame's energies, in the scene's units; `potential`: where it was found.
+    /// Adds a frame's energies in the scene's units. `potential`: empty if it was not computed.
     void add_frame(std::int64_t step, double kinetic, std::optional<double> potential) {
         energies_.add(step, kinetic, potential);
     }
 
-    /// Into a checkpoint; rank 0's counts.
+    /// Writes the data to a checkpoint. Rank 0's data are the ones kept.
     void save(Checkpoint&) const;
-    /// From one. Returns a note where the checkpoint does not hold what the verdict needs; empty
-    /// where it does. InputError where it holds what no run of so many steps can have written.
+    /// Restores the data from a checkpoint. Returns a note if the checkpoint lacks what the verdict
+    /// needs, else an empty text. Throws InputError for data that no run of so many steps can have
+    /// written.
     std::string restore(Checkpoint const&);
-    /// The verdict begins with a branch, whose start is another run's state.
+    /// Begins the verdict at a branch, whose start is another run's state.
     void branch() { energies_.begins_midway(); }
 
     double largest_error() const { return std::max(worst_.error, end_.error); }
-    /// What frames and joints say, on rank 0.
+    /// Returns the checks of joints, energy, temperature and coordinates. Rank 0 only.
     std::vector<RunCheck> checks() const;
 
   private:
@@ -47,10 +50,10 @@ class RunVerdict {
         double error = 0;
     };
     Scene const& scene_;
-    EnergyWatch energies_;
-    JointError worst_, end_;
+    EnergyWatch energies_;    // energies of frames
+    JointError worst_, end_;  // largest so far; where the run ends
     double largest_coordinate_ = 0;
-    std::optional<std::int64_t> covers_from_;  // energies before that step were not kept
+    std::optional<std::int64_t> covers_from_;  // step before which energies were not kept
 };
 
 }  // namespace catena

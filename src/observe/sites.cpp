@@ -1,3 +1,4 @@
+// Implements the sites of a scene's bodies.
 #include "observe/sites.hpp"
 
 #include <algorithm>
@@ -24,6 +25,7 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
         topology_.residue.reserve(most);
     }
     for (ChainSpec const& chain : scene.chains) {
+        // A topology lists all sites; a rank's own sites alone need only their numbers.
         std::size_t const first = next_site_;
         add(chain, with_topology);
         if (!with_topology) continue;
@@ -36,7 +38,7 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
     }
 }
 
-/// Whether the next body is one of those that this rank shows.
+/// True if the next body is one of those in `runs_`.
 bool Sites::shows_next() {
     auto const body = static_cast<std::int64_t>(next_body_);
     while (run_ < runs_.size() && runs_[run_].first + runs_[run_].count <= body) ++run_;
@@ -115,7 +117,7 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
     return part;
 }
 
-/// Of the body of this number among `bodies`.
+/// `k`: index of the body among `bodies`.
 void Sites::add_state(ChainSystem::Bodies const& bodies, std::size_t k, Frame& part) const {
     ChainSystem::Snapshot const& s = bodies.motion;
     part.orientations.push_back(s.orientation[k]);

@@ -1,5 +1,5 @@
-// What a trajectory shows of a scene: one site a bead, a bead that a body carries, or the centre of
-// mass of a body that carries none.
+// Sites of a trajectory: beads, beads that bodies carry, and the centres of mass of bodies without
+// beads.
 #pragma once
 
 #include <cstdint>
@@ -10,37 +10,43 @@
 
 namespace catena {
 
+/// Map from the bodies of a scene to the sites of its trajectory.
 class Sites {
   public:
-    Sites() = default;  // none: where no files are written
+    Sites() = default;  // no sites, for ranks that write no files
     explicit Sites(Scene const&);
-    /// Of these bodies alone, in scene order; without the topology's lists.
+    /// Sites of these bodies only, in scene order. The topology's lists stay empty.
     Sites(Scene const&, std::vector<SceneWindows::Run> const& own);
 
     Topology const& topology() const { return topology_; }
-    /// What these bodies show of themselves, without step and time.
+    /// Returns the sites of the given bodies as part of a frame, without step and time.
     Frame part(ChainSystem::Bodies const&, bool velocities, Executor const&) const;
 
   private:
+    /// Site of a trajectory.
     struct Site {
-        std::size_t body, site;  // of the scene, of the trajectory
-        Vec3 place;              // from its centre of mass, B
-        bool is_first;           // of its body
+        std::size_t body, site;  // indices in the scene and in the trajectory
+        Vec3 place;              // position from the body's centre of mass, body axes
+        bool is_first;           // first site of its body
     };
+    /// Rigid body, which has an orientation in frames.
     struct Turning {
-        std::size_t body, number;  // of the scene, among those that turn
+        std::size_t body, number;  // indices in the scene and among the rigid bodies
     };
     Sites(Scene const&, std::vector<SceneWindows::Run> const& runs, bool with_topology);
+    /// Adds the sites of a chain's bodies.
     void add(ChainSpec const&, bool with_topology);
+    /// Adds orientation and coordinates of the body `k` of `bodies`.
     void add_state(ChainSystem::Bodies const&, std::size_t k, Frame&) const;
+    /// True if this rank has the next body.
     bool shows_next();
 
     Topology topology_;
     std::vector<Site> sites_;
-    std::vector<Turning> turning_;  // bodies that are no point beads
+    std::vector<Turning> turning_;  // rigid bodies, not point beads
     std::vector<SceneWindows::Run> runs_;
     std::size_t run_ = 0, next_body_ = 0, next_site_ = 0,
-                next_turning_ = 0;  // while they are counted
+                next_turning_ = 0;  // counters during construction
 };
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the checks of a run.
 #include "observe/verdict.hpp"
 
 #include <fmt/format.h>
@@ -13,17 +14,17 @@
 namespace catena {
 namespace {
 
-/// Of the kinetic energy: a drift beyond the first makes a run worthless, one beyond the second is
-/// said, and so is a jump beyond the third.
+/// Limits relative to the kinetic energy: a drift that invalidates the run, a drift that is
+/// reported, and a jump that is reported.
 constexpr double worthless_drift = 0.1, said_drift = 0.01, said_jump = 0.05;
-/// Times the thermostat's: no start that is still cooling explains more over the second half of a
-/// run.
+/// Largest ratio to the thermostat's kinetic energy. No start that is still cooling explains more
+/// over the second half of a run.
 constexpr double worthless_heat = 3;
-/// Of an equilibrated run.
+/// Limits for an equilibrated run: a deviation that is reported, and heat that invalidates the run.
 constexpr double said_heat = 0.03, worthless_heat_in_equilibrium = 0.5;
-constexpr double standard_errors = 5;
-/// Friction times until a start is forgotten, and frames from which on a standard error says
-/// something.
+constexpr double standard_errors = 5;  // significance of a deviation
+/// Number of friction times after which a start is forgotten, and number of frames for a meaningful
+/// standard error.
 constexpr double forgotten_after = 5;
 constexpr std::size_t enough_frames = 8;
 
@@ -39,6 +40,7 @@ bool any(std::vector<Vec3> const& values) {
     return std::any_of(values.begin(), values.end(), [](Vec3 const& v) { return norm(v) > 0; });
 }
 
+/// True if no load, damper, drag or prescribed motion changes the energy of a chain.
 bool conserves_energy_of(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
     if (any(b.torque) || any(b.damping) || !b.driven.empty()) return false;
@@ -49,8 +51,8 @@ bool conserves_energy_of(ChainSpec const& chain) {
                         [](auto const& d) { return d[0] > 0 || d[1] > 0; });
 }
 
-/// Whether kinetic energy is to tell the thermostat's temperature. Bodies in SI units that start at
-/// given velocities move far beyond theirs.
+/// True if kinetic energy measures the thermostat's temperature. Bodies in SI units that start at
+/// given velocities move far beyond thermal motion.
 bool is_thermal(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     if (!is_langevin(d.integrator) || d.temperature <= 0 || d.friction <= 0) return false;
@@ -62,6 +64,7 @@ bool is_thermal(Scene const& scene) {
     });
 }
 
+/// True if some chain starts at velocities, given by the scene, that are not zero.
 bool starts_at_given_velocities(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
         return chain.velocities == StartVelocities::given &&
@@ -116,8 +119,8 @@ Fit fit_line(std::vector<double> const& at, std::vector<double> const& values) {
     std::vector<double> residual;
     for (std::size_t i = 0; i < values.size(); ++i)
         residual.push_back(values[i] - mean - slope * (at[i] - middle));
-    // Correlated residuals count as the fewer independent ones that blocks tell of: the slope's
-    // error over that of a mean is 12^(1/2) / n.
+    // Correlated residuals count as fewer independent ones, as blocking shows. The slope's error
+    // over that of a mean is 12^(1/2) / n.
     return {slope * length, std::sqrt(12.0) * standard_error(residual), mean};
 }
 
@@ -147,6 +150,7 @@ std::optional<RunCheck> EnergyWatch::energy() const {
     if (!conserves_energy(scene_) || !series_.has_potential() || n < 2) return std::nullopt;
     std::vector<double> at, later;
     for (std::size_t i = from; i < n; ++i)
+        // A line needs four entries; fewer are fitted by the difference of last and first.
         at.push_back(series_.middle(i)), later.push_back(series_.total(i));
     Fit fit{later.back() - later.front(), 0, mean_of(later)};
     if (later.size() >= 4) fit = fit_line(at, later);
@@ -189,14 +193,15 @@ EnergyWatch::Warmth EnergyWatch::warmth() const {
     w.lasted = static_cast<double>(series_.last_step() - w.from) * d.step;
     w.forgotten = static_cast<double>(w.from - series_.first_step(0)) * d.step * d.friction >=
                   forgotten_after;
+    // Friction makes frames independent after a friction time.
     double const independent =
         std::min(static_cast<double>(w.ratio.size()), std::max(1.0, w.lasted * d.friction));
     double const own = w.ratio.size() < 2 ? 0 : standard_error(w.ratio);
     w.error = std::max(own, std::sqrt(2 / freedom_) / std::sqrt(independent));
     if (!heating().is_pushed || w.lasted <= 0) return w;
     w.added = heating().excess / d.temperature;
-    // What the window lost of its energy friction took: so much kinetic energy was beyond the
-    // thermostat's.
+    // Friction removed the energy that the window lost, so that the kinetic energy exceeded the
+    // thermostat's accordingly.
     double const time = (series_.middle(n - 1) - series_.middle(from)) * d.step;
     if (!series_.has_potential()) return w;
     w.error = std::hypot(w.error, 2 * std::sqrt(2 / freedom_) / (d.friction * time));
@@ -215,7 +220,7 @@ std::optional<RunCheck> EnergyWatch::temperature() const {
     if (!is_thermal(scene_) || freedom_ <= 0 || series_.size() < 2) return std::nullopt;
     Warmth const w = warmth();
     double const of_thermostat = scene_.dynamics.temperature, canonical = std::sqrt(2 / freedom_);
-    // Weak friction leaves what potential energy gave uncertain.
+    // Weak friction makes the energy released by potential energy uncertain.
     double const error = heating().is_pushed ? std::max(canonical, w.error) : canonical;
     double const most =
         worthless_heat * (1 + standard_errors * error + std::max(0.0, w.released) + w.added);
@@ -227,7 +232,7 @@ std::optional<RunCheck> EnergyWatch::temperature() const {
     }
     if (heating().is_pushed && w.ratio.size() < enough_frames) return std::nullopt;
     if (!(v.value <= v.limit)) {
-        // Velocities that the scene gives may be far from thermal until friction has taken them.
+        // Velocities given by the scene may be far from thermal until friction has removed them.
         v.passed = std::isfinite(v.value) && !w.forgotten &&
                    (begins_midway_ || starts_at_given_velocities(scene_));
         v.advice =
@@ -235,8 +240,8 @@ std::optional<RunCheck> EnergyWatch::temperature() const {
                                  : causes_of_heat);
         return v;
     }
-    // What implicit springs' rotors hold of kinetic energy is not in the frames: it is not too
-    // much, all the same.
+    // Frames do not contain the kinetic energy of the rotors of implicit springs. Only the upper
+    // limit is checked there.
     if (w.ratio.size() >= enough_frames && w.forgotten && !is_implicit(scene_.dynamics.integrator))
         judge(w, v);
     return v;

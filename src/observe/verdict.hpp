@@ -1,4 +1,4 @@
-// Whether a run can be believed: what it kept that motion keeps, and how warm it was.
+// Verdict on a run: conservation of energy, temperature, joint errors and range of coordinates.
 #pragma once
 
 #include <cstdint>
@@ -13,89 +13,96 @@
 
 namespace catena {
 
-/// One question to a run.
+/// Result of one check of a run.
 struct RunCheck {
     std::string name;    // joints, energy, temperature, coordinates
-    bool passed = true;  // false: the run is not valid
+    bool passed = true;  // false: the run is invalid
     double value = 0, limit = 0;
-    std::int64_t step = 0;  // where the value was found
-    std::string
-        advice;  // a sentence: what was found, and what to do; of one that passed: a note, or empty
+    std::int64_t step = 0;  // step where the value occurred
+    std::string advice;  // sentence with finding and remedy; after a passed check a note, or empty
 };
+/// Returns {"valid", "checks": [{"name", "passed", "value", "limit", "step", "advice"}]}.
 nlohmann::json as_json(std::vector<RunCheck> const&);
 bool all_passed(std::vector<RunCheck> const&);
 
-/// A line's slope by least squares, with the standard error that blocks of its residuals give.
+/// Line fitted by least squares. The standard error of its slope follows from blocking of the
+/// residuals.
 struct Fit {
-    double change = 0;  // over the fitted range
-    double error = 0;   // of the change, one standard error
+    double change = 0;  // change over the fitted range
+    double error = 0;   // standard error of the change
     double mean = 0;
 };
-/// Values at ascending places of about equal distances. Precondition: at least 4.
+/// Fits values at ascending positions of about equal distances. Precondition: at least 4 values.
 Fit fit_line(std::vector<double> const& at, std::vector<double> const& values);
-/// The standard error of the mean of correlated values: the largest that blocks of 1, 2, 4, ...
-/// values give (Flyvbjerg & Petersen, J. Chem. Phys. 91, 461, 1989). Precondition: at least 2.
+/// Standard error of the mean of correlated values: the largest that blocks of 1, 2, 4, ... values
+/// yield (Flyvbjerg & Petersen, J. Chem. Phys. 91, 461, 1989). Precondition: at least 2 values.
 double standard_error(std::vector<double> const& values);
 
-/// What frames say of a run's energies, in the scene's units.
+/// Checks of a run's energies, in the scene's units.
 class EnergyWatch {
   public:
     explicit EnergyWatch(Scene const&);
-    /// A frame's; `potential`: where it was found.
+    /// Adds a frame. `potential`: empty if it was not computed.
     void add(std::int64_t step, double kinetic, std::optional<double> potential) {
         series_.add(step, kinetic, potential);
     }
-    /// What a checkpoint keeps of the frames so far, and the same taken back: a restart judges the
-    /// whole run. Returns false where no run of so many steps can have kept that.
+    /// Returns, or restores, what a checkpoint keeps of the frames so far, so that a restart judges
+    /// the whole run. set_state() returns false if no run of `steps` steps can have kept that.
     std::vector<double> state() const { return series_.state(); }
     bool set_state(std::vector<double> const& state, std::int64_t steps) {
         return series_.set_state(state, steps);
     }
-    /// The frames begin at another run's state, which may be far from the thermostat's temperature.
+    /// States that the frames begin at another run's state, which may be far from the thermostat's
+    /// temperature.
     void begins_midway() { begins_midway_ = true; }
     bool is_midway() const { return begins_midway_; }
-    /// Of what conserves its energy: drift over the last three quarters of the frames against
-    /// kinetic energy, and a jump before.
+    /// Checks a scene that conserves its energy: drift over the last three quarters of the frames
+    /// relative to kinetic energy, and a jump before. Empty if the check does not apply.
     std::optional<RunCheck> energy() const;
-    /// Of what a thermostat holds: the second half of the frames. Under gravity, less what
-    /// potential energy gave; under torques and wrenches, beyond what these can add at most.
+    /// Checks the temperature under a thermostat over the second half of the frames. Kinetic energy
+    /// released by potential energy is subtracted under gravity. Torques and wrenches raise the
+    /// limit by the heating that they can cause at most. Empty if the check does not apply.
     std::optional<RunCheck> temperature() const;
 
-    /// Nothing puts energy in or takes it out: no thermostat, damper, drag, drive or load from
-    /// outside.
+    /// True if nothing adds or removes energy: no thermostat, damper, drag, prescribed motion or
+    /// external load.
     static bool conserves_energy(Scene const&);
 
   private:
-    /// The second half of the frames. Energies are divided by the thermostat's kinetic energy.
+    /// Kinetic energy over the second half of the frames, divided by the thermostat's.
     struct Warmth {
-        std::vector<double> ratio;       // kinetic energy of each entry
-        double mean = 0, error = 0;      // of the ratios; one standard error
-        double released = 0, added = 0;  // kinetic energy that a fall of potential energy and work
-                                         // keep up; the second at most
-        double lasted = 0;               // time
-        std::int64_t from = 0;           // step
-        bool forgotten = false;          // the start is
+        std::vector<double> ratio;       // per entry of the series
+        double mean = 0, error = 0;      // ratios: mean and its standard error
+        double released = 0, added = 0;  // kinetic energy kept up by released potential energy, and
+                                         // by work (upper bound)
+        double lasted = 0;               // duration of the window
+        std::int64_t from = 0;           // first step of the window
+        bool forgotten = false;          // the start no longer matters
     };
-    /// Of gravity as well where frames do not tell its energy.
+    /// Returns the heating by loads, which includes gravity if frames do not contain its energy.
     Heating const& heating() const;
     Warmth warmth() const;
+    /// Sentence with the temperature found and the thermostat's.
     std::string found(Warmth const&) const;
+    /// Checks the temperature of an equilibrated run.
     void judge(Warmth const&, RunCheck&) const;
+    /// Text of two energies with their unit.
     std::string span(double from, double to) const;
     Scene const& scene_;
-    double freedom_;  // degrees
+    double freedom_;  // degrees of freedom
     Heating heating_, heating_by_gravity_too_;
     EnergySeries series_;
     bool begins_midway_ = false;
 };
 
-/// Joints: the largest error and where it was.
+/// Checks joints by their largest constraint error, which occurred at `step`. `of_step`: key of the
+/// step length, for the advice.
 RunCheck joints_verdict(double largest, double tolerance, std::int64_t step,
                         std::string const& of_step);
-/// 0: there is none.
+/// Returns the length of the shortest link, or 0 if there are no links.
 double shortest_link(Scene const&);
-/// Whether coordinates as large as `largest` resolve joints to the tolerance; `length`: of the
-/// shortest link, 0: there is none.
+/// Checks whether coordinates as large as `largest` resolve joints to the tolerance, given their
+/// rounding. `length`: length of the shortest link; 0: no links, no check.
 std::optional<RunCheck> coordinates_verdict(double largest, double length, double tolerance,
                                             std::int64_t step);
 

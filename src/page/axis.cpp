@@ -1,3 +1,4 @@
+// Implements the choice of ticks and of their labels.
 #include "page/axis.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double label_digits = 1e5;  // labels that would need more digits than this get an offset
 
-/// 1, 2 or 5 times a power of ten.
+/// Smallest step of 1, 2 or 5 times a power of ten that needs at most `ticks` steps for the range.
 double round_step(double range, int ticks) {
     double const raw = range / ticks, power = std::pow(10.0, std::floor(std::log10(raw)));
     for (double const factor : {1.0, 2.0, 5.0})
@@ -20,6 +21,7 @@ double round_step(double range, int ticks) {
     return 10 * power;
 }
 
+/// Text of 10^exponent with superscript digits.
 std::string power_of_ten(int exponent) {
     if (exponent == 0) return "1";
     std::string text = "10";
@@ -31,10 +33,14 @@ std::string power_of_ten(int exponent) {
     return text;
 }
 
+/// Writes the labels of a linear axis. A common power of ten and a large offset move to the axis's
+/// note.
 void write_labels(Axis& axis, double step) {
+    // Labels that share many leading digits are relative to the first tick.
     double const largest =
         std::max(std::abs(axis.ticks.front().value), std::abs(axis.ticks.back().value));
     double const offset = largest > label_digits * step ? axis.ticks.front().value : 0;
+    // Labels from 10^-2 to 10^4 are written without a common power of ten.
     double const shown = offset == 0 ? largest : axis.ticks.back().value - offset;
     int exponent = shown > 0 ? static_cast<int>(std::floor(std::log10(shown) + 1e-9)) : 0;
     if (exponent < 5 && exponent > -3) exponent = 0;
@@ -56,7 +62,9 @@ double Axis::place(double value) const {
     return ((logarithmic ? std::log10(value) : value) - low) / (high - low);
 }
 
+// Ticks are the multiples of the step within the range.
 Axis linear_axis(double low, double high, double margin, int ticks) {
+    // A range without extent is widened, so that the axis has a scale.
     double const smallest = std::max(1e-12 * std::max(std::abs(low), std::abs(high)), 1e-300);
     if (high - low < smallest) {
         double const widen = low == 0 ? 1 : std::max(0.05 * std::abs(low), smallest);
@@ -75,6 +83,7 @@ Axis linear_axis(double low, double high, double margin, int ticks) {
     return axis;
 }
 
+// Ranges of seven decades and more have ticks every second, third, ... decade.
 Axis logarithmic_axis(double low, double high) {
     Axis axis;
     axis.logarithmic = true;

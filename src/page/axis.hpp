@@ -1,4 +1,4 @@
-// A drawn axis: which numbers get a tick, and how they are written.
+// Axes of drawings: range, ticks and the labels of the ticks.
 #pragma once
 
 #include <string>
@@ -6,23 +6,27 @@
 
 namespace catena {
 
+/// Linear or logarithmic axis of a chart.
 struct Axis {
+    /// Tick at a value, with its text. Labels are relative to `note`.
     struct Tick {
         double value;
         std::string label;
     };
-    double low = 0, high = 1;  // what is drawn, in value or, if logarithmic, in log10
+    double low = 0, high = 1;  // drawn range: values, or log10 of values if logarithmic
     bool logarithmic = false;
     std::vector<Tick> ticks;
-    std::string note;  // "x 10^-6", "+ 1234.5": what was taken out of the labels; may be empty
+    std::string
+        note;  // common factor and offset of the labels, e.g. "x 10^-6", "+ 1234.5"; may be empty
 
-    /// 0 at `low`, 1 at `high`.
+    /// Relative position of a value: 0 at `low`, 1 at `high`.
     double place(double value) const;
 };
 
-/// `low` <= `high`, finite. `margin`: how far the drawn range goes beyond, relative to high - low.
+/// Linear axis from `low` to `high`, both finite and `low` <= `high`. The drawn range extends by
+/// `margin` * (high - low) beyond both ends. `ticks`: their approximate number.
 Axis linear_axis(double low, double high, double margin, int ticks);
-/// 0 < `low` <= `high`.
+/// Logarithmic axis of whole decades, at least one. Precondition: 0 < `low` <= `high`.
 Axis logarithmic_axis(double low, double high);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the SVG picture of several curves on logarithmic axes.
 #include "page/curve_family.hpp"
 
 #include <fmt/format.h>
@@ -13,26 +14,34 @@
 namespace catena {
 namespace {
 
+// Sizes in pixels: picture, margins around the curves, line height of the legend.
 constexpr double width = 760, height = 420, left = 66, right = 190, top = 40, bottom = 46,
                  line_height = 18;
 constexpr double inner_width = width - left - right, inner_height = height - top - bottom;
-// Okabe and Ito's colours and two dark ones; with the marks no two of 45 curves look alike.
+// Colours are those of Okabe and Ito and two dark ones. Colours and marks together distinguish 45
+// curves.
 constexpr char const* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00",
                                    "#56b4e9", "#882255", "#332288", "#475569"};
+// Paths of the marks, centred at the origin: circle, square, triangle, diamond, triangle upside
+// down.
 constexpr std::string_view marks[] = {"M-3.2,0a3.2,3.2 0 1,0 6.4,0a3.2,3.2 0 1,0 -6.4,0z",
                                       "M-3,-3h6v6h-6z", "M0,-4l3.7,6.6h-7.4z",
                                       "M0,-4.3l3.4,4.3l-3.4,4.3l-3.4,-4.3z", "M0,4l3.7,-6.6h-7.4z"};
-constexpr std::string_view cross = "M-3,-3L3,3M-3,3L3,-3";
+constexpr std::string_view cross =
+    "M-3,-3L3,3M-3,3L3,-3";  // path of a value that could not be resolved
 
+/// True if a point can be drawn on logarithmic axes.
 bool drawn(double x, double y) { return x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y); }
 
+/// Colour of a curve by its number.
 char const* colour_of(std::size_t curve) { return colours[curve % std::size(colours)]; }
 
+/// Mark of a curve's point at a position in pixels.
 std::string mark_at(std::size_t curve, double x, double y) {
     return fmt::format("<path fill=\"{}\" transform=\"translate({:.1f},{:.1f})\" d=\"{}\"/>",
                        colour_of(curve), x, y, marks[curve % std::size(marks)]);
 }
-/// A value that could not be resolved, on the axis.
+/// Cross on the axis for a value that could not be resolved.
 std::string gap_at(std::size_t curve, double x) {
     return fmt::format(
         "<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" "
@@ -41,6 +50,7 @@ std::string gap_at(std::size_t curve, double x) {
         colour_of(curve), x, height - bottom, cross);
 }
 
+/// Range of positive values.
 struct Range {
     double low = std::numeric_limits<double>::infinity(), high = 0;
     void add(double value) {
@@ -51,7 +61,9 @@ struct Range {
 
 }  // namespace
 
+/// A point that cannot be drawn interrupts the curve.
 std::string curve_family(CurveFamily const& family) {
+    // The ranges of the axes cover all drawn points, and the gaps along x.
     Range xs, ys;
     for (NamedCurve const& curve : family.curves)
         for (std::size_t i = 0; i < curve.x.size(); ++i)
@@ -74,6 +86,7 @@ std::string curve_family(CurveFamily const& family) {
                y_axis = logarithmic_axis(ys.low, ys.high);
     auto const at_x = [&](double x) { return left + inner_width * x_axis.place(x); };
     auto const at_y = [&](double y) { return top + inner_height * (1 - y_axis.place(y)); };
+    // Grid lines and labels of both axes.
     for (Axis::Tick const& tick : y_axis.ticks)
         svg += fmt::format(
             "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text "
@@ -92,6 +105,7 @@ std::string curve_family(CurveFamily const& family) {
         "<text text-anchor=\"middle\" x=\"{}\" y=\"{}\">{}</text><text x=\"4\" "
         "y=\"32\">{}</text>\n",
         left + inner_width / 2, height - 6, escaped(family.x_label), escaped(family.y_label));
+    // Every curve: its lines, its marks on top, and its line of the legend.
     for (std::size_t i = 0; i < family.curves.size(); ++i) {
         NamedCurve const& curve = family.curves[i];
         std::string const style = fmt::format("stroke=\"{}\"{}", colour_of(i),

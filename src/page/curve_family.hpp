@@ -1,4 +1,4 @@
-// Several curves in one picture, both axes logarithmic, as an SVG file of its own.
+// Picture of several curves on two logarithmic axes, as an SVG file of its own.
 #pragma once
 
 #include <string>
@@ -6,18 +6,21 @@
 
 namespace catena {
 
+/// Curve with the name that the legend shows.
 struct NamedCurve {
     std::string name;
     std::vector<double> x,
-        y;  // of one length; what is not positive is a gap, NaN a gap with a cross on the axis
+        y;  // equal lengths; values that are not positive: gap; NaN: gap with a cross on the axis
     bool dashed = false;
-    bool marked = false;  // every point by a mark of the curve's own shape
-    bool joined = true;   // points by lines
+    bool marked = false;  // points are drawn as marks, whose shape belongs to the curve
+    bool joined = true;   // points are connected by lines
 };
+/// Curves of one picture with its title and the labels of its axes.
 struct CurveFamily {
     std::string title, x_label, y_label;
     std::vector<NamedCurve> curves;
 };
+/// Returns the text of the SVG file. A picture without positive values says "No values."
 std::string curve_family(CurveFamily const&);
 
 }  // namespace catena

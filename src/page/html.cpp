@@ -1,3 +1,4 @@
+// Implements HTML text, and the style of all pages.
 #include "page/html.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 namespace catena {
 namespace {
 
+// Style sheet of every page. The classes c0 to c8 are the colours of bars, c9 that of waiting.
 constexpr std::string_view style = R"css(
 :root { color-scheme: light dark;
   --page: #f6f7f9; --card: #ffffff; --ink: #1b2733; --soft: #5b6b7b; --rule: #dfe4ea; --grid: #e9edf1; --line: #0b6bcb; --link: #0b6bcb; }
@@ -74,6 +76,7 @@ std::string escaped(std::string_view text) {
     return safe;
 }
 
+/// Replaces underscores by blanks and capitalises the first letter.
 std::string readable_name(std::string_view key) {
     std::string name(key);
     for (char& c : name)

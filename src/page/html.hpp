@@ -1,4 +1,4 @@
-// Text that is safe in a page, numbers as people read them, and the look of every page.
+// Escaped text, readable names and numbers, and the frame and style of every page.
 #pragma once
 
 #include <string>
@@ -6,15 +6,16 @@
 
 namespace catena {
 
+/// Returns printable text with the characters &, <, > and " replaced by HTML's entities.
 std::string escaped(std::string_view text);
 
-/// "total_energy" -> "Total energy".
+/// Returns a key as a name: "total_energy" -> "Total energy".
 std::string readable_name(std::string_view key);
 
-/// Six digits, without a tail of zeros.
+/// Returns a number of six significant digits without trailing zeros.
 std::string readable_number(double value);
 
-/// A page that needs nothing but itself, in light and dark.
+/// Returns a complete page that loads nothing else, with a light and a dark style.
 std::string html_page(std::string const& title, std::string const& body);
 
 }  // namespace catena

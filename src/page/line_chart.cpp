@@ -1,3 +1,4 @@
+// Implements the line chart of one curve.
 #include "page/line_chart.hpp"
 
 #include <fmt/format.h>
@@ -11,19 +12,22 @@
 namespace catena {
 namespace {
 
-constexpr std::size_t most_buckets = 1000;
+constexpr std::size_t most_buckets = 1000;  // limits a curve to twice as many points
+// Sizes in pixels: picture and margins around the curve.
 constexpr double width = 640, height = 280, left = 66, right = 14, top = 24, bottom = 42;
 constexpr double inner_width = width - left - right, inner_height = height - top - bottom;
-constexpr double decades_for_logarithm = 1e3;
+constexpr double decades_for_logarithm = 1e3;  // largest ratio of values on a linear axis
 
 using Points = std::vector<std::pair<double, double>>;
 
+/// Axes of a chart, which map values to pixels.
 struct Drawing {
     Axis x, y;
     double at_x(double value) const { return left + inner_width * x.place(value); }
     double at_y(double value) const { return top + inner_height * (1 - y.place(value)); }
 };
 
+/// Points of which both coordinates are finite.
 Points finite_points(Curve const& curve) {
     Points points;
     for (std::size_t k = 0; k < std::min(curve.x.size(), curve.y.size()); ++k)
@@ -32,6 +36,8 @@ Points finite_points(Curve const& curve) {
     return points;
 }
 
+/// Axis that covers the values. It is logarithmic if they are positive and span more than three
+/// decades.
 Axis axis_of_values(Points const& points) {
     auto const [low, high] =
         std::minmax_element(points.begin(), points.end(),
@@ -41,6 +47,7 @@ Axis axis_of_values(Points const& points) {
                        : linear_axis(low->second, high->second, 0.06, 6);
 }
 
+/// Ticks, grid lines and labels of both axes.
 std::string axes(Drawing const& drawing, Curve const& curve) {
     std::string svg;
     for (Axis::Tick const& tick : drawing.y.ticks) {
@@ -68,6 +75,7 @@ std::string axes(Drawing const& drawing, Curve const& curve) {
     return svg;
 }
 
+/// Arithmetic mean of the y values.
 double mean_of(Points const& points) {
     double sum = 0;
     for (auto const& point : points) sum += point.second;
@@ -76,11 +84,13 @@ double mean_of(Points const& points) {
 
 }  // namespace
 
+/// A bucket may contribute a single point, if all of its values are equal.
 Points thinned(Points const& points, std::size_t buckets) {
     if (points.size() <= 2 * buckets) return points;
     Points kept;
     for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
         auto const begin =
+            // A bucket holds consecutive points, as many as the others up to one.
             points.begin() + static_cast<std::ptrdiff_t>(bucket * points.size() / buckets);
         auto const end =
             points.begin() + static_cast<std::ptrdiff_t>((bucket + 1) * points.size() / buckets);
@@ -92,9 +102,11 @@ Points thinned(Points const& points, std::size_t buckets) {
     return kept;
 }
 
+/// A curve without finite values becomes a sentence.
 std::string line_chart(Curve const& curve) {
     Points const points = finite_points(curve);
     if (points.empty()) return "<p>No finite values.</p>\n";
+    // The x axis has no margin, since its values ascend.
     Drawing const drawing{linear_axis(points.front().first,
                                       std::max(points.front().first, points.back().first), 0, 7),
                           axis_of_values(points)};
@@ -102,6 +114,7 @@ std::string line_chart(Curve const& curve) {
         fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} against {}\">\n",
                     width, height, escaped(curve.y_label), escaped(curve.x_label));
     svg += axes(drawing, curve);
+    // A dotted line marks the mean on linear axes.
     if (!drawing.y.logarithmic) {
         double const y = drawing.at_y(mean_of(points));
         svg +=
@@ -112,6 +125,7 @@ std::string line_chart(Curve const& curve) {
     for (auto const& [x, y] : thinned(points, most_buckets))
         svg += fmt::format("{:.1f},{:.1f} ", drawing.at_x(x), drawing.at_y(y));
     svg += "\"/>\n";
+    // A single point would be an invisible line.
     if (points.size() == 1)
         svg += fmt::format("<circle class=\"c0\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n",
                            drawing.at_x(points[0].first), drawing.at_y(points[0].second));

@@ -1,4 +1,4 @@
-// One curve as inline SVG.
+// Line chart of one curve as inline SVG.
 #pragma once
 
 #include <string>
@@ -7,17 +7,19 @@
 
 namespace catena {
 
+/// Curve of one observable with the labels of its axes.
 struct Curve {
     std::string x_label, y_label;
-    std::vector<double> x, y;  // of one length, x ascending; what is not finite is left out
+    std::vector<double> x, y;  // equal lengths, x ascending; points that are not finite are omitted
 };
 
-/// Ticks at round numbers; a common power of ten or a large offset stands once, above the axis.
-/// Logarithmic where all values are positive and span more than three decades.
+/// Returns the chart. Ticks are round numbers; a common power of ten or a large offset is written
+/// once, above the axis. The y axis is logarithmic if all values are positive and span more than
+/// three decades.
 std::string line_chart(Curve const&);
 
-/// At most 2 * `buckets` points: of each run of points the lowest and the highest, in their order,
-/// so that no spike is lost.
+/// Reduces a curve to at most 2 * `buckets` points. Each bucket of consecutive points keeps its
+/// lowest and its highest point in their order, so that no spike is lost.
 std::vector<std::pair<double, double>> thinned(std::vector<std::pair<double, double>> const& points,
                                                std::size_t buckets);
 

@@ -1,4 +1,4 @@
-// report.html of a run's folder.
+// Implements the report of a run: report.html in the run's folder.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+/// Parses a JSON file. Throws InputError if it is not JSON.
 Json read_json(fs::path const& file) {
     try {
         return Json::parse(read_text_file(file.string()));
@@ -30,13 +31,14 @@ Json read_json(fs::path const& file) {
     }
 }
 
-/// "total_energy [kJ/mol]" -> {"total_energy", "kJ/mol"}
+/// Splits the name of a column: "total_energy [kJ/mol]" -> {"total_energy", "kJ/mol"}.
 std::pair<std::string, std::string> name_and_unit(std::string const& column) {
     auto const open = column.find(" [");
     if (open == std::string::npos || column.back() != ']') return {column, ""};
     return {column.substr(0, open), column.substr(open + 2, column.size() - open - 3)};
 }
 
+/// Text with mean, standard deviation and last value. Values that are not finite are only counted.
 std::string statistics(std::vector<double> const& values) {
     double sum = 0, squares = 0, count = 0;
     for (double const value : values)
@@ -53,12 +55,13 @@ std::string statistics(std::vector<double> const& values) {
     return text;
 }
 
-/// A line that says nothing.
+/// True for a curve that would be a horizontal line, which conveys nothing.
 bool is_constant(std::vector<double> const& values) {
     return values.size() > 1 && std::all_of(values.begin(), values.end(),
                                             [&](double value) { return value == values[0]; });
 }
 
+/// Charts of all observables against time. Constant observables are listed in one sentence.
 std::string charts(ObservablesTable const& table) {
     if (table.columns[0].empty()) return "<p>No record was written.</p>\n";
     auto const [time, time_unit] = name_and_unit(table.names[1]);
@@ -82,6 +85,7 @@ std::string charts(ObservablesTable const& table) {
            (constant.empty() ? "" : "<p>The same all the time: " + constant + ".</p>\n");
 }
 
+/// Table of the known files in the folder, with links and explanations.
 std::string files_in(fs::path const& folder) {
     static constexpr std::pair<char const*, char const*> known[] = {
         {"trajectory.h5md", "trajectory (H5MD 1.1)"},
@@ -103,6 +107,7 @@ std::string files_in(fs::path const& folder) {
                               "</table>\n</section>\n";
 }
 
+/// Picture of one step's phases; empty if the timeline is. Throws InputError for other contents.
 std::string timeline_section(fs::path const& file) {
     try {
         std::string const picture = timeline_picture(read_json(file));
@@ -113,6 +118,7 @@ std::string timeline_section(fs::path const& file) {
     }
 }
 
+/// Title of the scene, else the scene's file, else the name of the folder.
 std::string title_of(Json const& summary, fs::path const& folder) {
     for (char const* key : {"title", "scene"})
         if (summary.contains(key) && summary[key].is_string() &&
@@ -123,7 +129,9 @@ std::string title_of(Json const& summary, fs::path const& folder) {
 
 }  // namespace
 
+/// Throws InputError if the folder holds no file of a run, or one that is damaged.
 void write_run_report(std::string const& folder) {
+    // Every file is optional, but not all of them.
     fs::path const in(folder), summary_file = in / "summary.json",
                                observables = in / "observables.csv",
                                timeline = in / "timeline.json";
@@ -132,9 +140,10 @@ void write_run_report(std::string const& folder) {
     Json summary = fs::exists(summary_file) ? read_json(summary_file) : Json::object();
     if (!summary.is_object())
         throw InputError("not an object", summary_file.string(), "mend or remove the file");
+    // Sections of the page: title, summary, observables, one step, files.
     std::string const title = title_of(summary, in);
     std::string body = fmt::format("<h1>{}</h1>\n<p>A run of Catena</p>\n", escaped(title));
-    summary.erase("files");  // they are listed with links at the end
+    summary.erase("files");  // files are listed with links at the end
     if (!summary.empty()) body += "<h2>Summary</h2>\n" + summary_tables(summary);
     if (fs::exists(observables))
         body += "<h2>Observables</h2>\n" + charts(read_observables(observables.string()));

@@ -1,4 +1,4 @@
-// summary.json as tables: numbers of the top level together, every object a table of its own.
+// Tables of summary.json: one for the values of the top level, and one for every object.
 #pragma once
 
 #include <string>
@@ -7,6 +7,8 @@
 
 namespace catena {
 
+/// Returns the tables as HTML. Empty values are omitted; lists of objects become tables with one
+/// row per object.
 std::string summary_tables(nlohmann::ordered_json const& summary);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the picture of one step's phases.
 #include "page/timeline_picture.hpp"
 
 #include <fmt/format.h>
@@ -17,27 +18,33 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Sizes in pixels: picture, margins, lanes, bars, gap between ranks, time axis.
 constexpr double width = 1160, left = 170, right = 14, lane_height = 26, bar_height = 19,
                  rank_gap = 10, axis_height = 40;
-constexpr double character_width = 6.4;
-constexpr std::size_t most_ranks = 8, colours = 9, idle_colour = 9;  // of the page's style
+constexpr double character_width = 6.4;  // average width of the labels' characters, pixels
+constexpr std::size_t most_ranks = 8, colours = 9,
+                      idle_colour = 9;  // ranks drawn; classes of the page's style: bars, waiting
 
+/// Phase of a step on one lane of a rank ("catena", "openmm"). Times in seconds.
 struct Phase {
     std::string name, lane;
     double begin, end;
 };
 
+/// Recorded step of one rank, from its first phase to its last.
 struct Step {
     std::int64_t number = 0;
     std::vector<Phase> phases;
     double begin = 0, end = 0;
 };
 
+/// Recorded steps of one rank.
 struct Rank {
     std::int64_t number = 0;
     std::vector<Step> steps;
 };
 
+/// Reads a step. Throws nlohmann's exceptions for other contents.
 Step read_step(Json const& json) {
     Step step;
     step.number = json.at("step").get<std::int64_t>();
@@ -53,6 +60,7 @@ Step read_step(Json const& json) {
     return step;
 }
 
+/// Reads all ranks. Steps without phases and ranks without steps are omitted.
 std::vector<Rank> read_ranks(Json const& timeline) {
     std::vector<Rank> ranks;
     for (Json const& json : timeline.at("ranks")) {
@@ -66,7 +74,7 @@ std::vector<Rank> read_ranks(Json const& timeline) {
     return ranks;
 }
 
-/// The number of the step whose length is the median on this rank.
+/// Returns the number of the step whose length is the median on this rank.
 std::int64_t typical_step(Rank const& rank) {
     std::vector<std::pair<double, std::int64_t>> lengths;
     for (Step const& step : rank.steps) lengths.emplace_back(step.end - step.begin, step.number);
@@ -75,8 +83,10 @@ std::int64_t typical_step(Rank const& rank) {
     return middle->second;
 }
 
-/// The bars of one step, rank under rank, lane under lane.
+/// Bars of one step: ranks one below the other, and the lanes of a rank one below the other.
 class Picture {
+    /// Selects the step on the first `most_ranks` ranks and fits the time axis to the longest of
+    /// them.
   public:
     Picture(std::vector<Rank> const& ranks, std::int64_t step) : step_(step) {
         for (Rank const& rank : ranks)
@@ -85,10 +95,12 @@ class Picture {
                     rows_.emplace_back(rank.number, &candidate);
         for (auto const& [rank, recorded] : rows_)
             length_ = std::max(length_, recorded->end - recorded->begin);
+        // The axis is in s, ms or microseconds, by the longest rank.
         scale_ = length_ < 1e-3 ? 1e6 : length_ < 1 ? 1e3 : 1;
         axis_ = linear_axis(0, length_ * scale_, 0, 10);
     }
 
+    /// Returns the SVG of axis and bars, followed by the legend.
     std::string draw() {
         std::string bars;
         double y = 6;
@@ -115,8 +127,11 @@ class Picture {
     }
 
   private:
+    /// Position in pixels of a time in units of the axis.
     double at(double value) const { return left + (width - left - right) * axis_.place(value); }
 
+    /// Class of a phase's colour, in the order of first appearance. Waiting has a colour of its
+    /// own.
     std::size_t colour_of(std::string const& name) {
         if (name.starts_with("wait")) return idle_colour;  // labelled in its bar
         auto const place = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) -
@@ -125,6 +140,7 @@ class Picture {
         return place % colours;
     }
 
+    /// Bars of one rank, whose first phase starts at 0. Advances `y` by the lanes.
     std::string draw_rank(std::int64_t rank, Step const& step, double& y) {
         std::vector<std::string> lanes;
         for (Phase const& phase : step.phases)
@@ -142,6 +158,8 @@ class Picture {
         return svg;
     }
 
+    /// Bar of a phase, with its name inside if there is room. `start`: time of the rank's first
+    /// phase.
     std::string draw_bar(Phase const& phase, double start, double y) {
         double const from = at((phase.begin - start) * scale_),
                      wide = std::max(0.8, at((phase.end - start) * scale_) - from);
@@ -151,12 +169,14 @@ class Picture {
             "{:.4g}</title></rect>",
             colour_of(phase.name), from, y, wide, bar_height, escaped(phase.name),
             (phase.begin - start) * scale_, (phase.end - start) * scale_);
+        // The name is written only if the bar is wide enough.
         if (wide > character_width * static_cast<double>(phase.name.size()) + 8)
             svg += fmt::format("<text class=\"inside\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
                                from + 5, y + 13.5, escaped(phase.name));
         return svg + "\n";
     }
 
+    /// Names of the phases and their colours.
     std::string legend() const {
         std::string html = "<div class=\"legend\">";
         for (std::size_t k = 0; k < names_.size(); ++k)
@@ -166,14 +186,15 @@ class Picture {
     }
 
     std::int64_t step_;
-    std::vector<std::pair<std::int64_t, Step const*>> rows_;
-    double length_ = 0, scale_ = 1;
+    std::vector<std::pair<std::int64_t, Step const*>> rows_;  // drawn ranks and steps
+    double length_ = 0, scale_ = 1;  // longest step, s; units of the axis per second
     Axis axis_;
-    std::vector<std::string> names_;
+    std::vector<std::string> names_;  // names of phases in the order of their colours
 };
 
 }  // namespace
 
+/// A caption names the step, and says how many steps and ranks were recorded.
 std::string timeline_picture(Json const& timeline) {
     std::vector<Rank> const ranks = read_ranks(timeline);
     if (ranks.empty()) return "";

@@ -1,4 +1,4 @@
-// timeline.json as bars: who worked on what during one step.
+// Picture of timeline.json: bars that show the phases of one step on every rank.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 
 namespace catena {
 
-/// `timeline`: {"ranks": [{"rank": r, "steps": [{"step": n, "phases": [{"name", "lane", "begin",
-/// "end"}, ...]}]}]}, seconds on a clock that the ranks need not share: each rank's bars start at
-/// its own first phase. Drawn is the recorded step of median length on the first rank. "" when
-/// nothing was recorded. Throws nlohmann's exceptions for another shape.
+/// Returns the picture as HTML, or "" if nothing was recorded. `timeline`: {"ranks": [{"rank": r,
+/// "steps": [{"step": n, "phases": [{"name", "lane", "begin", "end"}, ...]}]}]}. Times are seconds
+/// on a clock that ranks need not share: each rank's bars start at its own first phase. The
+/// recorded step of median length on the first rank is drawn. Throws nlohmann's exceptions for
+/// other contents.
 std::string timeline_picture(nlohmann::ordered_json const& timeline);
 
 }  // namespace catena

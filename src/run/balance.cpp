@@ -1,3 +1,4 @@
+// Implements the measurement of costs and the shares derived from them.
 #include "run/balance.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace catena {
 namespace {
 
-/// Evaluations, and seconds after which no more are begun.
+/// Numbers of evaluations, and seconds after which no further one begins.
 constexpr int least_evaluations = 5, most_evaluations = 101;
 constexpr double enough_seconds = 0.3;
 
@@ -21,7 +22,8 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// With the bias sweep of a projection: forces of implicit joints are known within a step alone.
+/// Evaluates a group in absolute coordinates, including the bias sweep of a projection. Forces of
+/// implicit joints are not included, since they exist only within a step.
 void evaluate(AbsoluteDynamics& group) {
     group.update_configuration();
     group.assemble_matrices();
@@ -30,6 +32,7 @@ void evaluate(AbsoluteDynamics& group) {
     group.solver().wait();
 }
 
+/// Evaluates a group in joint coordinates. `once`: fused matrix and bias sweep.
 void evaluate(JointDynamics& group, bool once) {
     if (once) {
         group.update_to_solve_once();
@@ -42,8 +45,8 @@ void evaluate(JointDynamics& group, bool once) {
     group.solver().wait();
 }
 
-/// Seconds of this rank's own work. All ranks begin together, as they share their hosts' memory in
-/// a run.
+/// Seconds of this rank's own work. All ranks begin together, because they share the memory of
+/// their hosts in a run.
 template <class Action>
 double own_seconds(TimedCommunicator const& communicator, Action const& action) {
     communicator.barrier();
@@ -64,7 +67,7 @@ std::vector<OwnCost> measure_own_costs(Scene const& scene, Axes axes,
     TimedCommunicator const timed(communicator);
     ChainSystem system(chains_alone ? *chains_alone : scene, axes, timed, implicit_step);
     for (AbsoluteDynamics* group : system.absolute())
-        evaluate(*group);  // what comes first takes longer
+        evaluate(*group);  // the first evaluation takes longer
     for (JointDynamics* group : system.joint()) evaluate(*group, system.solves_once());
     std::vector<std::vector<double>> seconds(system.groups().size());
     double const start = seconds_now();
@@ -99,7 +102,7 @@ dca::Shares agree_on_shares(Communicator const& communicator,
         double bodies = 0, seconds = 0;
         for (std::size_t r = 0; r < ranks; ++r) {
             OwnCost const& cost = all[r * groups + g];
-            if (cost.bodies == 0) continue;  // what it takes is no body's
+            if (cost.bodies == 0) continue;  // cost of no body
             bodies += static_cast<double>(cost.bodies);
             seconds += cost.seconds;
             taken[r] += cost.seconds;

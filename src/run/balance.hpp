@@ -1,5 +1,5 @@
-// Which share of the bodies each rank gets where ranks differ: what they cost is measured before a
-// run.
+// Load balance between ranks of different speed: the cost of bodies is measured before a run and
+// determines the rank's share.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,26 @@
 
 namespace catena {
 
-/// Of one group of chains, cut equally: this rank's bodies, and the seconds that an evaluation of
-/// them takes by this rank's own work.
+/// Cost of one group of chains, distributed equally: number of this rank's bodies, and the seconds
+/// of this rank's own work per evaluation.
 struct OwnCost {
     std::int64_t bodies = 0;
     double seconds = 0;
 };
 
-/// Group after group, medians of several evaluations of the scene's start. Messages, the time they
-/// are waited for included, do not count, nor do OpenMM's forces. `implicit_step`: ChainSystem's.
-/// Collective.
+/// Measures the costs of all groups as medians over several evaluations of the scene's start.
+/// Messages, including the wait for them, and OpenMM's forces do not count. `implicit_step`:
+/// argument of ChainSystem's constructor. Collective.
 std::vector<OwnCost> measure_own_costs(Scene const&, Axes, Communicator const&,
                                        double implicit_step);
 using MeasureOwnCosts = std::function<std::vector<OwnCost>(Scene const&, Axes, Communicator const&,
                                                            double implicit_step)>;
 
-/// In proportion to speeds, a rank's own being what its bodies would take at the ranks' mean costs
-/// over what they take, as if costs were proportional to bodies: what every rank does alike, the
-/// top of a long chain's tree, makes shares more equal. The same on every rank. Precondition: as
-/// many groups on every rank. Collective.
+/// Computes shares in proportion to the ranks' speeds. A rank's speed is the time that its bodies
+/// would take at the mean cost of all ranks, divided by the measured time. Costs are assumed to be
+/// proportional to bodies. Work that every rank does alike (the top of a long chain's tree)
+/// therefore makes the shares more equal. The result is the same on every rank. Precondition: equal
+/// number of groups on every rank. Collective.
 dca::Shares agree_on_shares(Communicator const&, std::vector<OwnCost> const& of_groups);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the comparison of a checkpoint's scene with the present one.
 #include "run/branch.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ using Values = std::map<std::string, std::string>;
 
 constexpr char const* note_of_scene = "scene";
 
-/// Empty where an earlier version wrote the checkpoint.
+/// Values of the scene in a checkpoint; empty if an earlier version wrote it.
 Values values_in(Checkpoint const& c) {
     auto const note = c.notes.find(note_of_scene);
     if (note == c.notes.end()) return {};
@@ -25,6 +26,7 @@ Values values_in(Checkpoint const& c) {
     return values;
 }
 
+/// Throws InputError if the scene's integrator uses other coordinates than the checkpoint's state.
 void require_same_coordinates(Checkpoint const& c, Scene const& scene, std::string const& file) {
     bool const joint = uses_joint_coordinates(scene.dynamics.integrator),
                was_joint = c.arrays.contains("q");

@@ -1,3 +1,4 @@
+// Implements the summary of OpenMM's forces.
 #include "run/force_summary.hpp"
 
 #include <algorithm>
@@ -9,6 +10,7 @@ namespace {
 
 using nlohmann::json;
 
+/// Values of all ranks, on every rank. Collective.
 std::vector<std::int64_t> of_ranks(Communicator const& communicator, std::int64_t own) {
     std::vector<std::int64_t> all(static_cast<std::size_t>(communicator.size()));
     communicator.all_gather(std::as_bytes(std::span(&own, 1)),
@@ -17,7 +19,8 @@ std::vector<std::int64_t> of_ranks(Communicator const& communicator, std::int64_
     return all;
 }
 
-/// One entry a rank where that is a list.
+/// Summary of ghosts: beads of other ranks that a rank's forces need. Lists have one entry per
+/// rank. Collective.
 json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, std::int64_t steps) {
     Communicator const& communicator = system.communicator();
     auto const a_step = [&](std::int64_t own) {

@@ -1,5 +1,5 @@
-// What a run's summary says of OpenMM: where it computed, how much ran beside it, and what ranks
-// told each other for it.
+// Part of a run's summary about OpenMM: platform, overlap with the matrix sweep, and messages
+// between ranks.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace catena {
 
-/// The same on every rank; null without OpenMM. `steps`: of this run. Collective.
+/// Returns the same object on every rank; null without OpenMM. `steps`: steps of this run.
+/// Collective.
 nlohmann::json summary_of_forces(ChainSystem const&, std::int64_t steps);
 
 }  // namespace catena

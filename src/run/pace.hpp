@@ -1,15 +1,16 @@
-// How quick a run is once its start is behind it.
+// Speed of a run without its first steps.
 #pragma once
 
 #include <cstdint>
 
 namespace catena {
 
-/// First steps make lists, find memory and compile kernels: a short run's mean says little about a
-/// long one.
+/// Mean speed of the steps that count. The first steps build lists, allocate memory and compile
+/// kernels, so that a short run's mean says little about a long one.
 class Pace {
   public:
-    /// After each step: how many there have been, from which on they count, and the clock.
+    /// Records the clock in seconds after each step. `steps`: steps so far; `from`: number of steps
+    /// after which steps count.
     void note(std::int64_t steps, std::int64_t from, double now) {
         steps_ = steps;
         now_ = now;
@@ -17,7 +18,7 @@ class Pace {
         from_ = steps;
         begun_ = now_;
     }
-    /// 0: there were none that count.
+    /// Returns 0 if no steps counted yet.
     double steps_per_second() const {
         return steps_ > from_ && now_ > begun_
                    ? static_cast<double>(steps_ - from_) / (now_ - begun_)
@@ -25,7 +26,9 @@ class Pace {
     }
 
   private:
+    /// Last step recorded, and the last one that does not count.
     std::int64_t steps_ = 0, from_ = 0;
+    /// Their times.
     double begun_ = 0, now_ = 0;
 };
 

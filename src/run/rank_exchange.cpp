@@ -1,3 +1,4 @@
+// Implements the exchange of checkpoints and timelines.
 #include "run/rank_exchange.hpp"
 
 #include <nlohmann/json.hpp>
@@ -21,7 +22,7 @@ json timeline_json(std::vector<StepTimeline> const& steps) {
     return list;
 }
 
-/// The text of every rank, on rank 0. Collective.
+/// Returns the texts of all ranks, on rank 0 only. Collective.
 std::vector<std::string> gather_texts(Communicator const& communicator, std::string const& own) {
     auto const ranks = static_cast<std::size_t>(communicator.size());
     std::int64_t const length = static_cast<std::int64_t>(own.size());

@@ -1,4 +1,4 @@
-// What ranks tell each other about a run beside its steps: the checkpoint at its start, their
+// Exchange between ranks outside the time steps: the checkpoint at the start of a run and the
 // timelines at its end.
 #pragma once
 
@@ -11,13 +11,14 @@
 
 namespace catena {
 
-/// Arrays of more numbers are of bodies: each rank gets its own later (ChainSystem::set_state).
-/// What a run keeps beside them is shorter: at most a number a rank.
+/// Largest array that share() sends, in numbers. Larger arrays belong to bodies, and each rank
+/// receives its own part later (ChainSystem::set_state). Other arrays of a run have at most one
+/// number per rank.
 inline constexpr std::size_t largest_shared_array = 1 << 16;
-/// Rank 0's checkpoint to every rank, but its notes and those arrays. Collective.
+/// Sends rank 0's checkpoint to every rank, except its notes and large arrays. Collective.
 void share(Communicator const&, Checkpoint&);
 
-/// {"ranks": [{"rank", "steps": [{"step", "phases": [...]}]}]} on rank 0. Collective.
+/// Returns {"ranks": [{"rank", "steps": [{"step", "phases": [...]}]}]} on rank 0. Collective.
 nlohmann::json gather_timelines(Communicator const&, std::vector<StepTimeline> const&);
 
 }  // namespace catena

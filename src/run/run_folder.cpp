@@ -1,3 +1,4 @@
+// Implements the output folder of a run: creation, frames, checkpoints and final files.
 #include "run/run_folder.hpp"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ bool holds_run(std::string const& folder) {
 
 namespace {
 
-/// Whether a run may begin in a folder as in a new one: nothing but a lock is there.
+/// True if a run may begin in an existing folder as in a new one, i.e. if it contains at most a
+/// lock.
 bool is_vacant(std::string const& folder) {
     std::error_code error;
     fs::directory_iterator entries(folder, error);
@@ -42,6 +44,7 @@ bool is_vacant(std::string const& folder) {
     });
 }
 
+/// True if the folder exists. Throws InputError if that cannot be determined.
 bool is_there(std::string const& folder) {
     std::error_code error;
     bool const exists = fs::exists(folder, error);
@@ -56,7 +59,8 @@ bool is_there(std::string const& folder) {
 RunFolder::RunFolder(Scene const& scene, Communicator const& communicator,
                      RunOptions const& options)
     : scene_(scene), communicator_(communicator), folder_(options.output) {
-    requested_io_mode_of_run(communicator);  // a wrong one is refused before anything is replaced
+    requested_io_mode_of_run(
+        communicator);  // a wrong request is refused before anything is replaced
     on_first_rank(communicator, [&] {
         bool const exists = is_there(folder_);
         std::error_code ignored;
@@ -70,13 +74,13 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator,
         if (exists && !appends_) refuse_unless_free(options);
         make_output_folder(folder_);
         lock_ = std::make_unique<RunLock>(folder_);
-        if (!appends_) refuse_unless_free(options);  // a run may have come and gone
+        if (!appends_) refuse_unless_free(options);  // another run may have ended in the meantime
         for (char const* name : files_of_a_run)
             fs::remove(path(std::string(name) + ".writing"), ignored);
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(path(name), ignored);
     });
-    appends_ = communicator.sum(appends_ ? 1 : 0) > 0;  // rank 0 alone looked
+    appends_ = communicator.sum(appends_ ? 1 : 0) > 0;  // only rank 0 looked
 }
 
 void RunFolder::refuse_unless_free(RunOptions const& options) const {
@@ -90,7 +94,7 @@ void RunFolder::refuse_unless_free(RunOptions const& options) const {
                      "name another with --output" + go_on + ", or replace it with --overwrite");
 }
 
-/// Between two renames of a checkpoint that was being written, only the one before is there.
+/// An interruption between the two renames of a checkpoint leaves only the preceding one.
 std::string RunFolder::newest_checkpoint() const {
     std::error_code ignored;
     for (char const* name : {"checkpoint.h5", "checkpoint.previous.h5"})
@@ -196,7 +200,7 @@ void RunFolder::check() {
 void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system,
                                  ChainSystem::OwnState const& own) {
     with_frames(
-        [&] { trajectory_->flush(); });  // a restart finds every frame up to the checkpoint's step
+        [&] { trajectory_->flush(); });  // a restart needs every frame up to the checkpoint's step
     on_disk([&] {
         throw_kept();
         observables_->flush();

@@ -1,6 +1,6 @@
-// The folder a run writes, on rank 0; frames and checkpoints may be all ranks' together. What fails
-// there (a full disk) ends all ranks in good order: calls are collective, but for those that keep
-// what fails for check().
+// Output folder of a run. Rank 0 writes it; frames and checkpoints may be written by all ranks
+// together. A failure (a full disk) ends all ranks in good order. Calls are therefore collective,
+// except those that store a failure for check().
 #pragma once
 
 #include <exception>
@@ -16,74 +16,79 @@
 
 namespace catena {
 
-/// Whether a run has written there.
+/// True if a run has written files there.
 bool holds_run(std::string const& folder);
 
+/// Files of a run, and the lock of its folder.
 class RunFolder {
   public:
-    /// Makes or opens the folder. Throws InputError on every rank.
+    /// Creates or opens the folder. Throws InputError on every rank.
     RunFolder(Scene const&, Communicator const&, RunOptions const&);
 
-    /// `go_on`: in the files of the checkpoint's run, where the folder is that run's.
+    /// Opens the files. `go_on`: step and records to continue from, if the folder is that of the
+    /// checkpoint's run. Collective.
     void open(Topology const&, std::vector<std::string> const& columns, Continuation const& go_on);
-    /// Whether the topology's files are wanted: the first state's parts, and the end of it. What
-    /// fails there is kept for check().
+    /// True if the topology's files are to be written: parts of the first state, then
+    /// end_topology(). Failures are stored for check().
     bool wants_topology() const { return !appends_; }
     void put_topology(Frame const& part, Executor const&);
     void end_topology();
-    /// How frames are written.
+    /// Mode in which frames are written.
     ParallelIoMode const& frames_way() const { return frames_way_; }
-    /// A frame: collective, each rank with parts of its own; else begin and parts on rank 0 alone,
-    /// which keeps what fails there for the end.
+    /// Writes a frame. In collective mode every rank calls these with its own parts. Otherwise
+    /// begin() and put() act on rank 0 only, and failures are stored until the next check.
     void begin(std::int64_t step, double time);
     void put(std::span<Frame const> parts);
     void end(std::vector<Vector<double, 6>> const& tip_forces,
              std::vector<double> const& observables);
-    /// Throws what was kept of failures: of the topology, and of frames that are not written
-    /// together. Collective.
+    /// Throws stored failures of the topology, and of frames that are not written together.
+    /// Collective.
     void check();
-    /// Frames in the trajectory, and lines in the table, before step n; for rank 0.
+    /// Number of frames in the trajectory, and of lines in the table, before step n. Rank 0 only.
     std::int64_t records_before(std::int64_t n) const;
-    /// With the arrays of bodies that ranks have of the system.
+    /// Writes a checkpoint together with the arrays of the bodies that ranks hold. Collective.
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
-    /// How the last one was written.
+    /// Mode in which the last checkpoint was written.
     ParallelIoMode const& checkpoints_way() const { return checkpoints_way_; }
-    /// Closes the tables, writes summary, timeline and report.
+    /// Closes the tables and writes summary, timeline and report. Collective.
     void finish(std::string const& summary, std::string const& timeline);
 
     std::string path(std::string const& name) const { return folder_ + "/" + name; }
 
   private:
-    /// InputError where another run writes there, or what is there would be lost.
+    /// Throws InputError if another run writes there, or files there would be lost.
     void refuse_unless_free(RunOptions const&) const;
-    /// What a restart can begin with; empty: nothing.
+    /// Returns the checkpoint with which a restart can begin; empty if there is none.
     std::string newest_checkpoint() const;
-    /// A ComputationError of the action's tells the way back as well.
+    /// Runs `action` and appends the advice of way_back() to a ComputationError.
     template <class Action>
     void telling_way_back(Action const& action);
-    /// The same by rank 0, for all.
+    /// Runs `action` on rank 0 by telling_way_back(). Failures reach all ranks. Collective.
     template <class Action>
     void on_disk(Action const& action);
-    /// By whoever writes frames.
+    /// Runs `action` on the ranks that write frames.
     template <class Action>
     void with_frames(Action const& action);
+    /// Advice how to continue from the newest checkpoint; empty if there is none.
     std::string way_back() const;
-    /// On rank 0 between collective calls, unless something failed before.
+    /// Runs `action` on rank 0 between collective calls and stores its failure. Does nothing after
+    /// a stored failure.
     template <class Action>
     void keeping_failure(Action const& action);
+    /// Throws the stored failure, if there is one.
     void throw_kept();
 
     Scene const& scene_;
     Communicator const& communicator_;
-    bool appends_ = false;
+    bool appends_ = false;  // the folder is that of the restart's checkpoint
     std::string folder_;
-    std::unique_ptr<RunLock> lock_;  // on rank 0
+    std::unique_ptr<RunLock> lock_;  // exists on rank 0 only
     std::unique_ptr<TopologyWriter> topology_;
     ParallelIoMode frames_way_, checkpoints_way_;
     std::unique_ptr<TrajectoryWriter> trajectory_;
     std::unique_ptr<ObservablesWriter> observables_;
-    std::exception_ptr failure_;
-    std::int64_t step_ = -1;  // of the last frame that was begun here
+    std::exception_ptr failure_;  // stored failure
+    std::int64_t step_ = -1;      // step of the last frame that was begun here
     double time_ = 0;
 };
 

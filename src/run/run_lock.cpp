@@ -1,3 +1,4 @@
+// Implements the lock of a run's folder by flock or by the existence of its file.
 #include "run/run_lock.hpp"
 
 #include <fcntl.h>
@@ -22,12 +23,12 @@
 namespace catena {
 namespace {
 
-/// What the lock's file says of its holder.
+/// Contents of the lock's file.
 struct Holder {
     std::string host;
     long process = 0;
     std::string
-        started;  // as the system counts it: the number of a process that has ended is given again
+        started;  // start time of the process: the system reuses the numbers of ended processes
     std::string since;
 };
 
@@ -36,8 +37,8 @@ std::string this_host() {
     return ::gethostname(name, sizeof name - 1) == 0 && name[0] != '\0' ? name : "unknown";
 }
 
-/// Ticks from the host's start to the process's: the 22nd word of its status, the 20th behind the
-/// name in brackets. Empty: no such process.
+/// Returns the ticks from the host's start to the process's, or "" if there is no such process. The
+/// value is the 22nd word of the process's status, the 20th behind the name in brackets.
 std::string start_of(long process) {
     std::ifstream in(fmt::format("/proc/{}/stat", process));
     std::string text;
@@ -49,6 +50,7 @@ std::string start_of(long process) {
     return words ? word : "";
 }
 
+/// Contents of the lock's file for this process.
 std::string text_of_this() {
     std::time_t const now = std::time(nullptr);
     std::tm utc{};
@@ -58,6 +60,7 @@ std::string text_of_this() {
     return fmt::format("{} {} {} {}\n", this_host(), ::getpid(), start_of(::getpid()), since);
 }
 
+/// Reads the lock's file. Control characters become blanks; missing words remain empty.
 Holder holder_in(int descriptor) {
     char text[512] = {};
     Holder holder;
@@ -68,7 +71,7 @@ Holder holder_in(int descriptor) {
     return holder;
 }
 
-/// The holder may have taken the lock and not have said so yet.
+/// Reads the holder for up to 0.2 s: it may have locked the file without having written yet.
 Holder holder_soon_in(int descriptor) {
     for (int i = 0; i < 20; ++i) {
         Holder holder = holder_in(descriptor);
@@ -78,6 +81,7 @@ Holder holder_soon_in(int descriptor) {
     return {};
 }
 
+/// True unless the process has ended, or its number now belongs to another process.
 bool is_alive(Holder const& holder) {
     if (holder.process <= 0 ||
         (::kill(static_cast<pid_t>(holder.process), 0) != 0 && errno == ESRCH))
@@ -107,7 +111,7 @@ bool is_alive(Holder const& holder) {
         "name another with --output");
 }
 
-/// By flock: 0, EWOULDBLOCK, or what says that the file system has none.
+/// Tries flock. Returns 0, EWOULDBLOCK, or the error of a file system without flock.
 int try_lock(int descriptor, int kind) {
     int error = 0;
     do error = ::flock(descriptor, kind | LOCK_NB) == 0 ? 0 : errno;
@@ -115,7 +119,7 @@ int try_lock(int descriptor, int kind) {
     return error;
 }
 
-/// Another one may only have looked.
+/// Tries flock for up to 0.2 s, because another run may only be testing the lock.
 int lock_patiently(int descriptor) {
     int error = try_lock(descriptor, LOCK_EX);
     for (int tries = 0; tries < 10 && error == EWOULDBLOCK; ++tries) {
@@ -125,13 +129,15 @@ int lock_patiently(int descriptor) {
     return error;
 }
 
+/// True if the file of that name is the opened one.
 bool is_of_name(int descriptor, std::string const& file) {
     struct stat open{}, named{};
     return ::fstat(descriptor, &open) == 0 && ::lstat(file.c_str(), &named) == 0 &&
            open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
-/// A file, never a link, a pipe or a device; -1 where it is not there and not to be made.
+/// Opens a regular file, never a link, a pipe or a device. Returns -1 if the file cannot be opened,
+/// with the cause in errno.
 int open_lock(std::string const& file, int flags) {
     int const descriptor = ::open(file.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (descriptor < 0) return -1;
@@ -141,6 +147,7 @@ int open_lock(std::string const& file, int flags) {
     throw InputError("the lock of the run's folder is no file", file, "remove it");
 }
 
+/// Writes the holder to the lock's file. Removes the file if that fails.
 void write_holder(int descriptor, std::string const& file) {
     std::string const text = text_of_this();
     if (::ftruncate(descriptor, 0) != 0 ||
@@ -152,8 +159,8 @@ void write_holder(int descriptor, std::string const& file) {
     }
 }
 
-/// Where there is no flock: a file that another process made stands for its lock, unless that has
-/// ended.
+/// Treats the existing file of another process as its lock on a file system without flock. The file
+/// is removed if that process ran on this host and has ended.
 void refuse_or_remove(int descriptor, std::string const& file, std::string const& folder) {
     Holder const holder = holder_soon_in(descriptor);
     bool const dead = holder.host == this_host() && !is_alive(holder);
@@ -168,7 +175,7 @@ RunLock::RunLock(std::string const& folder) : file_(folder + "/" + run_lock_name
         bool const made = (descriptor_ = open_lock(file_, O_RDWR | O_CREAT | O_EXCL)) >= 0;
         if (!made && errno != EEXIST) refuse_file(file_, errno);
         if (!made && (descriptor_ = open_lock(file_, O_RDWR)) < 0) {
-            if (errno == ENOENT) continue;  // its holder has just ended
+            if (errno == ENOENT) continue;  // the holder has just ended
             refuse_file(file_, errno);
         }
         struct Closing {
@@ -185,7 +192,7 @@ RunLock::RunLock(std::string const& folder) : file_(folder + "/" + run_lock_name
             continue;
         }
         if (!is_of_name(descriptor_, file_))
-            continue;  // removed by its last holder between the opening and the lock
+            continue;  // the last holder removed it between the opening and the lock
         closing.keeps = true;
         write_holder(descriptor_, file_);
         return;

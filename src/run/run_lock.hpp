@@ -1,27 +1,28 @@
-// A run's folder has one writer: a lock that the run holds from before it touches anything to its
-// end.
+// Lock of a run's folder, which has one writer. The run holds it from before its first change until
+// its end.
 #pragma once
 
 #include <string>
 
 namespace catena {
 
-/// The file of a run's folder that holds its lock: who writes there, for others' messages.
+/// Name of the lock's file. It states who writes there, for the messages of other runs.
 inline constexpr char const* run_lock_name = "run.lock";
 
-/// Held while it lives, and gone with the process, however that ends: by flock or, where the file
-/// system has none, by the file's being there, which on this host counts as long as the process
-/// does that made it.
+/// Lock that is held during the object's lifetime and that vanishes with the process, however that
+/// ends. It uses flock. File systems without flock use the existence of the file, which counts on
+/// this host as long as the process that created it exists.
 class RunLock {
   public:
-    /// Takes the lock of a folder that exists. Throws InputError, which names host and process,
-    /// where another run holds it, and where the folder cannot be written to.
+    /// Locks an existing folder. Throws InputError, which names host and process, if another run
+    /// holds the lock, and if the folder is not writable.
     explicit RunLock(std::string const& folder);
     RunLock(RunLock const&) = delete;
     RunLock& operator=(RunLock const&) = delete;
     ~RunLock();
 
-    /// The same InputError where another run holds the lock of `folder`; nothing is taken or made.
+    /// Throws the same InputError if another run holds the lock of `folder`. Nothing is locked or
+    /// created.
     static void refuse_if_taken(std::string const& folder);
 
   private:

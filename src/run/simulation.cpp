@@ -1,3 +1,5 @@
+// Implements runs: the loop over time steps, output, checkpoints, restarts, branches and the
+// summary.
 #include "run/simulation.hpp"
 
 #include <algorithm>
@@ -35,10 +37,12 @@ using nlohmann::json;
 /// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
 constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
-/// The constraint error is looked at with every output and checkpoint, at the last step, and this
-/// often; and after 1, 2, 4, ... steps, while what started at rest gains speed.
+/// Interval of constraint checks. The constraint error is also checked with every output and
+/// checkpoint and at the last step. Further checks follow after 1, 2, 4, ... steps, while bodies
+/// that started at rest accelerate.
 constexpr std::int64_t check_every = 100;
 
+/// Averages of messages per step, for the summary.
 json as_json(Traffic const& sum, std::int64_t steps) {
     json a_step;
     sum.for_each([&](char const* name, std::int64_t count) {
@@ -47,6 +51,7 @@ json as_json(Traffic const& sum, std::int64_t steps) {
     return a_step;
 }
 
+/// State of one run on one rank.
 class Run {
   public:
     Run(Scene const& scene, Communicator const& communicator, RunOptions const& options,
@@ -79,6 +84,7 @@ class Run {
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
 
+    /// Runs all steps and returns the summary. Collective.
     json run() {
         std::int64_t const first = options_.restart.empty() ? 0 : restore();
         first_ = first;
@@ -98,7 +104,7 @@ class Run {
         for (std::int64_t n = first;; ++n) {
             if (frame_.valid() &&
                 frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-                end_frame();  // it may have failed
+                end_frame();  // reports a failure of the concurrent write
             bool const writes = is_frame(n);
             bool const saves = scene_.output.checkpoint_every > 0 &&
                                n % scene_.output.checkpoint_every == 0 && n > first;
@@ -107,20 +113,20 @@ class Run {
                 (n < check_every && std::has_single_bit(static_cast<std::uint64_t>(n)));
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
             bool const renews = (saves || n == last_) && system_.openmm();
-            if (renews) system_.openmm()->renew_ghosts();  // as after a restart from here
+            if (renews)
+                system_.openmm()->renew_ghosts();  // same ghosts as after a restart from here
             Traffic const before = chains_traffic();
             bool const mended = !prepare(n, timeline);
             Traffic of_step = chains_traffic() - before;
-            if (n == first)
-                open(n);  // nothing is written or replaced before forces have been found
+            if (n == first) open(n);  // forces exist before anything is written or replaced
             int const agreed = n == last_ ? 0 : agreement.reason_at(n);
             bool const saves_by_time = agreed == save_wish;
             stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
-            // What is saved has been looked at: steps that left joints open cannot be taken again
+            // A state is checked before it is saved: steps that left joints open cannot be repeated
             // after a restart.
             double const error = looks || saves_by_time || ends || n == first ? look(n) : 0;
-            // Another look is the clock's: what it found counts where the run is worthless.
+            // A check due to the clock counts only if its result makes the run worthless.
             if (looks || error > scene_.dynamics.constraint_tolerance)
                 verdict_.note_error(n, error);
             if (looks) adapt(n, error);
@@ -129,8 +135,8 @@ class Run {
             if (saves || saves_by_time || ends) checkpoint(n);
             if (ends) {
                 if (!writes && !is_kept(n))
-                    output(n, error);  // after the checkpoint: a restart from there is the
-                                       // undisturbed run, without this frame
+                    output(n, error);  // written after the checkpoint: a restart from there equals
+                                       // the undisturbed run, which lacks this frame
                 end_frame();
                 reached_ = n;
                 verdict_.note_end(n, error);
@@ -141,7 +147,7 @@ class Run {
             of_step += chains_traffic() - prepared;
             stepper_->note_error(n);
             if (n > first && !renews && !mended)
-                count_messages(of_step);  // others may evaluate once more
+                count_messages(of_step);  // repeated steps may evaluate once more
             if (n == first) {
                 system_.wait();
                 first_step_after_ = seconds_now() - options_.begun;
@@ -156,6 +162,7 @@ class Run {
     }
 
   private:
+    /// Adds a warning if several ranks use one GPU. Collective.
     void warn_of_shared_gpus() {
         if (!uses_gpu(system_.backend()) || communicator_.size() == 1) return;
         int const ranks = cuda::most_ranks_of_a_gpu(communicator_);
@@ -164,6 +171,7 @@ class Run {
                 "warning: " + std::to_string(ranks) +
                 " ranks share a GPU, where each waits for the others: start one rank a GPU");
     }
+    /// Adds notes about output options without effect.
     void note_outputs(std::int64_t first) {
         std::int64_t const every = scene_.output.every;
         if (last_ > first && every > last_ - first && (last_ - 1) / every == first / every)
@@ -175,16 +183,19 @@ class Run {
                 "output.coordinates: no chain has rigid bodies, so there are no coordinates to "
                 "write");
     }
+    /// Time at step n, ps (s with `units: si`).
     double time(std::int64_t n) const {
         return time_origin_ + static_cast<double>(n) * scene_.dynamics.step;
     }
-    /// Frames that hang on the step alone, not on where a run ends; a branch begins with one.
+    /// True if step n has a frame, which depends on the step alone and not on where a run ends. A
+    /// branch begins with a frame.
     bool is_frame(std::int64_t n) const {
         return n % scene_.output.every == 0 || (options_.branch && n == first_);
     }
 
-    /// What ranks agree on at a step: to save, or by which signal, a number above it, to stop.
+    /// Values on which ranks agree at a step: save, or save_wish + signal to stop.
     static constexpr int save_wish = 1;
+    /// Request of this rank: stop, save because of checkpoint_minutes, or 0.
     int wish() const {
         if (int const stop = options_.stop ? options_.stop() : 0; stop != 0)
             return save_wish + stop;
@@ -192,6 +203,7 @@ class Run {
         return root_ && minutes > 0 && seconds_now() - saved_at_ >= 60 * minutes ? save_wish : 0;
     }
 
+    /// Timeline to be filled for step n, or null.
     StepTimeline* new_timeline(std::int64_t n, bool wanted) {
         if (!wanted || timelines_.size() >= most_timelines) return nullptr;
         timelines_.reserve(most_timelines);
@@ -199,6 +211,7 @@ class Run {
         return &timelines_.back();
     }
 
+    /// Opens the output at the first step, after its forces have been computed. Collective.
     void open(std::int64_t n) {
         at_start_ = observed(true);
         if (system_.openmm() && options_.restart.empty()) start_.forces = look_at_start(system_);
@@ -214,14 +227,17 @@ class Run {
         write_topology(*at_start_->bodies);
         folder_->check();
     }
-    /// The frame of the checkpoint's step is written anew, or it stays as that run's, or it goes: a
-    /// run that ended there wrote it, which the undisturbed one would not have done.
+    /// Continuation in existing files. The frame of the checkpoint's step is written again, or
+    /// remains as that run's, or is removed. The latter is the frame of a run that ended there,
+    /// which the undisturbed run would not have written.
     Continuation go_on() const {
         return {is_frame(first_) || !was_frame_ ? first_ - 1 : first_, records_before_};
     }
+    /// True if the frame of step n remains as the preceding run wrote it.
     bool is_kept(std::int64_t n) const {
         return n == first_ && !folder_->wants_topology() && go_on().after_step == n;
     }
+    /// Writes the topology files from the bodies at the first step.
     void write_topology(ChainSystem::OwnBodies const& at_start) {
         system_.pass_bodies(at_start, [&](ChainSystem::Bodies const& bodies) {
             folder_->put_topology(sites_.part(bodies, false, system_.executor()),
@@ -230,11 +246,12 @@ class Run {
         folder_->end_topology();
     }
 
+    /// Observations at a step.
     struct Observed {
         std::vector<EnergyTerm> terms;
-        std::optional<ChainSystem::OwnBodies> bodies = std::nullopt;  // once somebody asks for them
+        std::optional<ChainSystem::OwnBodies> bodies = std::nullopt;  // computed on demand
     };
-    /// `anyway`: forces are found, whether somebody asks for what comes of them or not.
+    /// Computes what observers need. `anyway`: forces are computed even if nothing requests them.
     Observed observed(bool anyway = false) {
         stepper_->observe({.joint_forces = scene_.output.joint_forces,
                            .energies = anyway || has_energies(scene_)});
@@ -245,17 +262,19 @@ class Run {
                                   scene_.output.coordinates && axes_ == Axes::joint);
     }
 
+    /// Frame that is being written.
     struct PendingFrame {
         std::int64_t step;
         double error;
         Observed now;
         std::vector<Vector<double, 6>> at_tips;
     };
+    /// True if frames may be written concurrently with steps.
     bool may_write_beside() const {
         return communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside;
     }
-    /// On one rank, of many bodies, the frame, and with the first one a topology that is due, is
-    /// written by a thread of its own while steps go on, until something else is to be written.
+    /// Writes the frame of step n. On one rank with many bodies a separate thread writes it, and a
+    /// topology that is due with it. Steps continue until something else must be written.
     void output(std::int64_t n, double error) {
         end_frame();
         pending_ = {n, error, at_start_ ? std::move(*at_start_) : observed(), {}};
@@ -268,7 +287,7 @@ class Run {
         pending_.reset();
         folder_->check();
     }
-    /// False where no thread is to be had.
+    /// Writes the pending frame in a thread of its own. Returns false if no thread can be created.
     bool write_beside() {
         try {
             frame_ = std::async(std::launch::async, [this] { write(*pending_); });
@@ -278,14 +297,14 @@ class Run {
         ++frames_beside_;
         return true;
     }
-    /// The frame that is being written, if one is. Throws what it failed by.
+    /// Waits for the frame that is being written, if there is one. Throws its failure.
     void end_frame() {
         if (!frame_.valid()) return;
         frame_.get();
         pending_.reset();
         folder_->check();
     }
-    /// Collective; on one rank no message is sent.
+    /// Writes a frame. Collective; a single rank sends no messages.
     void write(PendingFrame const& frame) {
         if (std::exchange(topology_is_due_, false)) write_topology(*frame.now.bodies);
         folder_->begin(frame.step, time(frame.step));
@@ -303,7 +322,7 @@ class Run {
         folder_->end(frame.at_tips, last_row_);
     }
 
-    /// What a frame says of the run's verdict, and its row.
+    /// Computes a frame's row of observables and passes its energies to the verdict. Rank 0 only.
     void judge(PendingFrame const& frame) {
         last_row_ = observables_->row(frame.now.terms, frame.error);
         std::optional<double> potential;
@@ -314,6 +333,7 @@ class Run {
         verdict_.add_frame(frame.step, observables_->kinetic(), potential);
     }
 
+    /// Writes this rank's own bodies of a frame in collective mode.
     void put_own(ChainSystem::OwnBodies const& own) {
         system_.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
             std::vector<Frame> parts(runs.size());
@@ -326,7 +346,8 @@ class Run {
         });
     }
 
-    /// The largest over ranks: every rank decides the same. A state that is not finite has none.
+    /// Largest constraint error over all ranks, so that every rank decides alike. Throws if the
+    /// state is not finite.
     double look(std::int64_t n) {
         double const error = stepper_->look(n);
         if (!std::isfinite(error))
@@ -335,17 +356,18 @@ class Run {
         return error;
     }
 
-    /// Another sweep where one is due. At steps that the scene chooses alone, not where a run
-    /// happens to end: a restart is to be the undisturbed run.
+    /// Adds a projection sweep if one is due. It does so only at steps that the scene determines,
+    /// not where a run happens to end: a restart must equal the undisturbed run.
     void adapt(std::int64_t n, double error) {
-        if (n == first_ && !options_.restart.empty()) return;  // the run before did
+        if (n == first_ && !options_.restart.empty()) return;  // the preceding run did it
         if (stepper_->adapt(watch_, error, scene_.dynamics.constraint_tolerance))
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
     }
 
-    /// So far; without what OpenMM is brought, which StepMessages does not tell.
+    /// Messages so far, without those that supply OpenMM, which StepMessages does not predict.
     Traffic chains_traffic() const { return communicator_.traffic() - system_.openmm_traffic(); }
 
+    /// Adds a step's messages, counted and predicted.
     void count_messages(Traffic const& of_step) {
         ++counted_steps_;
         counted_ += of_step;
@@ -355,7 +377,7 @@ class Run {
                 stepper_->parts(), stepper_->solved());
     }
 
-    /// What fails within a step says at which; `has_started`: not at the scene's start.
+    /// Runs `action` and adds step n to its failures. `has_started`: n is not the scene's start.
     template <class Action>
     void at_step(std::int64_t n, bool has_started, Action const& action) {
         try {
@@ -367,9 +389,9 @@ class Run {
         }
     }
 
-    /// Forces that fail where a step has torn joints open are those of a step that is taken again.
-    /// Where one rank alone knows of the failure, the run ends. Returns whether there was nothing
-    /// to mend.
+    /// Computes forces and matrices. If forces fail because a step tore joints open, that step is
+    /// repeated. The run ends if only one rank knows of the failure. Returns true if nothing was
+    /// repeated.
     bool prepare(std::int64_t n, StepTimeline* timeline) {
         try {
             at_step(n, n > 0, [&] { stepper_->prepare(timeline); });
@@ -382,6 +404,7 @@ class Run {
         return false;
     }
 
+    /// Writes a checkpoint of the state at step n. Collective.
     void checkpoint(std::int64_t n) {
         end_frame();
         Checkpoint c;
@@ -407,17 +430,19 @@ class Run {
         saved_at_ = seconds_now();
     }
 
+    // Names of integers, notes and arrays in checkpoints.
     static constexpr char const *number_of_records = "records_before",
                                 *whether_frame = "frame_at_step", *step_of_branch = "branched_at",
                                 *note_of_platform = "openmm_platform",
                                 *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
+    /// Platform and precision of OpenMM, as kept in checkpoints.
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
     }
 
-    /// The checkpoint to go on from, on every rank but for its notes and arrays of bodies.
-    /// Collective.
+    /// Returns the checkpoint to continue from, on every rank, without its notes and arrays of
+    /// bodies. Collective.
     Checkpoint read_start() {
         Checkpoint c;
         on_first_rank(communicator_, [&] {
@@ -436,8 +461,8 @@ class Run {
         return c;
     }
 
-    /// Those of the checkpoint, where as many ranks made it: a restart is to be the undisturbed
-    /// run, with OpenMM too. Collective.
+    /// Shares of the ranks: those of the checkpoint if as many ranks made it, else measured ones. A
+    /// restart must equal the undisturbed run, also with OpenMM. Collective.
     dca::Shares shares() {
         if (!scene_.solver.balance || communicator_.size() == 1) return {};
         std::vector<double> const stored =
@@ -451,6 +476,7 @@ class Run {
                                options_.own_costs(scene_, axes_, communicator_, implicit_step_));
     }
 
+    /// Restores the state from the checkpoint and returns its step.
     std::int64_t restore() {
         Checkpoint const c = *std::exchange(from_, std::nullopt);
         auto const made_on = c.notes.find(note_of_platform);
@@ -473,8 +499,8 @@ class Run {
         return c.step;
     }
 
-    /// Time goes on where it was, whatever the step. Without `steps` there are as many more as the
-    /// scene says.
+    /// Begins a branch and returns its first step. Time continues from its value, whatever the
+    /// length of a step. Without --steps the branch runs for as many steps as the scene states.
     std::int64_t branch(Checkpoint c) {
         double const h = scene_.dynamics.step;
         time_origin_ = number_in(c, array_of_origin, 0);
@@ -488,13 +514,14 @@ class Run {
         return c.step;
     }
 
-    /// Without --steps a branch, and a restart of it, ends as many steps after its beginning as the
-    /// scene says.
+    /// Sets the last step of a branch, or of a restart of one, unless --steps is set. It lies as
+    /// many steps after the branch's beginning as the scene states.
     void count_from_branch(std::int64_t step) {
         branched_at_ = step;
         if (!options_.steps) last_ = step + scene_.dynamics.steps;
     }
 
+    /// Judges the run, writes the final files and returns the summary. Collective.
     json finish(std::int64_t first) {
         std::vector<RunCheck> const found = root_ ? verdict_.checks() : std::vector<RunCheck>();
         bool const valid = communicator_.sum(all_passed(found) ? 0 : 1) == 0;
@@ -510,6 +537,7 @@ class Run {
         return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
     }
 
+    /// Summary of the run without its verdict. Collective.
     json summarise(std::int64_t first, bool valid, json const& forces) {
         double const steps = static_cast<double>(reached_ - first);
         json s{{"title", scene_.title},
@@ -569,7 +597,8 @@ class Run {
         s["solver"].update(stepper_->describe());
         bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(),
                                       [](auto const& g) { return g->has_tips(); });
-        if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
+        if (!system_.absolute().empty() ||
+            tips)  // joint coordinates without jointed tips have no constraint error
             s["constraints"] = {{"largest_error", verdict_.largest_error()},
                                 {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (system_.openmm()) s["forces"] = forces;
@@ -588,6 +617,7 @@ class Run {
         return s;
     }
 
+    /// Shares of the ranks and numbers of their bodies.
     json json_of_shares() const {
         double sum = 0;
         for (std::int64_t const share : shares_) sum += static_cast<double>(share);
@@ -607,45 +637,46 @@ class Run {
     Scene const& scene_;
     Communicator const& communicator_;
     RunOptions options_;
-    bool root_;
-    std::int64_t last_;
+    bool root_;          // this is rank 0
+    std::int64_t last_;  // last step
     Sites sites_;
     Axes axes_;
     double implicit_step_;
-    std::vector<scene::ChangedValue> changes_;  // of a branch, on rank 0
-    std::optional<Checkpoint> from_;            // until it is restored
+    std::vector<scene::ChangedValue> changes_;  // changes of a branch, on rank 0
+    std::optional<Checkpoint> from_;            // exists until it is restored
     bool shares_are_stored_ = false;
-    dca::Shares shares_;  // empty: equal
-    std::future<Sites>
-        sites_of_scene_;  // found while the system is made; after ranks have measured their speeds
+    dca::Shares shares_;                 // empty: equal shares
+    std::future<Sites> sites_of_scene_;  // computed while the system is made, after ranks have
+                                         // measured their speeds
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
-    std::vector<StepMessages> messages_;  // one a group
-    Traffic counted_, predicted_;         // of `counted_steps_`, on this rank
+    std::vector<StepMessages> messages_;  // one per group
+    Traffic counted_, predicted_;         // sums over `counted_steps_`, this rank
     std::unique_ptr<RunFolder> folder_;
     std::unique_ptr<Observables> observables_;
     std::vector<StepTimeline> timelines_;
-    std::vector<double> last_row_;
-    std::optional<Observed> at_start_;  // what the topology and the first frame show
-    bool topology_is_due_ = false;      // true: it is written with the first frame
+    std::vector<double> last_row_;      // last frame
+    std::optional<Observed> at_start_;  // data for the topology and the first frame
+    bool topology_is_due_ = false;      // topology files are written with the first frame
     std::vector<std::string> notes_;
     StartReport start_;
     SweepWatch watch_;
     RunVerdict verdict_{scene_};
-    double seconds_ = 0;
-    double first_step_after_ = 0;  // seconds; 0: there was none
+    double seconds_ = 0;           // duration of all steps
+    double first_step_after_ = 0;  // seconds; 0: no step yet
     Pace pace_;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;
-    std::optional<std::int64_t> branched_at_;  // of a branch, or a restart of one
+    std::optional<std::int64_t>
+        branched_at_;  // step at which the branch began, also after its restart
     int stopped_by_ = 0;
-    std::map<std::string, std::string> values_of_scene_;  // for checkpoints, on rank 0
+    std::map<std::string, std::string> values_of_scene_;  // for checkpoints, rank 0 only
     double time_origin_ = 0,
-           saved_at_ = 0;  // of time: at step 0; when the last checkpoint was written
+           saved_at_ = 0;  // time at step 0; clock at the last checkpoint
     std::int64_t records_before_ =
-        0;  // frames that the run before left before the checkpoint's step, at least
-    bool was_frame_ = true;  // that step was one of its frames, not only its last state
+        0;  // smallest number of frames that the preceding run left before the checkpoint's step
+    bool was_frame_ = true;  // the checkpoint's step was a frame, not only that run's last state
     std::optional<PendingFrame> pending_;
-    std::future<void> frame_;  // last: it ends before what it uses
+    std::future<void> frame_;  // last member: it ends before the members that it uses
 };
 
 }  // namespace
@@ -666,7 +697,8 @@ json run_simulation(Scene const& scene, Communicator const& communicator,
     if (options.restart.empty() && !relaxed) refuse_coinciding(scene, communicator);
     std::optional<StartRelaxation> const relaxation =
         relaxed ? std::optional(relaxed->relaxation) : std::nullopt;
-    // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
+    // Joint coordinates cannot draw thermal velocities themselves, so absolute coordinates draw
+    // them.
     if (uses_joint_coordinates(scene.dynamics.integrator)) {
         Scene const with_velocities = with_start_velocities(start, communicator);
         return Run(with_velocities, communicator, options, relaxation).run();

@@ -1,4 +1,4 @@
-// A run from a scene's start (or a checkpoint) to its last step, with all its files.
+// Simulation from a scene's start (or a checkpoint) to its last step, with all output files.
 #pragma once
 
 #include <cstdint>
@@ -14,34 +14,37 @@
 
 namespace catena {
 
+/// Options of a run, mostly from the command line.
 struct RunOptions {
-    std::string output = "catena-run";  // folder
+    std::string output = "catena-run";  // folder of all output files
     std::optional<std::int64_t>
-        steps;            // instead of dynamics.steps: total, counted from the scene's start
-    std::string restart;  // checkpoint to go on from
-    bool overwrite = false;
-    bool quiet = false;
-    bool branch = false;  // from `restart`, in a folder of its own: values of the scene may differ
-                          // from the checkpoint's
+        steps;            // replaces dynamics.steps: total number, counted from the scene's start
+    std::string restart;  // checkpoint from which the run continues
+    bool overwrite = false;  // replaces the files of an existing folder
+    bool quiet = false;      // prints no progress
+    bool branch = false;     // continues from `restart` in a new folder: values of the scene may
+                             // differ from the checkpoint's
     StopAgreement::Wish
-        stop;  // the run ends after the step that is under way, with a checkpoint and what it has
-    std::string command_line;             // for the summary
-    std::int64_t bodies_beside = 100000;  // in the scene, from which on frames on one rank are
-                                          // written beside the steps that follow
-    std::optional<bool> topology_beside;  // the topology's files with the first frame, where that
-                                          // is; none: where a GPU does the steps
-    double begun = seconds_now();  // when whoever runs it took it up: what a run takes to its first
-                                   // step counts from there
-    MeasureOwnCosts own_costs = measure_own_costs;  // what solver.balance goes by
+        stop;  // requests the end after the current step, with a checkpoint and the files so far
+    std::string command_line;  // text for the summary
+    std::int64_t bodies_beside =
+        100000;  // number of bodies in the scene from which frames of one rank are written
+                 // concurrently with the steps that follow
+    std::optional<bool>
+        topology_beside;  // topology files are written with the first frame, if that is written
+                          // concurrently; empty: if a GPU computes the steps
+    double begun =
+        seconds_now();  // start of the program: the time to the first step is measured from it
+    MeasureOwnCosts own_costs = measure_own_costs;  // measurement on which solver.balance is based
 };
 
 /// Runs the scene and writes its folder: trajectory.h5md, topology.pdb, observables.csv,
-/// checkpoint.h5, summary.json, timeline.json, report.html. Returns the summary (on rank 0;
-/// {"valid": ...} on the others). Collective. `valid` is false when the constraint error or a value
-/// that is not finite makes the run worthless. A run that `stop` ended has "run": {"stopped_by":
-/// ..., "steps": ...}. A branch has "branch": {"from": file, "step": n, "changes": [{"key",
-/// "before", "now"}]} and takes dynamics.steps steps where `steps` is not given. Throws InputError
-/// for a folder that exists (without restart or overwrite) or a checkpoint of another scene.
+/// checkpoint.h5, summary.json, timeline.json, report.html. Returns the summary on rank 0, and
+/// {"valid": ...} with "run" on the other ranks. `valid` is false if a check of the verdict fails
+/// (observe/verdict.hpp). A run ended by `stop` has "run": {"stopped_by": ..., "steps": ...}. A
+/// branch has "branch": {"from": file, "step": n, "changes": [{"key", "before", "now"}]}. It runs
+/// for dynamics.steps steps unless `steps` is set. Throws InputError for a folder that exists
+/// (without restart or overwrite) or a checkpoint of another scene. Collective.
 nlohmann::json run_simulation(Scene const&, Communicator const&, RunOptions const&);
 
 }  // namespace catena

@@ -1,3 +1,5 @@
+// Implements the prediction of messages. It repeats the sequence of calls that integrators and
+// solvers make.
 #include "run/step_messages.hpp"
 
 #include <algorithm>
@@ -7,10 +9,11 @@
 namespace catena {
 namespace {
 
-/// Messages added up; `numbers`: doubles of one unit or body.
+/// Sum of messages. `times`: number of messages; `numbers`: doubles per unit or body.
 class Sum {
   public:
     explicit Sum(Cut const& cut) : cut_(cut) {}
+    /// Gathers of the shared units' data by all ranks.
     void gathers(std::int64_t times, std::int64_t numbers) {
         if (cut_.shared_units == 0) return;
         std::int64_t const all = bytes(cut_.shared_units * numbers);
@@ -19,32 +22,34 @@ class Sum {
         one.gathered_bytes = all;
         traffic_ += one * times;
     }
-    /// As exchange_from_inboard: the last body goes to the rank after.
+    /// Calls of exchange_from_inboard: the last body of a rank is sent to the following rank.
     void from_inboard(std::int64_t times, std::int64_t numbers) {
         exchanges(times, numbers, cut_.outboard);
     }
+    /// Exchanges in the opposite direction.
     void from_outboard(std::int64_t times, std::int64_t numbers) {
         exchanges(times, numbers, cut_.inboard);
     }
-    /// As RingEnds::take.
+    /// Calls of RingEnds::take.
     void from_ring_ends(std::int64_t times, std::int64_t numbers) {
         traffic_.exchanges += times * cut_.ring_ends;
         traffic_.sent_bytes += times * bytes(cut_.ring_ends * numbers);
     }
-    /// Sweeps of the tree with K directions a handle (segment.hpp, articulated.hpp).
+    /// Sweeps of the tree with K directions per handle (segment.hpp, articulated.hpp).
     void matrix_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) {
         gathers(times, of_matrices(k, articulated));
     }
     void bias_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) {
         gathers(times, of_biases(k, articulated));
     }
-    /// Both at once.
+    /// Matrix and bias sweeps that are fused.
     void evaluations(std::int64_t times, std::int64_t k) {
         gathers(times, of_matrices(k, false) + of_biases(k, false));
     }
     Traffic const& traffic() const { return traffic_; }
 
   private:
+    // Doubles per unit: the matrices of a segment, of which the symmetric ones are stored once.
     static std::int64_t of_matrices(std::int64_t k, bool articulated) {
         return articulated ? 3 * k * k + k * (k + 1) / 2 : 2 * k * k + k;
     }
@@ -54,6 +59,7 @@ class Sum {
     static std::int64_t bytes(std::int64_t numbers) {
         return numbers * static_cast<std::int64_t>(sizeof(double));
     }
+    /// Exchanges between consecutive ranks that share a chain.
     void exchanges(std::int64_t times, std::int64_t numbers, bool sends) {
         if (!cut_.inboard && !cut_.outboard) return;
         traffic_.exchanges += times;
@@ -63,7 +69,7 @@ class Sum {
     Traffic traffic_;
 };
 
-/// ChainSolver::at_once() of the group's solver.
+/// Equal to ChainSolver::at_once() of the group's solver.
 bool solves_at_once(ChainGroup const& group) {
     return group.handles == Handles::projected && group.directions < 6 &&
            group.partition.trees.front().run_length > 1;
@@ -102,8 +108,8 @@ Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts,
     return absolute_ ? absolute(sweeps, parts, cut) : joint(sweeps, cut, solved);
 }
 
-/// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its
-/// matrices; a projection beside each.
+/// Messages of ConstrainedIntegrator::step. Each of its drifts has its sweeps, its configuration,
+/// its matrices and a projection.
 Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
     std::int64_t const drifts = (is_langevin(integrator_) ? 2 : 1) * parts,
                        closings = drifts * sweeps;
@@ -119,7 +125,7 @@ Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
         sum.from_outboard(drifts + forces, 3);
     } else {
         if (springs_) sum.from_inboard(drifts, 4);
-        if (implicit_) {  // rotors: of kicks; of each closing's flight and of what it adds
+        if (implicit_) {  // rotors: those of kicks, of each closing's flight, and of what it adds
             sum.from_inboard(drifts + closings, 3);
             sum.from_inboard(closings, 4);
         }
@@ -128,8 +134,8 @@ Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
     return sum.traffic();
 }
 
-/// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without
-/// loads.
+/// Messages of JointDynamics: evaluations, and the corrections of jointed tips, which are
+/// evaluations without loads.
 Traffic StepMessages::joint(int corrections, Cut const& cut, SweepsAStep const& solved) const {
     auto const [matrices, biases, closings] = solved;
     std::int64_t const more = tips_ ? closings * (corrections + 1) : 0, motions = biases + more,

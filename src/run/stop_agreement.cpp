@@ -1,3 +1,4 @@
+// Implements the agreement of ranks on the step after which they stop.
 #include "run/stop_agreement.hpp"
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 namespace catena {
 namespace {
 
-/// mpirun grants a second between a termination and the kill: a look must fit in with room for the
-/// checkpoint.
+/// Interval of the tests. mpirun waits a second between a termination and the kill, in which a test
+/// and the checkpoint must fit.
 constexpr double seconds_between_looks = 0.1;
 
 }  // namespace
@@ -28,7 +29,7 @@ int StopAgreement::reason_at(std::int64_t n) {
     double const steps = static_cast<double>(n - looked_), now = seconds_now();
     double const affordable = std::clamp(
         steps * seconds_between_looks / std::max(now - looked_at_, 1e-9), 1.0, 2 * steps);
-    // The fewest steps that any rank would go on before the next look; none: stop.
+    // Smallest number of steps that any rank would run before the next test; 0: stop.
     double const agreed = -communicator_.max(own != 0 ? 0.0 : -affordable);
     if (agreed == 0) return static_cast<int>(communicator_.max(own));
     looked_ = n;

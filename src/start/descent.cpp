@@ -1,3 +1,4 @@
+// Implements the minimiser FIRE with a limit on the motion per step.
 #include "start/descent.hpp"
 
 #include <algorithm>
@@ -6,13 +7,13 @@
 namespace catena {
 namespace {
 
-double constexpr cap = 0.02;           // nm: the furthest that a bead goes in a step
-double constexpr first_step = 0.004;   // of time, where a bead weighs 1 and forces are in kJ/mol/nm
-double constexpr longest_step = 0.02;  // bonds of 10,000 kJ/mol/nm2 are stable in it
+double constexpr cap = 0.02;           // nm: largest motion of a bead in a step
+double constexpr first_step = 0.004;   // unit of time: beads weigh 1 and forces are in kJ/mol/nm
+double constexpr longest_step = 0.02;  // stable for bonds of 10,000 kJ/mol/nm2
 double constexpr shortest_step = 1e-6;
-double constexpr first_mixing = 0.1, less_mixing = 0.99;
-double constexpr longer = 1.1, shorter = 0.5;
-int constexpr patience = 5;  // downhill steps before they get longer
+double constexpr first_mixing = 0.1, less_mixing = 0.99;  // start value and decay of the mixing
+double constexpr longer = 1.1, shorter = 0.5;             // factors of the step's length
+int constexpr patience = 5;  // downhill steps before the step becomes longer
 
 }  // namespace
 
@@ -34,7 +35,7 @@ Descent::Ended Descent::run(Limits const& limits, Tell const& tell) {
         tell(ended.evaluations, ended.energy);
         bool const pushed = largest_force_ > limits.large_force;
         double const fall = before - ended.energy;
-        // Where overlaps push, the energy rises at times before it falls.
+        // Overlaps that push may raise the energy before it falls.
         if (std::isfinite(ended.energy) &&
             (pushed ? std::abs(fall) < limits.last_fall : fall < limits.fall)) {
             ended.at_rest = true;
@@ -74,7 +75,8 @@ double Descent::accelerate() {
     return power;
 }
 
-/// Turns velocities towards the forces.
+/// Mixes a share `mixing_` of the forces' direction, at the norm of the velocities, into the
+/// velocities.
 void Descent::mix() {
     double speed = 0, force = 0;
     for (std::size_t c = 0; c < chains_.size(); ++c)
@@ -98,7 +100,7 @@ void Descent::stop(double shorten) {
     mixing_ = first_mixing, downhill_ = 0;
 }
 
-/// By the velocities, which become what the links let be done; no unit by more than the cap.
+/// Velocities become what the links permit; no unit moves by more than the cap.
 bool Descent::move() {
     bool moved = true;
     for (std::size_t c = 0; c < chains_.size(); ++c) {

@@ -1,5 +1,5 @@
-// Moves chains down the forces on their beads: steps with inertia, which is lost where they lead
-// uphill, and with a cap.
+// Relaxation of chains along the forces on their beads. Steps have inertia, which is discarded
+// where they lead uphill, and an upper limit of length.
 #pragma once
 
 #include <cstdint>
@@ -11,44 +11,57 @@
 
 namespace catena {
 
-/// Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006): FIRE, on units of chains. A function of its
-/// arguments alone.
+/// Minimiser FIRE (Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006)) for the units of chains. Its
+/// result depends on its arguments only.
 class Descent {
   public:
+    /// Conditions under which a descent ends.
     struct Limits {
-        std::int64_t most;    // evaluations
-        std::int64_t window;  // evaluations in which the energy must fall ...
-        double fall;  // ... by this much, kJ/mol: else it ends, where no bead feels more than ...
-        double large_force;  // ... this, kJ/mol/nm; where one does ...
-        double last_fall;    // ... it ends where the energy changes by less than this
+        std::int64_t most;    // largest number of evaluations
+        std::int64_t window;  // evaluations after which the energy is compared
+        double fall;  // smallest fall of the energy in a window, kJ/mol, that continues the descent
+                      // if no bead ...
+        double large_force;  // ... feels a larger force than this, kJ/mol/nm
+        double last_fall;    // smallest change of the energy in a window, kJ/mol, that continues it
+                             // otherwise
     };
-    /// `at`: where the scene's beads stand, in the order of the forces' beads.
+    /// `at`: positions of the scene's beads, nm, in the order of the forces' beads. They are
+    /// updated.
     Descent(std::vector<MovingChain>& chains, LoneForces& forces, std::vector<Vec3>& at);
 
-    /// Called after each window with the number of evaluations so far and the energy.
+    /// Callback after each window: number of evaluations so far and energy in kJ/mol.
     using Tell = std::function<void(std::int64_t, double)>;
+    /// Result of a descent.
     struct Ended {
         std::int64_t evaluations = 0;
-        double energy = 0;
+        double energy = 0;     // potential energy, kJ/mol
         bool at_rest = false;  // the energy fell no further
     };
+    /// Moves the chains until a condition of `limits` ends the descent.
     Ended run(Limits const&, Tell const&);
 
   private:
+    /// One step: velocities from accelerations, motion, new forces, then mixing or a stop.
     void step();
-    /// Forces become accelerations. The power is of the velocities.
+    /// Computes accelerations from the forces, and returns the power of the forces along the
+    /// velocities.
     double accelerate();
+    /// Redirects velocities towards the forces.
     void mix();
+    /// Sets velocities to zero and multiplies the step by `shorten`.
     void stop(double shorten);
+    /// Moves the chains by step * velocity. Returns false if the links of some chain could not be
+    /// closed.
     bool move();
 
     std::vector<MovingChain>& chains_;
     LoneForces& forces_;
     std::vector<Vec3>& at_;
-    std::vector<std::vector<UnitMotion>> velocity_, acceleration_;  // by chain and unit
-    double step_, mixing_;
-    int downhill_ = 0;  // steps
-    double largest_force_ = 0;
+    std::vector<std::vector<UnitMotion>> velocity_,
+        acceleration_;          // per chain and unit: nm and rad per unit of time
+    double step_, mixing_;      // length of a step; weight of the forces' direction in mix()
+    int downhill_ = 0;          // consecutive downhill steps
+    double largest_force_ = 0;  // largest force on a bead, kJ/mol/nm
 };
 
 }  // namespace catena

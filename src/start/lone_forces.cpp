@@ -1,3 +1,4 @@
+// Implements OpenMM's forces on one rank, with a substitute for forces that are not finite.
 #include "start/lone_forces.hpp"
 
 #include <algorithm>
@@ -14,9 +15,9 @@
 namespace catena {
 namespace {
 
-int constexpr threads_of_cpu = 4;  // the sum of forces depends on it
-double constexpr pushed = 0.3;     // nm
-double constexpr push = 1e6;       // kJ/mol/nm: more than any bead feels in a thermal state
+int constexpr threads_of_cpu = 4;  // fixed, because the sum of forces depends on it
+double constexpr pushed = 0.3;     // nm: beads this near push each other apart
+double constexpr push = 1e6;       // kJ/mol/nm: larger than any force on a bead in thermal motion
 
 }  // namespace
 

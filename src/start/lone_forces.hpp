@@ -1,4 +1,4 @@
-// OpenMM's forces on all beads of a scene, computed by one rank for itself.
+// OpenMM's forces on all beads of a scene, computed by one rank alone.
 #pragma once
 
 #include <memory>
@@ -12,32 +12,37 @@
 
 namespace catena {
 
+/// Evaluator of forces and energies outside a run, e.g. for checks and relaxation of a start.
 class LoneForces {
   public:
-    /// On OpenMM's platform Reference where the scene asks for it, else on CPU with a number of
-    /// threads that does not depend on the cores: forces are the same bits on any number of ranks.
-    /// `reach`: pair forces with a cutoff end there (make_openmm_contacts()).
+    /// Uses OpenMM's platform Reference if the scene requests it, else CPU with a number of threads
+    /// that does not depend on the cores. Forces are thus bitwise equal on any number of ranks.
+    /// `reach`: cutoff of pair forces in nm (make_openmm_contacts()).
     explicit LoneForces(Scene const&, std::optional<double> reach = std::nullopt);
 
+    /// Energy and forces at the same positions.
     struct FusedSweep {
-        double energy = 0;         // kJ/mol; infinite where forces are not finite
-        std::vector<Vec3> forces;  // kJ/mol/nm, in the order of beads(); where OpenMM's are not
-                                   // finite: as forces() says
+        double energy = 0;         // kJ/mol; infinite if OpenMM's forces are not finite
+        std::vector<Vec3> forces;  // kJ/mol/nm, in the order of beads(); those of forces() if
+                                   // OpenMM's are not finite
     };
+    /// Computes energy and forces at the positions, in nm and in the order of beads().
     FusedSweep at(std::vector<Vec3> const& positions);
-    /// kJ/mol/nm, in the order of beads(). Where OpenMM's are not finite, they push apart what is
-    /// nearer than 0.3 nm; where nothing is, they push every bead in a direction of its own, which
-    /// bends what is straight: torsions of beads on a line are undefined.
+    /// Returns forces in kJ/mol/nm, in the order of beads(). If OpenMM's are not finite, the result
+    /// pushes beads nearer than 0.3 nm apart. If no beads are so near, it pushes every bead in a
+    /// direction of its own. That bends straight chains, whose torsions are undefined.
     std::vector<Vec3> forces(std::vector<Vec3> const& positions);
-    /// kJ/mol, at the positions given last; infinite where forces were not finite. As dear as
-    /// forces().
+    /// Returns the energy at the last positions, kJ/mol; infinite if forces were not finite. The
+    /// call costs as much as forces().
     double energy();
-    /// Whether OpenMM's forces at the positions given last were finite.
+    /// True if OpenMM's forces at the last positions were finite.
     bool are_finite() const { return finite_; }
     BeadSystem const& beads() const { return beads_; }
 
   private:
+    /// Creates OpenMM's forces on this rank alone.
     std::unique_ptr<OpenMmForce> make(Scene const&, std::optional<double> reach);
+    /// Substitute for forces that are not finite, as described at forces().
     std::vector<Vec3> pushes(std::vector<Vec3> const& positions) const;
 
     std::unique_ptr<Communicator> alone_;

@@ -1,3 +1,4 @@
+// Implements the motion of chains of beads and domains on links.
 #include "start/moving_chains.hpp"
 
 #include <fmt/format.h>
@@ -51,6 +52,8 @@ double MovingChain::size(std::size_t unit, UnitMotion const& motion) const {
 bool MovingChain::move(std::span<UnitMotion> by) {
     Stand before = stand_;
     for (std::size_t u = 0; u < units(); ++u) {
+        // Shifts and rotations are applied first; the projection then moves units without rotating
+        // them.
         stand_.at[u] = stand_.at[u] + by[u].shift;
         if (dot(by[u].turn, by[u].turn) > 0)
             stand_.turn[u] = normalized(from_rotation_vector(by[u].turn) * stand_.turn[u]);
@@ -121,7 +124,7 @@ std::vector<MovingChain> moving_chains(Scene& scene) {
     std::vector<MovingChain> moving;
     std::size_t bead = 0;
     for (ChainSpec& chain : scene.chains) {
-        if (chain.bead_count() == 0) continue;  // it feels nothing
+        if (chain.bead_count() == 0) continue;  // no forces act on it
         if (!chain.is_beads() && !chain.is_linked())
             throw InputError(
                 fmt::format(

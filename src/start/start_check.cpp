@@ -1,3 +1,4 @@
+// Implements the check of a scene's start.
 #include "start/start_check.hpp"
 
 #include <fmt/format.h>
@@ -18,20 +19,20 @@
 namespace catena {
 namespace {
 
-double constexpr most_energy =
-    10;  // thermal kinetic energies: what is let go heats the chains as many times
+double constexpr most_energy = 10;  // ratio to the thermal kinetic energy: released, such an energy
+                                    // heats the chains by this factor
 double constexpr thermal_force =
-    400;  // kT/nm: five times what a stiff bond pulls with (spread 0.01 nm) in thermal motion
+    400;  // kT/nm: five times the thermal force of a stiff bond (spread 0.01 nm)
 double constexpr largest_force =
-    10'000;                        // kT/nm: within a thousandth of a nanometre it does ten times kT
-double constexpr touching = 0.45;  // nm: the smallest diameter of a residue's bead
-double constexpr coinciding = 0.15;       // nm: forces may not be finite below
-double constexpr as_near = 1.05;          // of the smallest distance
-double constexpr least_distance = 1e-6;   // nm: cells have a width
+    10'000;  // kT/nm: its work within a thousandth of a nanometre is ten times kT
+double constexpr touching = 0.45;         // nm: smallest diameter of a residue's bead
+double constexpr coinciding = 0.15;       // nm: forces may not be finite at smaller distances
+double constexpr as_near = 1.05;          // ratio to the smallest distance
+double constexpr least_distance = 1e-6;   // nm: the cells of the search must have a width
 double constexpr straight_within = 1e-6;  // sine of the angle between two links
-double constexpr looked_at = 0.7;         // nm: further apart no two beads overlap
+double constexpr looked_at = 0.7;         // nm: beads further apart do not overlap
 
-/// Pairs that a link, a joint or a body holds together.
+/// Test for pairs that a link, a joint or a body holds together.
 class Joined {
   public:
     explicit Joined(BeadSystem const& beads) : body_(static_cast<std::size_t>(beads.size()), -1) {
@@ -52,11 +53,11 @@ class Joined {
     }
 
   private:
-    std::vector<std::pair<std::int64_t, std::int64_t>> pairs_;  // ascending
-    std::vector<std::int64_t> body_;
+    std::vector<std::pair<std::int64_t, std::int64_t>> pairs_;  // sorted ascending
+    std::vector<std::int64_t> body_;  // index of each bead's rigid body; -1: none
 };
 
-/// Chain and number in it, from 0.
+/// Returns the chain of a bead and its position in that chain, from 0.
 std::pair<std::size_t, std::int64_t> place_of(BeadSystem const& beads, std::size_t bead) {
     auto const number = static_cast<std::int64_t>(bead);
     auto const chain =
@@ -79,6 +80,7 @@ std::string name_of(BeadSystem const& beads, scene::NearPair const& pair) {
     return name_of(beads, pair.first) + " and " + name_of(beads, pair.second);
 }
 
+/// Nearest pair within a distance that neither link, joint nor body holds together.
 std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& beads,
                                           std::vector<Vec3> const& positions, double within) {
     Joined const joined(beads);
@@ -86,8 +88,8 @@ std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& 
                                [&](std::size_t a, std::size_t b) { return !joined(a, b); });
 }
 
-/// Of the pairs that are as near as the nearest, to a few hundredths of their distance, the one on
-/// whose beads the largest forces act.
+/// Returns the pair with the largest forces among those that are as near as the nearest pair,
+/// within a few per cent of its distance.
 std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& beads,
                                         std::vector<Vec3> const& positions,
                                         std::vector<Vec3> const& forces) {
@@ -100,15 +102,15 @@ std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& be
                               [&](std::size_t a, std::size_t b, Vec3 const& apart) {
                                   if (joined(a, b)) return;
                                   double const both = norm(forces[a]) + norm(forces[b]);
-                                  // Not `<=`: what is not finite is felt most.
+                                  // `!(<=)` treats forces that are not finite as the largest.
                                   if (!(both <= felt))
                                       worst = scene::NearPair{a, b, norm(apart)}, felt = both;
                               });
     return worst;
 }
 
-/// The middle bead of the first three neighbours in a chain that lie on a line, as far as positions
-/// resolve it.
+/// Returns the middle bead of the first three consecutive beads of a chain that lie on a line,
+/// within the resolution of positions.
 std::optional<std::size_t> middle_of_straight(BeadSystem const& beads,
                                               std::vector<Vec3> const& positions) {
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
@@ -138,7 +140,7 @@ std::string overlap_text(std::string const& pair, double distance) {
 
 bool StartForces::is_absurd() const {
     double const kt = Scene().boltzmann() * temperature;
-    // Not `>`: what is not finite is absurd too.
+    // `!(<=)` treats values that are not finite as absurd.
     if (!(largest_force <= ::catena::largest_force * kt)) return true;
     return !(energy <= most_energy * thermal) && largest_force > thermal_force * kt;
 }
@@ -206,7 +208,8 @@ void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
         std::vector<Vec3> const positions = bead_positions_of(scene);
         BeadSystem const beads = bead_system_of(scene);
         bool const near = nearest_of(scene, beads, positions, coinciding).has_value();
-        bool const torsions = !scene.forces.openmm->system.empty();  // perhaps
+        bool const torsions =
+            !scene.forces.openmm->system.empty();  // a System may contain torsions
         std::optional<std::size_t> const straight =
             torsions ? middle_of_straight(beads, positions) : std::nullopt;
         if (!near && !straight) return;

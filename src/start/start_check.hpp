@@ -1,5 +1,5 @@
-// What OpenMM's forces make of a scene's start: its energy, its nearest beads, and whether it can
-// be begun from.
+// Check of a scene's start by OpenMM's forces: energy, nearest beads, and whether a run can begin
+// there.
 #pragma once
 
 #include <string>
@@ -11,43 +11,46 @@
 
 namespace catena {
 
-/// Of beads; kJ/mol, nm.
+/// Forces of OpenMM on the beads at the start. Units are kJ/mol and nm.
 struct StartForces {
-    double energy = 0;       // potential, of OpenMM's terms
+    double energy = 0;       // potential energy of OpenMM's terms
     double thermal = 0;      // kinetic energy of all degrees of freedom at the forces' temperature
-    double temperature = 0;  // K
+    double temperature = 0;  // temperature of the forces, K
     double largest_force = 0;  // kJ/mol/nm
     std::string force_at;      // "bead 21 of chain `p`"
-    double nearest = -1;       // of beads that no link or body joins, those that feel most of the
-                               // nearest; -1: further apart than 0.7 nm
+    double nearest = -1;  // distance of the nearest beads that neither link nor body joins; among
+                          // about equal distances those with the largest forces; -1: above 0.7 nm
     std::string nearest_pair;  // "beads 21 and 40 of chain `p`"
 
-    /// More potential energy than thermal motion has, ten times over, and a force that no thermal
-    /// motion meets; or a force that throws a bead out of any step. What is not finite is absurd.
+    /// True if potential energy exceeds ten times the thermal energy and a force exceeds any of
+    /// thermal motion. Also true for a force too large for any step, and for values that are not
+    /// finite.
     bool is_absurd() const;
-    /// Energy and largest force in one line.
+    /// Text of one line with energy and largest force.
     std::string energy_text() const;
-    /// The same with the nearest beads.
+    /// Text of energy_text() and the nearest beads.
     std::string text() const;
 };
 
-/// The same from forces on beads and their energy. `positions`, `forces`: in the order of `beads`.
+/// Computes StartForces from forces on beads and their energy. `positions` and `forces` are in the
+/// order of `beads`.
 StartForces start_forces_of(Scene const&, BeadSystem const& beads,
                             std::vector<Vec3> const& positions, std::vector<Vec3> const& forces,
                             double energy);
 
-/// Of the system's last evaluation, which was of the scene's start. With OpenMM. On rank 0, of the
-/// others `energy` and `thermal` alone. InputError, which names the nearest beads, where the start
-/// is absurd. Collective.
+/// Returns the forces of the system's last evaluation, which must have been at the scene's start
+/// and with OpenMM. Ranks other than 0 receive default values. Throws InputError, which names the
+/// nearest beads, if the start is absurd. Collective.
 StartForces look_at_start(ChainSystem&);
 
-/// InputError where forces at the start are absurd. `relaxation`: what relaxation did before, in
-/// words; empty: there was none.
+/// Throws InputError if the forces at the start are absurd. `relaxation`: text about a preceding
+/// relaxation, empty if there was none.
 void refuse_absurd(Scene const&, StartForces const&, std::string const& relaxation = "");
 
-/// InputError where beads so near that OpenMM's forces may not be finite make the start absurd, and
-/// where a System's forces are not finite on beads that lie on a line, as torsions are: found by
-/// rank 0 before anything is computed with others. Nothing without OpenMM's forces. Collective.
+/// Throws InputError if beads are so near that OpenMM's forces may not be finite and the start is
+/// absurd. Throws it also if a System's forces are not finite because beads lie on a line, where
+/// torsions are undefined. Rank 0 detects both before any collective computation. Without OpenMM's
+/// forces the call does nothing. Collective.
 void refuse_coinciding(Scene const&, Communicator const&);
 
 }  // namespace catena

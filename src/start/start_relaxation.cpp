@@ -1,3 +1,4 @@
+// Implements the relaxation of a start in two stages.
 #include "start/start_relaxation.hpp"
 
 #include <fmt/format.h>
@@ -22,17 +23,18 @@ namespace {
 
 double constexpr reach_of_contacts = 1;  // nm
 double constexpr most_columns =
-    1e4;  // of cells as wide, across the box: OpenMM takes a microsecond for each
+    1e4;  // cells of that width across the box: OpenMM spends a microsecond on each
 std::int64_t constexpr most_of_contacts = 3000, window_of_contacts = 50;  // evaluations
 double constexpr bead_evaluations =
-    3e6;  // with all forces; 300 of a slab of 10,000 beads take some minutes on a core
+    3e6;  // product of beads and evaluations with all forces: 300 evaluations of a slab of 10,000
+          // beads take some minutes on a core
 std::int64_t constexpr least_of_all = 200, most_of_all = 3000, window_of_all = 20;
-double constexpr large_force = 400;  // kT/nm: more than any bead feels in thermal motion
-double constexpr least_fall = 0.02;  // of the thermal energy, in a window
+double constexpr large_force = 400;  // kT/nm: larger than any force on a bead in thermal motion
+double constexpr least_fall = 0.02;  // ratio to the thermal energy, per window
 double constexpr seconds_between_lines = 5;
 
-/// Cells of OpenMM's lists are as wide as the forces reach: in a wide box that is nearly empty,
-/// short forces would take longer.
+/// Range of the forces between near beads, nm. Cells of OpenMM's neighbour lists are as wide as
+/// that range. Short forces would therefore take longer in a wide box that is nearly empty.
 double contact_reach(Scene const& scene, std::size_t beads) {
     if (!scene.box) return reach_of_contacts;
     Vec3 const& edge = *scene.box;
@@ -41,7 +43,7 @@ double contact_reach(Scene const& scene, std::size_t beads) {
                     std::sqrt(widest / std::max(most_columns, static_cast<double>(beads))));
 }
 
-/// A line every few seconds.
+/// Passes a line to the callback every few seconds.
 class Teller {
   public:
     Teller(RelaxationSays const& say, char const* forces) : say_(say), forces_(forces) {}
@@ -58,13 +60,15 @@ class Teller {
     double start_ = seconds_now(), last_ = start_;
 };
 
+/// Largest distance between corresponding points.
 double furthest(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, norm(a[i] - b[i]));
     return most;
 }
 
-/// Overlaps are pushed apart by near forces first, which are cheap; all forces have the last word.
+/// Separates overlaps by forces between near beads, which cost little, then minimises the energy of
+/// all forces. Rank 0 only.
 StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains,
                             RelaxationSays const& say) {
     LoneForces all(scene);

@@ -1,5 +1,5 @@
-// `relax: true`: overlaps of a scene's start are pushed apart by its own forces before the first
-// step.
+// Relaxation of a start (`relax: true`): the scene's own forces separate overlapping beads before
+// the first step.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,41 @@
 
 namespace catena {
 
+/// Result of a relaxation, on rank 0. Other ranks have default values.
 struct StartRelaxation {
     std::int64_t steps = 0;  // evaluations of forces
-    double moved = 0;        // nm: largest displacement of a bead
-    bool at_rest = true;   // the energy fell no further; else it ended after as many evaluations as
-                           // it takes at most
-    StartForces from, to;  // on rank 0; of the others the energies alone
+    double moved = 0;        // largest displacement of a bead, nm
+    bool at_rest =
+        true;  // the energy fell no further; false: the largest number of evaluations was reached
+    StartForces from, to;  // forces before and after
 
+    /// Text of way_text() with the forces before and after.
     std::string text() const;
-    /// How it went, without energies.
+    /// Text of the number of evaluations and the largest displacement, without energies.
     std::string way_text() const;
 };
 
+/// Relaxed scene and how the relaxation proceeded.
 struct RelaxedScene {
     Scene scene;
     StartRelaxation relaxation;
 };
 
-/// Hears of progress on rank 0, a line every few seconds; may be empty.
+/// Callback for progress on rank 0, one line every few seconds; may be empty.
 using RelaxationSays = std::function<void(std::string const&)>;
-/// To standard error; nothing where `quiet`.
+/// Returns a callback that prints to standard error, or none if `quiet`.
 RelaxationSays relaxation_says(bool quiet);
 
-/// The scene with beads and rigid domains moved down OpenMM's forces, in steps with a cap, links
-/// closed after each, until the energy falls no further: by forces between near beads, then by all;
-/// at most 3000 evaluations of each, of all in large scenes fewer. Rank 0 computes, on its own, on
-/// OpenMM's platform Reference where the scene asks for it, else CPU with a number of threads that
-/// does not depend on ranks: all ranks get its positions. InputError where the start stays absurd,
-/// for beads on other joints, and without OpenMM's forces. Precondition: scene.relax. Collective.
+/// Moves beads and rigid domains along OpenMM's forces until the energy falls no further. Steps are
+/// limited in length, and the links are closed after each. Forces between near beads act first,
+/// then all forces, with at most 3000 evaluations each; large scenes are limited to fewer
+/// evaluations of all forces. Rank 0 computes alone, by OpenMM's platform Reference if the scene
+/// requests it. Otherwise it uses CPU with a number of threads that does not depend on the ranks.
+/// All ranks receive its positions. Throws InputError if the start remains absurd, for beads on
+/// other joints, and without OpenMM's forces. Precondition: scene.relax. Collective.
 RelaxedScene relax_start(Scene const&, Communicator const&, RelaxationSays const& = {});
 
-/// The same where the scene asks for relaxation; nothing where it does not.
+/// Relaxes the start if the scene requests it; else the result is empty. Collective.
 std::optional<RelaxedScene> relaxed_where_asked(Scene const&, Communicator const&,
                                                 RelaxationSays const& = {});
 

@@ -1,3 +1,4 @@
+// Implements the report on a scene's start.
 #include "start/start_report.hpp"
 
 #include <fmt/format.h>

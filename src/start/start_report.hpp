@@ -1,4 +1,4 @@
-// What `check`, `run` and summary.json say of a scene's start.
+// Report on a scene's start for `check`, `run` and summary.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,17 +12,19 @@
 
 namespace catena {
 
+/// Properties of a start that the report contains.
 struct StartReport {
-    StartChange change;                         // made by the reader
-    std::optional<StartForces> forces;          // with OpenMM's forces
-    std::optional<StartRelaxation> relaxation;  // where the scene asked for it
+    StartChange change;                         // changes made by the reader
+    std::optional<StartForces> forces;          // empty without OpenMM's forces
+    std::optional<StartRelaxation> relaxation;  // empty unless the scene requests it
 };
 
-/// Names and values of lines.
+/// Names and values of the report's lines.
 std::vector<std::pair<std::string, std::string>> lines_of(Scene const&, StartReport const&);
-/// {"largest_link_change", "link", "largest_displacement", "bead"; with forces "potential_energy",
-/// "thermal_energy", "temperature", "largest_force", "force_on", "nearest_distance",
-/// "nearest_beads"; with relaxation "relaxation": {"steps", "largest_displacement", "from", "to"}}.
+/// Object of summary.json: {"largest_link_change", "link", "largest_displacement", "bead"}. Forces
+/// add "potential_energy", "thermal_energy", "temperature", "largest_force", "force_on",
+/// "nearest_distance" and "nearest_beads". A relaxation adds "relaxation": {"steps",
+/// "largest_displacement", "from", "to"}.
 nlohmann::json json_of(StartReport const&);
 
 }  // namespace catena

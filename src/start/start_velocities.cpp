@@ -1,3 +1,4 @@
+// Implements the draw of thermal velocities in absolute coordinates.
 #include "start/start_velocities.hpp"
 
 #include <algorithm>
@@ -14,30 +15,34 @@ bool has_absolute_coordinates(ChainSpec const& chain) {
     return !scene::joint_without_absolute_coordinates(chain);
 }
 
-/// State in absolute coordinates, every body of the scene, on every rank.
+/// State in absolute coordinates of every body of the scene, on every rank.
 struct Drawn {
-    std::vector<double> velocity, omega, orientation;  // W; B; quaternions of B in W
+    std::vector<double> velocity, omega,
+        orientation;  // W; body axes; quaternions of the body axes in W
     Vec3 velocity_of(std::size_t body) const {
         return {{velocity[3 * body], velocity[3 * body + 1], velocity[3 * body + 2]}};
     }
     Vec3 omega_of(std::size_t body) const {
         return {{omega[3 * body], omega[3 * body + 1], omega[3 * body + 2]}};
     }
+    /// Rotation matrix from body axes to W.
     Mat3 turn_of(std::size_t body) const {
         double const* const q = orientation.data() + 4 * body;
         return to_matrix(Quat{q[0], q[1], q[2], q[3]});
     }
 };
 
+/// Draws velocities by a stepper in absolute coordinates and distributes them to all ranks.
+/// Collective.
 Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& communicator) {
     ChainSystem system(scene, Axes::world, communicator);
     dynamics.integrator =
-        Integrator::rattle;  // any in absolute coordinates: its start draws the velocities
+        Integrator::rattle;  // any integrator in absolute coordinates draws velocities at its start
     make_stepper(system, dynamics);
     auto arrays = system.state();
     auto const n = static_cast<std::size_t>(scene.bodies());
     auto const shared = [&](char const* name, std::size_t width) {
-        std::vector<double> values = arrays[name];  // absent where the scene has beads alone
+        std::vector<double> values = arrays[name];  // absent if the scene has only beads
         values.resize(n * width);
         communicator.broadcast(std::as_writable_bytes(std::span(values)));
         return values;
@@ -45,6 +50,7 @@ Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& commun
     return {shared("velocity", 3), shared("omega", 3), shared("orientation", 4)};
 }
 
+/// Stores drawn velocities in a chain, as rates relative to the inboard body for spherical joints.
 void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
     chain.velocities = StartVelocities::given;
     for (std::size_t k = 0; k < chain.beads.size(); ++k)
@@ -55,7 +61,7 @@ void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
     }
     BodyArrays& bodies = chain.bodies;
     bodies.qd.resize(bodies.size(), Vec3::zero());
-    for (std::size_t k = 0; k < bodies.size(); ++k) {  // relative to the inboard body, B
+    for (std::size_t k = 0; k < bodies.size(); ++k) {  // relative to the inboard body, body axes
         bodies.qd[k] = drawn.omega_of(first + k);
         if (k > 0)
             bodies.qd[k] = bodies.qd[k] - transposed_times(drawn.turn_of(first + k),
@@ -75,7 +81,7 @@ Scene with_start_velocities(Scene scene, Communicator const& communicator) {
     sampled.forces.openmm.reset();
     std::erase_if(sampled.chains, [](ChainSpec const& c) {
         return !has_absolute_coordinates(c);
-    });  // these are never thermal
+    });  // chains without absolute coordinates are never thermal
     Drawn const drawn = draw(sampled, scene.dynamics, communicator);
     std::size_t body = 0;
     for (ChainSpec& chain : scene.chains) {

@@ -1,4 +1,4 @@
-// The state a run starts from, where its velocities are drawn.
+// Initial state of a run whose velocities are drawn at random.
 #pragma once
 
 #include "mpi/communicator.hpp"
@@ -6,9 +6,10 @@
 
 namespace catena {
 
-/// The scene with the thermal velocities of its chains drawn (temperature and seed of its dynamics)
-/// and written in as given ones: for link and spherical chains in absolute coordinates the very
-/// draw of a run. Scenes without thermal chains come back as they are. Collective.
+/// Returns the scene with the thermal velocities of its chains drawn (temperature and seed of its
+/// dynamics) and stored as given velocities. For chains of links and spherical joints in absolute
+/// coordinates they equal those that a run draws. Scenes without thermal chains are returned
+/// unchanged. Collective.
 Scene with_start_velocities(Scene, Communicator const&);
 
 }  // namespace catena
