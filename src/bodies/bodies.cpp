@@ -1,3 +1,4 @@
+// Implements the YAML readers of rigid bodies and point beads.
 #include "bodies/bodies.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@ namespace catena::scene {
 
 namespace {
 
+/// Reads the joint of body k (from 0). Body 1 of a free base needs no joint and gets a free one.
+/// Throws InputError for a free joint in any other place.
 JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     bool const first = k == 0;
     if (first && base == Base::free && !body.find("joint")) {
@@ -35,6 +38,7 @@ JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     return entry;
 }
 
+/// Appends the joint to the arrays; all optional arrays are filled and reduced later by Needed.
 void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.joint.push_back(entry.type);
     bodies.axis.push_back(entry.axis);
@@ -59,7 +63,7 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.driven.push_back(driven);
 }
 
-/// Which of the arrays that may stay empty are needed.
+/// Records which of the optional arrays are needed, and empties the others.
 struct Needed {
     bool torque = false, spring = false, damping = false, wrench = false, drag = false,
          first_axis = false, pitch = false;
@@ -82,6 +86,7 @@ struct Needed {
     }
 };
 
+/// Reads `wrench: {torque, force}`, in W at the centre of mass; zero without the key.
 std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
     std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
     if (!wrench) return load;
@@ -91,6 +96,7 @@ std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
     return load;
 }
 
+/// Returns the node of the joint's type, or nullptr.
 Node const* type_of(Node const& body) {
     Node const* const joint = body.find("joint");
     return joint ? joint->find("type") : nullptr;

@@ -1,3 +1,4 @@
+// Implements the list of carried beads.
 #include "bodies/carried_beads.hpp"
 
 #include "scene/calvados2.hpp"

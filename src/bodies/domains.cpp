@@ -1,3 +1,4 @@
+// Implements rigid domains: numbering of residues, inertia and principal axes.
 #include "bodies/domains.hpp"
 
 #include <fmt/format.h>
@@ -13,16 +14,19 @@ namespace catena::scene {
 
 namespace {
 
-/// Below this ratio of principal moments the beads stand on a line as far as positions with a few
-/// digits can tell.
+/// Smallest ratio of principal moments. Below it the beads lie on one line within the precision of
+/// positions with a few digits.
 double constexpr least_ratio = 1e-6;
 
+/// Mass properties of a domain.
 struct RigidBody {
     double mass = 0;
     Vec3 com = Vec3::zero(), moments = Vec3::zero();
-    Mat3 axes = Mat3::identity();  // R_WB: principal axes as columns
+    /// R_WB, with the principal axes as columns.
+    Mat3 axes = Mat3::identity();
 };
 
+/// Computes mass, centre of mass and principal moments of the domain's beads.
 RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     RigidBody body;
     Vec3 const origin = beads.position[domain.first];
@@ -48,6 +52,7 @@ RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     return body;
 }
 
+/// Builds a linked chain from beads and domains, in the order of the chain.
 class LinkedBuilder {
   public:
     explicit LinkedBuilder(BeadArrays const& beads) : beads_(beads) {
@@ -104,7 +109,7 @@ class LinkedBuilder {
     CarriedList carried_;
 };
 
-/// What the numbers of a scene's `rigid` mean.
+/// Resolves the residue numbers of a scene's `rigid`.
 class Numbering {
   public:
     Numbering(std::size_t residues, std::vector<std::string> const& labels)
@@ -152,6 +157,7 @@ class Numbering {
                  "give each residue its own number or insertion code");
         return found->second[0];
     }
+    /// Returns whole numbers in plain form ("7" for "7.0"), other labels as written.
     static std::string label(Node const& end) {
         double value = 0;
         std::string const written = text(end);

@@ -1,3 +1,4 @@
+// Implements the reader of rigid bodies from HDF5 datasets.
 #include "bodies/hdf5_bodies.hpp"
 
 #include <fmt/format.h>
@@ -16,13 +17,14 @@ namespace catena::scene {
 
 namespace {
 
-/// The file's own numbers: those of the enumeration may move.
+/// The file's own numbering of joint types, because the enumeration may change.
 constexpr std::pair<std::string_view, JointType> types[] = {
     {"free", JointType::free},           {"link", JointType::link},
     {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
     {"universal", JointType::universal}, {"weld", JointType::weld},
     {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
 
+/// Datasets that a file may have.
 constexpr std::string_view known[] = {
     "mass", "com",    "inertia",    "joint_type",    "axis",         "rotation",  "translation",
     "q",    "qd",     "first_axis", "pitch",         "torque",       "stiffness", "damping",
@@ -30,6 +32,7 @@ constexpr std::string_view known[] = {
 
 Vec3 vector_at(double const* v) { return {{v[0], v[1], v[2]}}; }
 
+/// Reads all datasets of one file, with one check per body and quantity.
 class Hdf5Bodies {
   public:
     Hdf5Bodies(std::string const& path, Base base) : table_(path, "mass"), base_(base) {}
@@ -54,6 +57,7 @@ class Hdf5Bodies {
                           near ? "did you mean `" + *near + "`?" : "use " + joined(known));
         }
     }
+    /// Throws InputError if the dataset is missing; `why` is the reason in the message.
     void need(char const* name, std::string const& why) const {
         if (!table_.has(name))
             table_.refuse(name, Hdf5Table::whole, "the dataset is missing", "add it: " + why);
@@ -82,7 +86,8 @@ class Hdf5Bodies {
             });
     }
 
-    /// [n, 3] where it is there, else zeros; `check(k, vector)` may change it.
+    /// Reads a dataset [n, 3]; zeros if it is absent. `check(k, vector)` may change the vector of
+    /// row k.
     template <class Check>
     void vectors(char const* name, std::vector<Vec3>& into, Check check) {
         into.assign(table_.rows(), Vec3::zero());
@@ -149,6 +154,7 @@ class Hdf5Bodies {
         });
     }
 
+    /// True if joint k has an axis: one coordinate, or a universal joint.
     bool has_axis(std::size_t k) const {
         JointType const type = bodies_.joint[k];
         return numbers_of(type) == 1 || type == JointType::universal;
@@ -188,7 +194,7 @@ class Hdf5Bodies {
         });
     }
 
-    /// [n, 4]; what the joint has no use for becomes 0.
+    /// Reads a dataset [n, 4] of joint positions. Entries that the joint does not use become 0.
     void positions(char const* name, std::vector<std::array<double, 4>>& into) {
         into.resize(table_.rows());
         for (std::size_t k = 0; k < table_.rows(); ++k) into[k] = {turns(k) ? 1.0 : 0.0, 0, 0, 0};
@@ -202,6 +208,7 @@ class Hdf5Bodies {
             }
         });
     }
+    /// True if the position of joint k is a quaternion.
     bool turns(std::size_t k) const {
         return bodies_.joint[k] == JointType::spherical || bodies_.joint[k] == JointType::free;
     }
@@ -215,11 +222,12 @@ class Hdf5Bodies {
         table_.vector("free_velocity", bodies_.free_velocity.data);
     }
     int count(std::size_t k) const { return numbers_of(bodies_.joint[k]); }
+    /// Sets the components from `count` on to zero.
     static void keep(Vec3& v, int count) {
         for (int i = count; i < 3; ++i) v[i] = 0;
     }
 
-    /// Stiffness or damping.
+    /// Reads a dataset of stiffness or damping and refuses negative numbers.
     void resistances(char const* name, std::vector<Vec3>& into) {
         vectors(name, into, [&](std::size_t k, Vec3& v) {
             keep(v, count(k));

@@ -1,3 +1,4 @@
+// Implements the reader of HDF5's global heap ("GCOL" collections) with bounds checks.
 #include "bodies/hdf5_texts.hpp"
 
 #include <sys/stat.h>
@@ -10,17 +11,19 @@ namespace catena::scene {
 
 namespace {
 
-/// On disk: four bytes of length, eight of the collection's address, four of the object's number.
+/// Size of an element on disk: four bytes of length, eight of the collection's address, four of the
+/// object's number.
 std::uint64_t constexpr element_size = 16;
-/// Signature, version, size.
+/// Size of a collection's header: signature, version, size.
 std::uint64_t constexpr collection_head = 16;
-/// Number, references, size.
+/// Size of an object's header: number, references, size.
 std::uint64_t constexpr object_head = 16;
 
 [[noreturn]] void damaged(char const* what) {
     throw std::runtime_error(std::string("damaged text, ") + what);
 }
 
+/// Reads a little-endian number of `width` bytes.
 std::uint64_t number(std::string const& bytes, std::uint64_t at, std::uint64_t width) {
     std::uint64_t value = 0;
     for (std::uint64_t i = 0; i < width; ++i)
@@ -32,7 +35,7 @@ hdf5::Properties creation_of(hdf5::File const& file) {
     return hdf5::Properties(H5Fget_create_plist(file.get()));
 }
 
-/// Whether the elements lie in this file, one after the other, with addresses of eight bytes.
+/// True if the elements lie in this file, contiguously, with addresses of eight bytes.
 bool is_plain(hdf5::File const& file, hdf5::Dataset const& data, std::uint64_t count) {
     hdf5::Properties const how(H5Dget_create_plist(data.get()));
     std::size_t address = 0, length = 0;
@@ -106,7 +109,7 @@ VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
     for (std::uint64_t place = collection_head; size - place >= object_head;) {
         auto const of = static_cast<unsigned>(number(all, place, 2));
         std::uint64_t const length = number(all, place + 8, 8);
-        if (of == 0) break;  // free from here on
+        if (of == 0) break;  // the rest of the collection is free
         place += object_head;
         if (length > size - place) damaged("an object ends behind its heap");
         if (!objects.emplace(of, all.substr(place, length)).second)

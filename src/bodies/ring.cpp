@@ -1,3 +1,4 @@
+// Implements the closure check of rings.
 #include "bodies/ring.hpp"
 
 #include <fmt/format.h>
@@ -10,12 +11,13 @@ namespace catena::scene {
 
 namespace {
 
-/// How far the first body is from where the joint lets it be: distance and angle.
+/// Closure error of a ring: distance, and angle in rad, of the first body from the nearest pose
+/// that the joint allows.
 struct Opening {
     double distance = 0, angle = 0;
 };
 
-/// `b`: the first body against the joint frame.
+/// Computes the closure error. `b` is the pose of the first body relative to the joint frame.
 Opening opening_of(TipJoint const& joint, Pose const& b) {
     Mat3 const turn = to_matrix(b.orientation);
     double const across = norm(cross(joint.axis, b.origin)),
