@@ -1,3 +1,4 @@
+// Implements the keys that all kinds of chains share: name, anchor, positions and lengths of links.
 #include "reader/chain_request.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ namespace catena::scene {
 
 namespace {
 
-/// PDB files, and those that its reader refuses by name.
+/// True for the extensions of PDB files and of formats that the PDB reader refuses by name.
 bool is_structure(std::string const& path) {
     std::string kind = std::filesystem::path(path).extension().string();
     std::transform(kind.begin(), kind.end(), kind.begin(),
@@ -27,8 +28,8 @@ bool is_structure(std::string const& path) {
     return kind == ".pdb" || kind == ".ent" || kind == ".cif" || kind == ".mmcif";
 }
 
-/// Amino acids of the file, by their parents, that are not those of the chain. 0 where the numbers
-/// differ, which is refused elsewhere.
+/// Number of amino acids in the file whose parent differs from the chain's residue. Returns 0 if
+/// the numbers of residues differ, which is refused elsewhere.
 std::size_t other_residues(PdbSites const& from, std::vector<std::string> const& residues) {
     std::size_t others = 0;
     for (std::size_t k = 0; from.sites.size() == residues.size() && k < residues.size(); ++k) {
@@ -38,7 +39,7 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
     return others;
 }
 
-/// Whether the file counts its residues from 1 on, or not at all.
+/// True if the file numbers its residues from 1 on, or not at all.
 bool counts_from_one(PdbSites const& from) {
     for (std::size_t k = 0; k < from.sites.size(); ++k)
         if (from.sites[k].number && from.sites[k].label != std::to_string(k + 1)) return false;
@@ -54,7 +55,7 @@ void ChainRequest::allow(char const* kind, Names keys) const {
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
     }
-    links_as_given();  // checks the word even where no positions are given
+    links_as_given();  // checks the value even if no positions are given
     Node const* const ground = fields.find("anchor");
     if (ground && base == Base::free)
         fail(*ground, "an anchor without a fixed base",
@@ -73,7 +74,7 @@ bool ChainRequest::links_as_given() const {
 
 calvados2::ChargedTermini ChainRequest::termini() const {
     if (Node const* const here = fields.find("charge_termini")) return read_charged_termini(*here);
-    // The entry of all chains comes first: those of chains before this one are not looked through.
+    // The entry for all chains is the first one. Entries of preceding chains need no search.
     bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() &&
                       scene.forces.openmm->map.front().first.empty();
     if (!said) return {};
@@ -88,7 +89,7 @@ void ChainRequest::set_lengths(BeadArrays& beads) const {
         double const length = system->length(particle + static_cast<std::int64_t>(k)),
                      before = beads.length[k];
         if (length > 0 && length != before) {
-            Vec3 const inboard = beads.position[k - 1] - shift;  // where it was
+            Vec3 const inboard = beads.position[k - 1] - shift;  // position before its shift
             shift = plus_scaled(shift, length / before - 1, beads.position[k] - inboard);
             beads.length[k] = length;
         }

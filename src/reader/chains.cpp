@@ -1,3 +1,4 @@
+// Implements the reader of chain entries: chooses the source of the bodies and makes the copies.
 #include "reader/chains.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +34,8 @@ Fields chain_fields(Node const& entry) {
                           "conformation", "rigid", "charge_termini", "velocities"});
 }
 
-/// The one key that says what the chain is made of.
+/// Returns the single key that defines the bodies of the chain. Throws InputError for none or
+/// several.
 Node const& source_of(Fields const& fields) {
     Node const* source = nullptr;
     for (char const* const key : {"sequence", "fasta", "pdb", "bodies", "generator"}) {
@@ -49,13 +51,14 @@ Node const& source_of(Fields const& fields) {
     return *source;
 }
 
+/// Base of the chain as written, or the default of its source.
 Base base_of(Fields const& fields, Node const& source) {
     if (Node const* const base = fields.find("base"))
         return choice<Base>(*base, {{"free", Base::free}, {"fixed", Base::fixed}});
     return stands_fixed(source) ? Base::fixed : Base::free;
 }
 
-/// Joints that are written `planar` promise parallel axes.
+/// Throws InputError unless all axes of a chain with `planar` joints are parallel.
 void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& planar) {
     std::size_t odd = 0;
     if (axes_are_parallel(chain, odd)) return;
@@ -68,8 +71,8 @@ void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& p
          "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
-/// Beads written one by one: lengths as written, else (and with `links: as_given`) as the positions
-/// say. Whether velocities are written.
+/// Reads beads written one by one. Links have the written lengths, or those of the positions if no
+/// length is written or with `links: as_given`. Returns true if velocities are written.
 bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays& beads) {
     request.allow("beads written one by one", {"links", "anchor"});
     ExplicitBeads made = read_beads(source, request.base);
@@ -93,7 +96,7 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     return made.velocities;
 }
 
-/// Bodies on links that the sides of the box cut.
+/// Notes the links of rigid bodies that the sides of the box cut, and those that may be cut.
 void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
     if (made.doubtful > 0)
         request.scene.note(
@@ -109,6 +112,7 @@ void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
                     shown(request.name()), made.cut_links == 1 ? "is" : "are", made.first_cut));
 }
 
+/// Reads one entry and makes its copies.
 class ChainReader {
   public:
     ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm,
@@ -123,6 +127,8 @@ class ChainReader {
         if (source_.key == "generator") generator_.emplace(request_, source_);
     }
 
+    /// Makes all copies and appends them. Copies that do not differ are copied from the first, not
+    /// read again.
     void append_to(std::vector<Draft>& drafts) {
         std::string const name = request_.name();
         if (printable(name) != name)
@@ -162,8 +168,8 @@ class ChainReader {
     }
 
   private:
-    /// Of the chain that is made next: its place in the System, and its charged ends where it says
-    /// them.
+    /// Sets the next chain's first particle in the System, and its charged ends if they are
+    /// written.
     void prepare(std::string const& name, std::int64_t next) {
         OpenMmSpec* const openmm =
             request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
@@ -172,6 +178,7 @@ class ChainReader {
             openmm->map.push_back({name, as_numbers(request_.termini())});
     }
 
+    /// Makes one copy with its tip and the kind of its start velocities.
     ChainSpec make(std::int64_t copy) {
         ChainSpec chain;
         chain.base = request_.base;
@@ -216,6 +223,8 @@ class ChainReader {
         return chain;
     }
 
+    /// Sets the kind of start velocities and clears the given ones if they are not used. `given` is
+    /// true if the source has velocities.
     void set_velocities(ChainSpec& chain, bool given) const {
         chain.velocities = given   ? StartVelocities::given
                            : warm_ ? StartVelocities::thermal
@@ -232,12 +241,14 @@ class ChainReader {
         std::fill(chain.linked.omega.begin(), chain.linked.omega.end(), Vec3::zero());
     }
 
-    /// Whether copies differ from each other.
+    /// True if copies differ from each other.
     bool is_random() const {
         Node const* const conformation = request_.fields.find("conformation");
         return (generator_ && generator_->is_random()) ||
                (conformation && conformation->text == "self_avoiding");
     }
+    /// True if the scene gives no place for the chain: several copies, or a free chain without
+    /// positions.
     bool movable(ChainSpec const& chain) const {
         if (count_ > 1) return true;
         return is_free(chain) && source_.key != "bodies" && !is_given();
@@ -245,12 +256,13 @@ class ChainReader {
     bool is_free(ChainSpec const& chain) const {
         return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free;
     }
-    /// Whether a file says where the beads are.
+    /// True if a file gives the positions of the beads.
     bool is_given() const {
         Node const* const conformation = request_.fields.find("conformation");
         return request_.fields.find("positions") || source_.key == "pdb" ||
                (conformation && conformation->kind == Node::Kind::map);
     }
+    /// Permission to regrow the chain, see Regrowth.
     Regrowth regrown(ChainSpec const& chain) const {
         if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta"))
             return Regrowth::no;
@@ -259,7 +271,8 @@ class ChainReader {
             conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
         return any_shape ? Regrowth::yes : Regrowth::if_asked;
     }
-    /// Bytes that the chains take with this entry's. What cannot fit is refused before it is tried.
+    /// Estimates the memory, bytes, of all chains up to this entry's. Throws InputError before
+    /// chains are made that cannot fit.
     double with_copies(double before, std::int64_t size, bool beads) const {
         double const bytes =
             before + ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) *
@@ -279,7 +292,8 @@ class ChainReader {
     bool warm_;
     ReadTip tip_;
     std::int64_t count_ = 1;
-    std::optional<GeneratorEntry> generator_;  // refers to request_: a reader is never moved
+    /// Generator of the chain, if any. It refers to request_; a reader therefore must not be moved.
+    std::optional<GeneratorEntry> generator_;
 };
 
 }  // namespace

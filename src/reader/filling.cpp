@@ -1,3 +1,4 @@
+// Implements the filling of slabs and droplets.
 #include "reader/filling.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +12,8 @@ namespace catena::scene {
 
 namespace {
 
-/// By whole edges of the region, so that the chain's centre is in the middle of the box as far as
-/// they allow.
+/// Moves a chain by whole edges of the region. Its centre then lies in the region in the middle of
+/// the box.
 void bring_in(std::vector<Vec3>& positions, Vec3 const& box, Vec3 const& fill) {
     Vec3 centre = Vec3::zero(), shift;
     for (Vec3 const& position : positions) centre = centre + position;

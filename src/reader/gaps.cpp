@@ -1,3 +1,4 @@
+// Implements the check for gaps between residues.
 #include "reader/gaps.hpp"
 
 #include <fmt/format.h>
@@ -13,22 +14,28 @@ namespace catena::scene {
 
 namespace {
 
-/// Alpha carbons of neighbours are 0.38 nm apart, 0.29 nm across a cis peptide bond. Frames of
-/// models with springs in the links' place (CALVADOS: 8033 kJ/mol/nm2) spread by 0.018 nm. Across
-/// one missing residue it is 0.5 nm and more in proteins.
+/// Smallest plausible distance of neighbours, nm. Alpha carbons of neighbours are 0.38 nm apart,
+/// 0.29 nm across a cis peptide bond. Frames of models with springs in place of links (CALVADOS:
+/// 8033 kJ/mol/nm2) have a spread of 0.018 nm. The distance across one missing residue is at least
+/// 0.5 nm in proteins.
 constexpr double least_distance = 0.25;
-constexpr double largest_distance =
-    0.46;  // nm, of residues with consecutive numbers: 4.5 standard deviations
-constexpr double largest_where_numbers_skip = 0.42;  // nm
-/// Carbonyl carbon to the next nitrogen: a peptide bond has 0.133 nm.
+/// Largest distance of residues with consecutive numbers, nm: 4.5 standard deviations above 0.38
+/// nm.
+constexpr double largest_distance = 0.46;
+/// Largest distance of residues whose numbers skip, nm.
+constexpr double largest_where_numbers_skip = 0.42;
+/// Largest length of a peptide bond (carbonyl carbon to the next nitrogen), nm; its usual length is
+/// 0.133 nm.
 constexpr double largest_peptide_bond = 0.2;
 
+/// Distance of the nearest images, nm; the plain distance without a box.
 double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const& box) {
     Vec3 way = b - a;
     for (int i = 0; box && i < 3; ++i) way[i] -= (*box)[i] * std::round(way[i] / (*box)[i]);
     return norm(way);
 }
 
+/// Checks pairs of neighbours and collects notes.
 class Neighbours {
   public:
     Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at)
@@ -38,7 +45,7 @@ class Neighbours {
                 request.system->largest_spread(request.particle, std::ssize(from.sites)));
     }
 
-    /// Neighbours in the chain, `b` its bead k from 0.
+    /// Checks two neighbours in the chain; `b` is its bead k (from 0).
     void check(PdbSite const& a, PdbSite const& b, std::size_t k) {
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped =
@@ -50,8 +57,8 @@ class Neighbours {
         bool const bonded = peptide <= largest_peptide_bond,
                    seen = bonded && a.carbonyl && b.nitrogen;
         bool const near = apart <= (skips && !seen ? largest_where_numbers_skip : largest_distance);
-        // Fusions bear the numbers of their parts: there the peptide bond says that they are
-        // neighbours.
+        // Fusion proteins keep the numbers of their parts. There the peptide bond proves that the
+        // residues are neighbours.
         if (falls && !(seen && near)) refuse_order(a, b);
         if ((near && bonded && apart >= least_distance) || fits_system(k, apart))
             return count(a, b, skips);
@@ -73,7 +80,8 @@ class Neighbours {
     }
 
   private:
-    /// OpenMM goes on from 9999 with A000 in base 16, where hybrid-36 has base 36.
+    /// True if OpenMM's numbers follow each other: it continues after 9999 with A000 in base 16,
+    /// whereas hybrid-36 has base 36.
     static bool follows_in_hex(std::string const& a, std::string const& b) {
         unsigned from = 0, to = 0;
         auto const read = [](std::string const& text, unsigned& value) {
@@ -83,7 +91,8 @@ class Neighbours {
         };
         return !a.empty() && !b.empty() && read(a, from) && read(b, to) && to == from + 1;
     }
-    /// Where a System is at hand, its bond between the two knows more than residues do.
+    /// True if the distance fits the System's bond between the two beads, which is more specific
+    /// than the residues.
     bool fits_system(std::size_t k, double apart) const {
         if (!request_.system) return false;
         double const length =
@@ -93,18 +102,19 @@ class Neighbours {
                    (request_.scene.relax ? largest_relaxed_change : most_) * length;
         return apart <= length &&
                (request_.scene.relax ||
-                length - apart <= most_ * length);  // false where nothing joins them: NaN
+                length - apart <= most_ * length);  // false for NaN: nothing joins the beads
     }
     static std::string times(int n) { return n == 1 ? "once" : fmt::format("{} times", n); }
 
+    /// Counts a pair whose numbers skip.
     void count(PdbSite const& a, PdbSite const& b, bool skips) {
         if (skips && skips_++ == 0) first_skip_ = fmt::format("{} to {}", a.label, b.label);
     }
-    /// By the nearest image where the scene has a box.
+    /// Distance, nm, of the nearest images if the scene has a box.
     double distance(Vec3 const& a, Vec3 const& b) const {
         return nearest_distance(a, b, request_.scene.box);
     }
-    /// Whether the chain has no gap in the cell that the file names and the scene does not.
+    /// True if the gap vanishes in the file's own cell, which the scene does not give as its box.
     bool is_wrapped(PdbSite const& a, PdbSite const& b) const {
         return from_.cell && !request_.scene.box &&
                nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
@@ -143,7 +153,8 @@ class Neighbours {
     PdbSites const& from_;
     ChainRequest const& request_;
     Node const& at_;
-    double most_ = 0;  // largest change of a link of the System's, relative
+    /// Largest relative change of a link of the System.
+    double most_ = 0;
     int skips_ = 0, gaps_ = 0;
     std::string first_skip_, first_gap_;
 };

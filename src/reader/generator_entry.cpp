@@ -1,3 +1,4 @@
+// Implements the readers of the parameters of each generator.
 #include "reader/generator_entry.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Returns the single generator of the entry; throws InputError for several.
 Node const& single_entry(Node const& node) {
     Fields const kinds(node, {"random", "pendulum", "coil", "dill", "elastic_rod", "polygon",
                               "freely_jointed", "worm_like"});
@@ -184,7 +186,8 @@ void GeneratorEntry::read_elastic_rod() {
 }
 
 std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
-    // A seed of its own makes the same chain wherever the entry stands in the scene.
+    // The key `seed` of a generator yields the same chain at any position of the entry in the
+    // scene.
     Node const* const own = entry_.find("seed");
     return own ? seed_of_stream(seed64(*own), static_cast<std::uint64_t>(copy))
                : request_.seed(copy);

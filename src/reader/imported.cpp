@@ -1,3 +1,4 @@
+// Implements the import of chains.
 #include "reader/imported.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Makes a draft of an imported chain and fits its positions to the lengths of its links.
 Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fit) {
     Draft draft;
     draft.node = &openmm;

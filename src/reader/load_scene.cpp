@@ -1,3 +1,4 @@
+// Implements the reader's sequence: sections, chains, checks, places, fingerprint.
 #include "reader/load_scene.hpp"
 
 #include <filesystem>
@@ -30,7 +31,7 @@ namespace {
 using scene::Fields;
 using scene::Node;
 
-/// Everything but the chains.
+/// Reads all sections except the chains.
 Scene read_frame(Fields const& fields, std::string const& name) {
     Scene made;
     made.file = name;
@@ -56,7 +57,7 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     return made;
 }
 
-/// Chains of the scene or, where it writes none, of the System it names.
+/// Reads the chains of the scene or, if it has none, those of the System that it names.
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     Node const* const dynamics = fields.find("dynamics");
     bool const warm =
@@ -77,6 +78,7 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     return drafts;
 }
 
+/// Gives places to movable chains, in the region of `fill` or in the whole box.
 void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene const& frame) {
     Node const* const box = fields.find("box");
     if (std::optional<Vec3> const fill = box ? scene::read_fill(*box) : std::nullopt)

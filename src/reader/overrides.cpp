@@ -1,3 +1,4 @@
+// Implements the parsing and application of overrides.
 #include "reader/overrides.hpp"
 
 #include <fmt/format.h>
@@ -10,12 +11,13 @@ namespace catena::scene {
 
 namespace {
 
-/// A map key or, where `key` is empty, a list index.
+/// One step of a path: a map key or, if `key` is empty, a list index.
 struct Step {
     std::string key;
     std::size_t index = 0;
 };
 
+/// A parsed override.
 class Override {
   public:
     explicit Override(std::string const& text) : origin_("--set " + shown(text)) {
@@ -28,6 +30,7 @@ class Override {
         read_path(text.substr(0, equals));
     }
 
+    /// Follows the path from the root and replaces or removes the value there.
     void apply(Node& root) const {
         Node value = parse_value(value_, origin_);
         Node* at = &root;
@@ -53,6 +56,7 @@ class Override {
             begin = end + 1;
         }
     }
+    /// Parses a key with any number of indices: "chains[0]".
     void read_step(std::string const& word) {
         std::size_t at = word.find('[');
         std::string const key = word.substr(0, at);
@@ -74,6 +78,7 @@ class Override {
             at = close + 1;
         }
     }
+    /// Returns the map's entry of that key, added if it is missing.
     Node& member(Node& map, std::string const& key) const {
         if (map.kind == Node::Kind::null) map.kind = Node::Kind::map;
         if (map.kind != Node::Kind::map)
@@ -86,6 +91,7 @@ class Override {
         map.items.emplace_back().key = key;
         return map.items.back();
     }
+    /// Returns an entry of a list; throws InputError if the list is too short.
     Node& entry(Node& list, std::size_t index) const {
         if (list.kind == Node::Kind::null)
             refuse(fmt::format("there is no list `{}`", shown(list.key)), "correct the path");
