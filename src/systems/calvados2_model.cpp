@@ -1,3 +1,4 @@
+// Implements the CALVADOS 2 force field as an OpenMM System of two CustomNonbondedForces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,13 +13,14 @@ namespace catena {
 
 namespace {
 
-/// The chain that bead k belongs to, and its place in it (from 0).
+/// The chain of a bead and the bead's position k in it (from 0).
 struct Place {
     std::string chain;
     std::int64_t k, length;
     calvados2::ChargedTermini termini;
 };
 
+/// Calls visit(bead, place) for every bead of every chain.
 template <class Visit>
 void for_each_bead(OpenMmSpec const& spec, BeadSystem const& beads, Visit visit) {
     calvados2::ChainEnds const ends(spec);
@@ -30,6 +32,7 @@ void for_each_bead(OpenMmSpec const& spec, BeadSystem const& beads, Visit visit)
     }
 }
 
+/// Names a bead's place in the scene for messages.
 std::string chain_key(BeadSystem const& beads, Place const& at) {
     return fmt::format("{}: chain {}, body {}", beads.scene_file, at.chain, at.k + 1);
 }
@@ -42,6 +45,8 @@ Calvados2Residue const& residue_of(BeadSystem const& beads, std::int64_t bead, P
                      "forces as a System (forces.openmm.system)");
 }
 
+/// Throws InputError for parameters outside the model's range and for boxes smaller than twice the
+/// longest cutoff.
 void check(OpenMmSpec const& spec, BeadSystem const& beads) {
     if (!(spec.temperature > 0))
         throw InputError(fmt::format("temperature {} K is not positive", spec.temperature),
@@ -70,8 +75,8 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
                     beads.scene_file + ": box.periodic", "take a larger box or none");
 }
 
-/// Half of sigma and lambda are the particles' parameters, so that a pair's arithmetic means are
-/// sums.
+/// Ashbaugh-Hatch potential. The particles' parameters are half of sigma and lambda, so that a
+/// pair's arithmetic means are sums. The energy is shifted to zero at the cutoff.
 std::unique_ptr<OpenMM::CustomNonbondedForce> ashbaugh_hatch() {
     auto force = std::make_unique<OpenMM::CustomNonbondedForce>(
         "select(step(r-2^(1/6)*s), l*(lj-edge), lj-l*edge+eps*(1-l));"
@@ -85,6 +90,8 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> ashbaugh_hatch() {
     return force;
 }
 
+/// Yukawa potential, shifted to zero at the cutoff. The parameter q of a particle includes the
+/// square root of Yukawa::prefactor.
 std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa const& y) {
     auto force = std::make_unique<OpenMM::CustomNonbondedForce>("q1*q2*(exp(-kappa*r)/r-edge)");
     force->addPerParticleParameter("q");
@@ -96,6 +103,8 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa con
     return force;
 }
 
+/// Excludes linked neighbours and pairs within rigid bodies, and sets cutoff method, switching and
+/// group.
 void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSystem const& beads,
             int group) {
     for (auto const& link : beads.links)
@@ -148,7 +157,7 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     auto charges = yukawa_force(y);
 
     OpenMmModel model;
-    std::vector<double> charge_of;  // e, by bead
+    std::vector<double> charge_of;  // e, per bead
     model.system = std::make_shared<OpenMM::System>();
     if (beads.box)
         model.system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0},

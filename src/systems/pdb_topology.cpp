@@ -1,3 +1,4 @@
+// Implements the reader of PDB topologies.
 #include "systems/pdb_topology.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ std::string whole_text(std::string const& file, std::string const& where) {
     return text.str();
 }
 
-/// Gives names once: the first chain of a name keeps it, the next ones are "A-2", "A-3", ...
+/// Makes names unique: the first chain keeps its name, the next ones are "A-2", "A-3", ...
 class UniqueNames {
   public:
     std::string make(std::string const& name) {

@@ -1,3 +1,4 @@
+// Implements the Systems of subsets: copies of forces with renumbered particles.
 #include "systems/subset.hpp"
 
 #include <algorithm>
@@ -13,9 +14,9 @@ namespace catena {
 
 namespace {
 
-using namespace OpenMM;  // this file handles nothing else
+using namespace OpenMM;  // this file uses no other library
 
-/// Notes the partners of own particles; keeps no term.
+/// Collects the partners of own particles; keeps no term.
 class PartnerCollector : public TermFilter {
   public:
     PartnerCollector(int particle_count, std::vector<int> const& own)
@@ -37,7 +38,7 @@ class PartnerCollector : public TermFilter {
     std::set<int> partners_;
 };
 
-/// Marks the particles of terms that join ranks; keeps none.
+/// Marks the particles of terms that join different ranks; keeps no term.
 class JoinedAcrossRanks : public TermFilter {
   public:
     explicit JoinedAcrossRanks(std::vector<int> const& rank_of_particle)
@@ -56,13 +57,14 @@ class JoinedAcrossRanks : public TermFilter {
     std::vector<char> joined_;
 };
 
+/// Keeps no term; used to recognise bonded forces.
 class NoTerm : public TermFilter {
   public:
     bool keep(std::initializer_list<int*>) override { return false; }
 };
 
-/// Keeps the terms that touch an own particle, with the subset's numbers. Exchangeable particles
-/// have no terms.
+/// Keeps the terms that involve an own particle, and renumbers them for the subset. Exchangeable
+/// particles have no terms.
 class Renumbering : public TermFilter {
   public:
     Renumbering(int particle_count, Subset const& subset)
@@ -78,7 +80,8 @@ class Renumbering : public TermFilter {
         });
         return touches && keep_pair(particles);
     }
-    /// Whether all are in the subset for good.
+    /// Renumbers the particles in place; returns false if one of them is not permanently in the
+    /// subset.
     bool keep_pair(std::initializer_list<int*> particles) const {
         if (std::any_of(particles.begin(), particles.end(),
                         [&](int const* p) { return index_[*p] < 0; }))
@@ -92,7 +95,7 @@ class Renumbering : public TermFilter {
   private:
     std::vector<int> const &particles_, &after_;
     int own_count_;
-    std::vector<int> index_;  // in the subset; -1: not in it for good
+    std::vector<int> index_;  // index in the subset; -1: not permanently in it
 };
 
 template <class Source>
@@ -102,7 +105,8 @@ void copy_globals(Source const& from, Source& to) {
                               from.getGlobalParameterDefaultValue(i));
 }
 
-/// The exceptions of a NonbondedForce act at any distance: they are bonded terms.
+/// Passes the exceptions of a NonbondedForce to the filter. They act at any distance, like bonded
+/// terms.
 void collect_exceptions(NonbondedForce const& from, TermFilter& filter) {
     for (int i = 0; i < from.getNumExceptions(); ++i) {
         int a, b;
@@ -112,6 +116,7 @@ void collect_exceptions(NonbondedForce const& from, TermFilter& filter) {
     }
 }
 
+/// Passes the exclusions to the filter.
 void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
     for (int i = 0; i < from.getNumExclusions(); ++i) {
         int a, b;
@@ -120,6 +125,7 @@ void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
     }
 }
 
+/// Passes all terms, exceptions and exclusions of a System to the filter.
 void collect_terms(System const& system, TermFilter& filter) {
     for (int i = 0; i < system.getNumForces(); ++i) {
         if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i)))
@@ -141,6 +147,7 @@ void copy_computed_values(Source const& from, Source& to) {
     }
 }
 
+/// Copies the interaction groups with the particles that are permanently in the subset.
 void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const& subset,
                              CustomNonbondedForce& to) {
     auto const renumbered = [&](std::set<int> const& all) {
@@ -156,6 +163,7 @@ void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const
     }
 }
 
+/// Copies a CustomNonbondedForce for the subset's particles.
 std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering const& subset) {
     auto to = std::make_unique<CustomNonbondedForce>(from.getEnergyFunction());
     to->setNonbondedMethod(from.getNonbondedMethod());
@@ -184,7 +192,8 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
     return to;
 }
 
-/// Exceptions with their offsets. One between two ghosts must stay an exclusion but need not act.
+/// Copies exceptions with their offsets. An exception between two ghosts must stay an exclusion,
+/// but its energy is not needed.
 void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, NonbondedForce& to) {
     std::vector<int> index(from.getNumExceptions(), -1);
     for (int i = 0; i < from.getNumExceptions(); ++i) {
@@ -204,6 +213,7 @@ void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, Nonb
     }
 }
 
+/// Copies a NonbondedForce for the subset's particles.
 std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const& subset) {
     auto to = std::make_unique<NonbondedForce>();
     to->setNonbondedMethod(from.getNonbondedMethod());
@@ -213,7 +223,7 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     to->setReactionFieldDielectric(from.getReactionFieldDielectric());
     to->setExceptionsUsePeriodicBoundaryConditions(
         from.getExceptionsUsePeriodicBoundaryConditions());
-    to->setUseDispersionCorrection(false);  // it adds no force
+    to->setUseDispersionCorrection(false);  // the correction adds no force
     copy_globals(from, *to);
     double charge, sigma, epsilon;
     for (int p : subset.particles()) {
@@ -231,6 +241,7 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     return to;
 }
 
+/// Copies any force that can be split.
 std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
     if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&from))
         return copy_pairs(*pairs, subset);
@@ -239,6 +250,7 @@ std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
     return copy_bonded(from, subset);
 }
 
+/// Sets the parameters of the exchangeable particles in the force and in the Context.
 void exchange_parameters(Subset const& subset, CustomNonbondedForce const& from,
                          CustomNonbondedForce& to, Context& context) {
     std::vector<double> parameters;
