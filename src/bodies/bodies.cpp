@@ -68,6 +68,7 @@ struct Needed {
     bool torque = false, spring = false, damping = false, wrench = false, drag = false,
          first_axis = false, pitch = false;
 
+    /// Marks the arrays that this joint needs.
     void take(JointEntry const& joint) {
         torque = torque || joint.loaded;
         spring = spring || joint.sprung;
@@ -75,6 +76,7 @@ struct Needed {
         first_axis = first_axis || joint.type == JointType::universal;
         pitch = pitch || joint.type == JointType::helical;
     }
+    /// Clears all arrays that no body needs; an empty array means zero.
     void drop_rest(BodyArrays& bodies) const {
         if (!torque) bodies.torque = {};
         if (!spring) bodies.stiffness = {}, bodies.rest = {};
@@ -116,6 +118,7 @@ BodyList kind_of_list(Node const& bodies) {
         rigid = rigid || body.find("inertia");
         if (!link && !other) other = body.find("joint");
     }
+    // A chain is stored in absolute coordinates (links) or in joint coordinates (all other joints).
     if (links && other) {
         Node const* const type = other->find("type");
         fail(*other,
@@ -124,8 +127,9 @@ BodyList kind_of_list(Node const& bodies) {
              "make it a link, or give every joint another type");
     }
     Node const& first = bodies.items[0];
-    bool const lone_bead = bodies.items.size() == 1 && !rigid && !first.find("joint") &&
-                           first.find("position");  // an ion
+    // A single point without links, such as an ion, is a chain of one bead.
+    bool const lone_bead =
+        bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");
     if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
     return rigid ? BodyList::linked : BodyList::beads;
 }
@@ -137,6 +141,7 @@ std::array<double, 2> read_drag(Node const& drag) {
     return {linear ? non_negative(*linear) : 0, angular ? non_negative(*angular) : 0};
 }
 
+// The arrays have one entry per body at first, also those that are usually empty.
 ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> const& scene_drag) {
     ExplicitBodies made;
     BodyArrays& bodies = made.bodies;
@@ -186,6 +191,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         double length = std::numeric_limits<double>::quiet_NaN();
         Node const* const joint_node =
             k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
+        // Bead 1 of a free base has no link and thus no length.
         if (joint_node) {
             Fields const joint(*joint_node, {"type", "length"});
             Node const* const given = joint.find("length");

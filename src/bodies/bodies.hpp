@@ -16,6 +16,7 @@ BodyList kind_of_list(Node const& bodies);
 
 /// Rigid bodies read from a list.
 struct ExplicitBodies {
+    /// Arrays of the chain; optional arrays that no body needs are empty.
     BodyArrays bodies;
     /// First joint that is written `planar`, or nullptr. The caller checks that all axes of such a
     /// chain are parallel.

@@ -21,6 +21,7 @@ class CarriedList {
     CarriedBeads take();
 
   private:
+    /// The beads of all bodies that have been added so far.
     CarriedBeads beads_;
 };
 

@@ -37,6 +37,8 @@ class Hdf5Bodies {
   public:
     Hdf5Bodies(std::string const& path, Base base) : table_(path, "mass"), base_(base) {}
 
+    /// Reads the datasets in the order of their dependencies: joints decide which numbers a body
+    /// needs.
     BodyArrays read() {
         refuse_unknown();
         read_masses();
@@ -49,6 +51,7 @@ class Hdf5Bodies {
     }
 
   private:
+    /// Throws InputError for a dataset that is unknown, with the nearest known name.
     void refuse_unknown() const {
         for (std::string const& name : table_.names()) {
             if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
@@ -62,10 +65,13 @@ class Hdf5Bodies {
         if (!table_.has(name))
             table_.refuse(name, Hdf5Table::whole, "the dataset is missing", "add it: " + why);
     }
+    /// Throws InputError for body k if there is a fault.
     void refuse(char const* name, std::size_t k, std::optional<Fault> const& fault) const {
         if (fault) table_.refuse(name, k, fault->what, fault->remedy);
     }
 
+    /// Reads `mass` [n], `com` [n, 3] and `inertia` [n, 3, 3] or [n, 6]. Six numbers are the lower
+    /// triangle, row by row.
     void read_masses() {
         bodies_.mass.resize(table_.rows());
         table_.for_each("mass", {{}}, [&](std::size_t k, double const* v, std::size_t) {
@@ -98,6 +104,7 @@ class Hdf5Bodies {
         });
     }
 
+    /// Reads `joint_type` [n]: names, or the numbers of `types`.
     void read_joints() {
         need("joint_type", "a number or a name a body");
         bodies_.joint.resize(table_.rows());
@@ -124,6 +131,8 @@ class Hdf5Bodies {
         });
     }
 
+    /// Sets the type of joint k. Throws InputError for links, and for a free joint anywhere but at
+    /// body 1 of a free base.
     void set_joint(std::size_t k, JointType type) {
         bool const free = type == JointType::free;
         if (type == JointType::link)
@@ -143,6 +152,8 @@ class Hdf5Bodies {
         bodies_.joint[k] = type;
     }
 
+    /// Reads `translation` [n, 3] and `rotation` [n, 3, 3]; by default joint frames coincide with
+    /// the inboard body's.
     void read_frames() {
         vectors("translation", bodies_.translation, [](std::size_t, Vec3&) {});
         bodies_.rotation.assign(table_.rows(), Mat3::identity());
@@ -159,10 +170,13 @@ class Hdf5Bodies {
         JointType const type = bodies_.joint[k];
         return numbers_of(type) == 1 || type == JointType::universal;
     }
+    /// True if any joint has that type.
     bool any(JointType type) const {
         return std::find(bodies_.joint.begin(), bodies_.joint.end(), type) != bodies_.joint.end();
     }
 
+    /// Reads `axis` [n, 3], `first_axis` [n, 3] and `pitch` [n]. Axes are normalised; those of
+    /// joints without an axis become 0.
     void read_axes() {
         for (std::size_t k = 0; k < table_.rows(); ++k)
             if (has_axis(k)) {
@@ -213,6 +227,8 @@ class Hdf5Bodies {
         return bodies_.joint[k] == JointType::spherical || bodies_.joint[k] == JointType::free;
     }
 
+    /// Reads `q` [n, 4], `qd` [n, 3], `free_position` [3] and `free_velocity` [3]. Rates that a
+    /// joint does not have become 0.
     void read_state() {
         positions("q", bodies_.q);
         vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
@@ -221,6 +237,7 @@ class Hdf5Bodies {
         table_.vector("free_position", bodies_.free_position.data);
         table_.vector("free_velocity", bodies_.free_velocity.data);
     }
+    /// Number of coordinates of joint k; 0 for a free joint.
     int count(std::size_t k) const { return numbers_of(bodies_.joint[k]); }
     /// Sets the components from `count` on to zero.
     static void keep(Vec3& v, int count) {
@@ -238,6 +255,8 @@ class Hdf5Bodies {
         });
     }
 
+    /// Reads `torque`, `stiffness`, `damping` [n, 3], `rest` [n, 4], `wrench` [n, 6] (torque,
+    /// force) and `drag` [n, 2]. All are optional; a spring needs `stiffness` or `rest`.
     void read_forces() {
         if (table_.has("torque"))
             vectors("torque", bodies_.torque, [&](std::size_t k, Vec3& v) { keep(v, count(k)); });
@@ -269,6 +288,7 @@ class Hdf5Bodies {
 
 }  // namespace
 
+// The trial runs in a child process and shows whether HDF5 survives the file; its result is lost.
 BodyArrays read_hdf5_bodies(std::string const& path, Base base) {
     std::string const end = trial([&] { Hdf5Bodies(path, base).read(); }, limits_for_file(path));
     if (!end.empty())

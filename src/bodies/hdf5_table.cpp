@@ -25,6 +25,7 @@ double constexpr best_compression = 1100;
 /// Memory of a body in the arrays, bytes, rounded up.
 double constexpr bytes_a_body = 256;
 hsize_t constexpr largest_chunk = hsize_t{1} << 30;  // bytes
+/// Number of rows per block, and longest text of fixed length in bytes.
 std::size_t constexpr rows_a_block = 1 << 16, longest_text = 1024;
 
 /// Half-precision type as h5py writes it; HDF5 1.10 has no name for it.
@@ -51,6 +52,7 @@ bool is_number(hdf5::Type const& type) {
            is(half(H5T_ORDER_BE).get());
 }
 
+/// Shape for messages: "[10, 3]".
 std::string shape_text(std::vector<hsize_t> const& shape) {
     return fmt::format("[{}]", fmt::join(shape, ", "));
 }
@@ -90,6 +92,7 @@ void Hdf5Table::refuse_too_large(std::string const& name) const {
         refuse(name, whole,
                fmt::format("the dataset has {} rows, which the file does not hold", rows_),
                "write the whole of it");
+    // The check precedes all allocations, which could end the process.
     auto const present = static_cast<double>(memory_limit());
     if (rows * bytes_a_body > present)
         refuse(name, whole,
@@ -136,6 +139,7 @@ std::size_t Hdf5Table::for_each(std::string const& name, std::vector<Shape> cons
     refuse_unless_numbers(data, name);
     std::size_t width = 1;
     for (hsize_t const extent : row) width *= extent;
+    // One block serves all rows, so that no dataset is held twice.
     std::vector<double> block(std::min(rows_, rows_a_block) * width);
     for (std::size_t first = 0; first < rows_; first += rows_a_block) {
         std::size_t const count = std::min(rows_a_block, rows_ - first);

@@ -17,7 +17,9 @@ class Hdf5Table {
     /// or the dataset is missing.
     Hdf5Table(std::string const& path, std::string const& counted);
 
+    /// Number of rows of the counted dataset, that is of bodies.
     std::size_t rows() const { return rows_; }
+    /// True if the file has an object of that name at its root.
     bool has(std::string const& name) const;
     /// Names of all datasets and groups at the root of the file.
     std::vector<std::string> names() const;
@@ -43,12 +45,17 @@ class Hdf5Table {
                              std::string const& remedy) const;
 
   private:
+    /// Opens a dataset; throws InputError with HDF5's reason.
     hdf5::Dataset open(std::string const& name) const;
+    /// Extents of the dataset; empty for a scalar.
     std::vector<hsize_t> shape_of(hdf5::Dataset const& data, std::string const& name) const;
+    /// Throws InputError for more rows than the file can hold or the memory can take.
     void refuse_too_large(std::string const& name) const;
+    /// Throws InputError for element types other than common number types.
     void refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const;
     /// Refuses chunks larger than a gigabyte; HDF5 allocates whole chunks.
     void refuse_large_chunks(hdf5::Dataset const& data, std::string const& name) const;
+    /// Reads texts of variable length without HDF5's reader, see VariableTexts.
     void for_each_variable_text(hdf5::Dataset const& data, std::string const& name,
                                 ReadText const& read) const;
     /// Reads `count` rows from `first` on into `values`, converted to the memory type `type`.
@@ -59,6 +66,7 @@ class Hdf5Table {
     template <class Status>
     Status sound(Status status, std::string const& name) const;
 
+    /// Suppresses HDF5's own error output while the table is open.
     hdf5::Quiet quiet_;
     std::string path_;
     hdf5::File file_;

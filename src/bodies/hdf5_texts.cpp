@@ -19,6 +19,7 @@ std::uint64_t constexpr collection_head = 16;
 /// Size of an object's header: number, references, size.
 std::uint64_t constexpr object_head = 16;
 
+/// Throws the error for a damaged file.
 [[noreturn]] void damaged(char const* what) {
     throw std::runtime_error(std::string("damaged text, ") + what);
 }
@@ -31,6 +32,7 @@ std::uint64_t number(std::string const& bytes, std::uint64_t at, std::uint64_t w
     return value;
 }
 
+/// Creation properties of the file: sizes of addresses, user block.
 hdf5::Properties creation_of(hdf5::File const& file) {
     return hdf5::Properties(H5Fget_create_plist(file.get()));
 }
@@ -67,6 +69,7 @@ VariableTexts::VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, 
 std::string VariableTexts::at(std::size_t k) {
     std::string const element = bytes(elements_ + k * element_size, element_size);
     std::uint64_t const length = number(element, 0, 4), address = number(element, 4, 8);
+    // An empty text has no object in the heap.
     if (length == 0) return {};
     Collection const& objects = collection(address);
     auto const found = objects.find(static_cast<unsigned>(number(element, 12, 4)));
@@ -103,6 +106,7 @@ VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
     if (!head.starts_with("GCOL") || head[4] != 1 || size < collection_head)
         damaged("there is no heap where the dataset says");
     std::string const all = bytes(base_ + at, size);
+    // Sound collections are disjoint, so that their sizes cannot add up to more than the file.
     parsed_ += size;
     if (parsed_ > size_) damaged("heaps lie over one another");
     Collection objects;
@@ -114,6 +118,7 @@ VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
         if (length > size - place) damaged("an object ends behind its heap");
         if (!objects.emplace(of, all.substr(place, length)).second)
             damaged("two objects have one number");
+        // Objects are padded to multiples of eight bytes.
         std::uint64_t const padded = (length + 7) / 8 * 8;
         if (padded > size - place) break;
         place += padded;

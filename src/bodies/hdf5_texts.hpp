@@ -16,6 +16,7 @@ namespace catena::scene {
 /// The file must stay open longer than this object.
 class VariableTexts {
   public:
+    /// Throws if the elements are not contiguous in this file. `count` is the number of texts.
     VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, std::size_t count);
     /// Returns text k; precondition: k < count.
     std::string at(std::size_t k);

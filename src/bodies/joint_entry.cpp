@@ -21,6 +21,7 @@ struct TypeName {
     bool planar = false;
 };
 
+/// Reads the type. `planar` is a revolute joint with a promise, see JointEntry.
 TypeName type_of(Node const& joint) {
     Node const* const type = joint.find("type");
     if (!type) fail(joint, "key `type` is missing", "add `type: revolute`");
@@ -100,6 +101,7 @@ Four position(Node const& node, JointType type, bool alike) {
     return {v[0], v[1], 0, 0};
 }
 
+/// Reads pose and rates of a free joint: position and velocity in W, omega in B.
 void read_free(Fields const& joint, JointEntry& entry) {
     entry.q = entry.rest = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) {
@@ -172,6 +174,7 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
     } else {
         entry.motion.push_back(read_course(motion));
     }
+    // The motion decides position and rate, also those of the start.
     for (std::size_t i = 0; i < entry.motion.size(); ++i) {
         entry.q[i] = value_at(entry.motion[i], 0);
         entry.qd[static_cast<int>(i)] = rate_at(entry.motion[i], 0);
@@ -181,6 +184,7 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
 /// Reads position, rates, torque, spring and damper.
 void read_state(Fields const& joint, JointEntry& entry) {
     JointType const type = entry.type;
+    // The default position is zero; for quaternions that is the identity.
     if (type == JointType::spherical) entry.q = entry.rest = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) entry.q = position(*q, type, false);
     if (Node const* const rest = joint.find("rest")) entry.rest = position(*rest, type, true);
@@ -202,6 +206,7 @@ int numbers_of(JointType type) {
     return type == JointType::free || type == JointType::link ? 0 : coordinates_of(type);
 }
 
+// The joint's type decides which keys have a meaning.
 JointEntry read_joint(Node const& node) {
     Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "qd",
                               "torque", "stiffness", "damping", "rest", "motion", "length"});
@@ -219,6 +224,7 @@ JointEntry read_joint(Node const& node) {
     return entry;
 }
 
+// Links and joints with axes have different keys; both may have an anchor unless they close a ring.
 TipEntry read_tip_joint(Node const& node, bool ring) {
     Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q",
                               "anchor", "length"});

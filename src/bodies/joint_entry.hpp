@@ -15,9 +15,11 @@ struct JointEntry {
     JointType type = JointType::free;
     /// True if the type is written `planar`: a revolute joint in a chain of parallel axes.
     bool planar = false;
+    /// Axes and joint frame, see BodyArrays.
     Vec3 axis = Vec3::zero(), first_axis = Vec3::zero(), translation = Vec3::zero();
     double pitch = 0;
     Mat3 rotation = Mat3::identity();
+    /// Position and rest position, rates and loads, see BodyArrays.
     std::array<double, 4> q{0, 0, 0, 0}, rest{0, 0, 0, 0};
     Vec3 qd = Vec3::zero(), torque = Vec3::zero(), stiffness = Vec3::zero(), damping = Vec3::zero();
     /// Position and velocity of a free joint, W.
@@ -36,7 +38,9 @@ JointEntry read_joint(Node const& joint);
 
 /// Joint of a tip as read.
 struct TipEntry {
+    /// Joint in the form of the chain.
     TipJoint joint;
+    /// True if the type is written `planar`.
     bool planar = false;
 };
 /// Reads the joint of `tip: {joint: ...}`: any type but free; a link needs its anchor. If `ring` is

@@ -24,6 +24,7 @@ double largest_entry(Mat3 const& m) {
     return largest;
 }
 
+/// Throws InputError with the fault, if any.
 void refuse(Node const& node, std::optional<Fault> const& fault) {
     if (fault) fail(node, fault->what, fault->remedy);
 }
@@ -74,6 +75,7 @@ std::array<double, 3> principal_moments(Sym3 const& j) {
     Mat3 a = full(j);
     double const scale = largest_entry(a);
     if (scale == 0) return {0, 0, 0};
+    // Scaling prevents overflow and underflow of the squares.
     for (double& entry : a.data) entry /= scale;
     // Convergence is quadratic: six sweeps reduce any 3x3 matrix to rounding.
     for (int sweep = 0; sweep < 6; ++sweep) {
@@ -99,6 +101,7 @@ std::optional<Fault> make_inertia(Mat3 const& m, Sym3& j) {
         }
     if (is_plainly_physical(j)) return std::nullopt;
     auto const [a, b, c] = principal_moments(j);
+    // The tolerance is relative to the largest moment, as all entries are rounded on its scale.
     double const slack = rounding * std::max(std::abs(a), std::abs(c));
     if (a < -slack)
         return Fault{
@@ -128,6 +131,7 @@ std::optional<Fault> make_rotation(Mat3& r) {
         return Fault{fmt::format("the rotation is not orthonormal: R^T R differs from 1 by {:.3g}",
                                  deviation),
                      "give unit columns at right angles"};
+    // Orthonormal columns have the determinant 1 or -1.
     if (dot(r.column(0), cross(r.column(1), r.column(2))) < 0)
         return Fault{"the rotation is left-handed: its determinant is -1",
                      "change the sign of one column"};
@@ -153,6 +157,7 @@ std::optional<Fault> make_unit(std::array<double, 4>& q) {
 }
 
 std::optional<Fault> make_direction(Vec3& v) {
+    // Scaling by the largest component prevents overflow and underflow of the norm.
     double const scale = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (scale == 0) return Fault{"the axis is zero", "give a direction such as [0, 0, 1]"};
     for (double& x : v.data) x /= scale;

@@ -14,6 +14,7 @@ namespace catena::scene {
 
 /// Description of an invalid value, with a remedy.
 struct Fault {
+    /// Statement of the fault, and advice.
     std::string what, remedy;
 };
 

@@ -13,11 +13,14 @@
 
 namespace catena::scene {
 
+/// The scene's System, see system_links.hpp.
 class WrittenSystem;
 
 /// One entry of `chains` with its context; the readers of each kind of chain share it.
 struct ChainRequest {
+    /// The entry as a map of known keys.
     Fields fields;
+    /// The entry as a node, for messages.
     Node const& node;
     std::size_t index;  // index in `chains`, from 0
     Scene& scene;       // all sections except the chains; readers add notes

@@ -28,6 +28,7 @@ namespace catena::scene {
 
 namespace {
 
+/// The entry with all keys that a chain may have.
 Fields chain_fields(Node const& entry) {
     return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies",
                           "generator", "model", "positions", "links", "base", "tip", "anchor",
@@ -115,6 +116,7 @@ void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
 /// Reads one entry and makes its copies.
 class ChainReader {
   public:
+    /// Reads what all copies share: base, tip, count and generator.
     ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm,
                 WrittenSystem const* system)
         : request_{chain_fields(entry), entry, index, scene},
@@ -135,6 +137,8 @@ class ChainReader {
             fail(*request_.fields.find("name"),
                  "the name has control characters or bytes that are not UTF-8",
                  "give printable UTF-8");
+        // The memory of generated chains is checked before they are made, that of others after the
+        // first copy.
         double const before = drafts.empty() ? 0 : drafts.back().bytes;
         if (generator_) with_copies(before, generator_->size(), generator_->is_beads());
         std::int64_t const next =
@@ -150,6 +154,7 @@ class ChainReader {
         bool const free_to_move = movable(first);
         Regrowth const shape = regrown(first);
         std::size_t const wanted = drafts.size() + static_cast<std::size_t>(count_);
+        // The capacity grows by a factor, so that many entries do not copy the drafts each time.
         if (wanted > drafts.capacity()) drafts.reserve(std::max(wanted, 2 * drafts.capacity()));
         std::size_t const at = drafts.size();
         first.name = count_ == 1 ? name : name + "-1";
@@ -253,6 +258,7 @@ class ChainReader {
         if (count_ > 1) return true;
         return is_free(chain) && source_.key != "bodies" && !is_given();
     }
+    /// True for a chain of beads that nothing attaches to the ground.
     bool is_free(ChainSpec const& chain) const {
         return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free;
     }
@@ -287,10 +293,14 @@ class ChainReader {
         return bytes;
     }
 
+    /// Entry with its context; its members change from copy to copy.
     ChainRequest request_;
     Node const& source_;
+    /// True if chains without velocities start thermal.
     bool warm_;
+    /// Tip of all copies.
     ReadTip tip_;
+    /// Number of copies.
     std::int64_t count_ = 1;
     /// Generator of the chain, if any. It refers to request_; a reader therefore must not be moved.
     std::optional<GeneratorEntry> generator_;

@@ -16,6 +16,7 @@ enum class Regrowth : std::uint8_t { no, if_asked, yes };
 
 /// A chain of the scene before it has a place.
 struct Draft {
+    /// The chain, at a preliminary place if it is movable.
     ChainSpec chain;
     Node const* node = nullptr;  // entry in `chains`
     /// True if the scene gives no place for the chain.

@@ -51,6 +51,7 @@ void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, 
                     "`fill` is for free chains of beads without positions, which chain `{}` is not",
                     shown(draft.chain.name)),
                 "leave `fill` out, or let the scene place every chain");
+    // The region is packed as a periodic box of its own, then its chains are moved into the middle.
     give_places(drafts, fill, seed, "the region to fill");
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);
 }

@@ -38,6 +38,7 @@ double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const&
 /// Checks pairs of neighbours and collects notes.
 class Neighbours {
   public:
+    /// Checks for the residues of one file; `at` is the key in messages.
     Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at)
         : from_(from), request_(request), at_(at) {
         if (request.system)
@@ -47,6 +48,7 @@ class Neighbours {
 
     /// Checks two neighbours in the chain; `b` is its bead k (from 0).
     void check(PdbSite const& a, PdbSite const& b, std::size_t k) {
+        // Numbers may restart after 9999 in files without a fifth digit.
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped =
             a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
@@ -65,6 +67,7 @@ class Neighbours {
         if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
     }
+    /// Notes the skips and gaps that were accepted.
     void note() const {
         if (skips_ > 0)
             request_.scene.note(
@@ -119,6 +122,7 @@ class Neighbours {
         return from_.cell && !request_.scene.box &&
                nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
     }
+    /// Throws InputError for residues whose numbers decrease.
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
         fail(at_,
              fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue,
@@ -126,6 +130,8 @@ class Neighbours {
              "sort the residues by their numbers, number them along the chain, or keep one chain "
              "per file");
     }
+    /// Throws InputError with the most likely reason: too close, wrapped into the file's cell, or a
+    /// gap. `peptide` is the length of a broken peptide bond, nm, or 0.
     [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart,
                              double peptide) const {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label,
@@ -155,6 +161,7 @@ class Neighbours {
     Node const& at_;
     /// Largest relative change of a link of the System.
     double most_ = 0;
+    /// Numbers of accepted skips and gaps, and the first of each.
     int skips_ = 0, gaps_ = 0;
     std::string first_skip_, first_gap_;
 };

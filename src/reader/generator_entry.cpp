@@ -20,14 +20,17 @@ Node const& single_entry(Node const& node) {
     return *kinds.find(node.items[0].key);
 }
 
+/// Reads an optional distribution.
 void take(Fields const& fields, char const* key, Distribution& value) {
     if (Node const* const node = fields.find(key)) value = read_distribution(*node);
 }
 
+/// Reads an optional number.
 void take(Fields const& fields, char const* key, double& value) {
     if (Node const* const node = fields.find(key)) value = number(*node);
 }
 
+/// Reads the joint type of a random chain.
 RandomJoint random_joint(Node const& node) {
     return choice<RandomJoint>(node, {{"link", RandomJoint::link},
                                       {"planar", RandomJoint::planar},
@@ -60,6 +63,7 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
         read_rods();
 }
 
+// Random bodies and joints; `rigid` mixes rigid bodies into chains of links.
 void GeneratorEntry::read_random() {
     Fields const fields(entry_,
                         {"bodies", "joint", "rigid", "mass", "length", "inertia", "seed", "loads"});
@@ -86,6 +90,7 @@ void GeneratorEntry::read_random() {
     velocities_ = true;
 }
 
+// Rods on revolute joints: pendulum, coil and dill.
 void GeneratorEntry::read_rods() {
     bool const swinging = entry_.key == "pendulum", dill = entry_.key == "dill";
     char const* const count = swinging ? "links" : "bodies";
@@ -118,6 +123,7 @@ void GeneratorEntry::read_rods() {
              "give a number above 0, at most 1");
 }
 
+// Random walks of beads; `positions` may replace the walk.
 void GeneratorEntry::read_walk() {
     bool const worm = entry_.key == "worm_like";
     char const* const count = worm ? "bodies" : "beads";
@@ -135,6 +141,7 @@ void GeneratorEntry::read_walk() {
     walk.anchor = request_.anchor();
 }
 
+// Regular polygons, to be closed by a tip.
 void GeneratorEntry::read_polygon() {
     Fields const fields(entry_, {"bodies", "joint", "mass", "length", "radius", "spin"});
     Polygon& shape = polygon_.emplace();
@@ -160,6 +167,7 @@ void GeneratorEntry::read_polygon() {
     request_.allow("generator `polygon`", {});
 }
 
+// Elastic rods in thermal equilibrium; rods longer than ten persistence lengths are refused.
 void GeneratorEntry::read_elastic_rod() {
     Fields const fields(entry_, {"bodies", "mass", "length", "radius", "bend", "twist", "seed"});
     ElasticRod& rod = elastic_.emplace();

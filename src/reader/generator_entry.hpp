@@ -24,6 +24,7 @@ class GeneratorEntry {
     void make(ChainSpec& chain, std::int64_t copy) const;
 
   private:
+    /// Readers of the kinds of generators, each with its own keys.
     void read_random();
     void read_rods();
     void read_walk();
@@ -33,6 +34,7 @@ class GeneratorEntry {
     std::uint64_t seed(std::int64_t copy) const;
 
     ChainRequest const& request_;
+    /// Map of the generator's parameters.
     Node const& entry_;
     std::int64_t size_ = 0;
     std::optional<RandomChain> random_;  // exactly one of the five is set
@@ -40,6 +42,7 @@ class GeneratorEntry {
     std::optional<Walk> walk_;
     std::optional<Polygon> polygon_;
     std::optional<ElasticRod> elastic_;
+    /// Shape of a coil or dill.
     Winding winding_;
     double persistence_ = 0;  // persistence length of a worm-like walk
     /// Kind of the chains, whether they have velocities, and whether they keep the random loads.

@@ -22,6 +22,7 @@ double constexpr length_tolerance = 1e-9;
 /// Adds bodies one by one to a linked chain.
 class LinkedReader {
   public:
+    /// Reader for a chain with this base; without a box no link can be cut.
     LinkedReader(Base base, Vec3 const& anchor, std::optional<Vec3> const& box) : base_(base) {
         made_.linked.anchor = anchor;
         if (box) images_.emplace(*box);
@@ -50,6 +51,7 @@ class LinkedReader {
         add_link(body);
     }
 
+    /// Moves the result out.
     ExplicitLinked take() {
         linked_.carried = carried_.take();
         return std::move(made_);
@@ -98,6 +100,7 @@ class LinkedReader {
     /// Adds the body's inboard link, which also sets the outboard end of the preceding body.
     void add_link(Fields const& body) {
         std::size_t const k = linked_.mass.size() - 1;
+        // The next link starts where this one ends, unless its `translation` says otherwise.
         linked_.outboard.push_back(linked_.inboard[k]);
         bool const none = k == 0 && base_ == Base::free;
         Node const* const node =
@@ -122,6 +125,7 @@ class LinkedReader {
         return k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]);
     }
 
+    /// Length of the longest link so far.
     double longest_so_far() const {
         return linked_.length.empty()
                    ? 0
@@ -185,6 +189,7 @@ class LinkedReader {
     Base base_;
     ExplicitLinked made_;
     LinkedArrays& linked_ = made_.linked;
+    /// Beads of all bodies so far.
     CarriedList carried_;
     /// Images in the periodic box, if any.
     std::optional<Images> images_;

@@ -12,6 +12,7 @@ namespace catena::scene {
 
 /// Linked bodies as read, with the changes made.
 struct ExplicitLinked {
+    /// The chain, whole across the sides of the box.
     LinkedArrays linked;
     /// True if at least one body has a velocity or omega.
     bool velocities = false;

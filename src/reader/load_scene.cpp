@@ -60,6 +60,7 @@ Scene read_frame(Fields const& fields, std::string const& name) {
 /// Reads the chains of the scene or, if it has none, those of the System that it names.
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     Node const* const dynamics = fields.find("dynamics");
+    // A temperature that is only the default does not make chains thermal, except under g-BAOAB.
     bool const warm =
         dynamics && frame.dynamics.temperature > 0 &&
         (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
@@ -74,6 +75,7 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     std::vector<scene::Draft> drafts;
     for (std::size_t i = 0; i < chains.items.size(); ++i)
         scene::read_chain(chains.items[i], i, frame, warm, system ? &*system : nullptr, drafts);
+    // Soft bonds are judged when all chains are known, for one note on all of them.
     if (system) system->judge(drafts, frame);
     return drafts;
 }
@@ -95,6 +97,7 @@ Scene load_scene(std::string const& file, std::vector<std::string> const& overri
     return parse_scene(scene::read_text_file(file, at), file, overrides);
 }
 
+// Memory may run out anywhere below; the error becomes a message on the scene.
 Scene parse_scene(std::string const& text, std::string const& name,
                   std::vector<std::string> const& overrides) try {
     std::unique_ptr<Node> const root = scene::parse_document(text, name);

@@ -20,6 +20,7 @@ struct Step {
 /// A parsed override.
 class Override {
   public:
+    /// Parses "key.path=value"; throws InputError for a malformed text.
     explicit Override(std::string const& text) : origin_("--set " + shown(text)) {
         std::size_t const equals = text.find('=');
         if (equals == std::string::npos || equals == 0)
@@ -45,10 +46,12 @@ class Override {
     }
 
   private:
+    /// Throws InputError that quotes the option.
     [[noreturn]] void refuse(std::string const& what, std::string const& remedy) const {
         throw InputError(what, origin_, remedy);
     }
 
+    /// Splits the path at its dots.
     void read_path(std::string const& path) {
         for (std::size_t begin = 0; begin <= path.size();) {
             std::size_t const end = std::min(path.find('.', begin), path.size());
@@ -103,12 +106,14 @@ class Override {
                    "indices are counted from 0");
         return list.items[index];
     }
+    /// Removes the key if the node is a map that has it.
     static void remove(Node& map, std::string const& key) {
         std::erase_if(map.items, [&](Node const& item) {
             return map.kind == Node::Kind::map && item.key == key;
         });
     }
 
+    /// Option as quoted in messages, and text of the value.
     std::string origin_, value_;
     std::vector<Step> steps_;
 };

@@ -24,6 +24,7 @@ std::int64_t constexpr most_steps = 2000;
 /// Largest number of points; indices of points and cells have 32 bits.
 std::size_t constexpr most_points = std::size_t{1} << 28;
 
+/// Edges of a box for messages.
 std::string text_of(Vec3 const& box) {
     return fmt::format("{:.6g} x {:.6g} x {:.6g}", box[0], box[1], box[2]);
 }
@@ -74,6 +75,7 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
         BeadArrays const& beads = draft.chain.beads;
         crowd.at.insert(crowd.at.end(), beads.position.begin(), beads.position.end());
         crowd.length.insert(crowd.length.end(), beads.length.begin(), beads.length.end());
+        // The first bead of a chain has no link to the preceding point.
         crowd.length[crowd.first.back()] = 0;
         crowd.first.push_back(crowd.at.size());
     }

@@ -61,6 +61,7 @@ void refuse_far(Draft const& draft, Sphere const& sphere) {
          fmt::format("correct its coordinates: {:g} is the most", farthest));
 }
 
+/// Bounding sphere of a draft; throws InputError beyond the largest coordinate.
 Sphere sphere_of(Draft const& draft) {
     Sphere const sphere = sphere_around(draft.chain);
     refuse_far(draft, sphere);
@@ -69,7 +70,9 @@ Sphere sphere_of(Draft const& draft) {
 
 /// A box, or a region that is filled like a box.
 struct Room {
+    /// Edges of the box; none for unlimited space.
     std::optional<Vec3> const& edges;
+    /// Name in messages.
     char const* name;
 };
 

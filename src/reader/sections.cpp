@@ -89,6 +89,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
              "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);
+    // The force field has the run's temperature unless it has its own.
     if (Node const* const run = dynamics ? dynamics->find("temperature") : nullptr)
         spec.temperature = number(*run);
     take(fields, "temperature", spec.temperature, positive);
@@ -193,6 +194,7 @@ calvados2::ChargedTermini read_charged_termini(Node const& node) {
                                                     {"none", {false, false}}});
 }
 
+// `implicit-midpoint` is a documented name that this version refuses.
 DynamicsSpec read_dynamics(Node const& node, bool si) {
     Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed",
                                "constraint_tolerance", "tolerance", "fixman"});
@@ -273,6 +275,7 @@ SolverSpec read_solver(Node const& node) {
     return solver;
 }
 
+// Observables are compared with the known columns; the others have simple ranges.
 OutputSpec read_output(Node const& node) {
     Fields const fields(node, {"every", "checkpoint_every", "checkpoint_minutes", "observables",
                                "joint_forces", "velocities", "coordinates"});

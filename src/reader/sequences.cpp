@@ -125,6 +125,7 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
         conformation && !file &&
         choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}});
     double const length = calvados2::bond_length;
+    // A fixed base needs one more point: the anchor.
     std::int64_t const points = beads + (request.base == Base::fixed ? 1 : 0);
     std::vector<Vec3> const start =
         self_avoiding
@@ -179,6 +180,7 @@ void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& fro
 
 }  // namespace
 
+// The residues come first, because rigid domains and start positions depend on their number.
 BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     Fields const& fields = request.fields;
     bool const pdb = fields.find("pdb");

@@ -177,6 +177,7 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
          "start from a bent chain");
 }
 
+/// Name of the kind of chain for messages.
 char const* kind_of(ChainSpec const& chain) {
     return chain.is_beads() ? "a chain of beads" : "a chain of links";
 }
@@ -186,6 +187,7 @@ char const* kind_of(ChainSpec const& chain) {
 void refuse_too_many(ChainSpec const& chain, Node const& node) {
     std::int64_t const with = degrees_of_freedom(chain);
     if (with >= 0) return;
+    // A copy of the chain with a free tip gives its own degrees of freedom.
     ChainSpec open;
     open.base = chain.base, open.bodies.joint = chain.bodies.joint,
     open.bodies.driven = chain.bodies.driven;

@@ -9,6 +9,7 @@ namespace catena::scene {
 /// Tip as read, before it is joined to the chain.
 struct ReadTip {
     Tip kind = Tip::free;
+    /// Joint of the tip; its type is a link or a weld for bare tips.
     TipJoint joint;
     bool bare = false;  // `tip: fixed` or `tip: ring`, without a joint
     /// Joint that is written `planar`, or nullptr.

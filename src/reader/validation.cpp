@@ -17,6 +17,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Throws InputError for two chains of the same name.
 void check_names(std::vector<Draft> const& drafts) {
     std::set<std::string> names;
     for (Draft const& draft : drafts)
@@ -87,6 +88,7 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     ChainSpec const& chain = draft.chain;
     Integrator const integrator = scene.dynamics.integrator;
     Node const& at = *root.find("dynamics")->find("integrator");
+    // Joint forces are not implemented for implicit springs.
     if (is_implicit(integrator) && scene.output.joint_forces)
         fail(*root.find("output")->find("joint_forces"),
              fmt::format("not in this version: joint forces under integrator {}",
@@ -187,6 +189,7 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
              "write `velocities: zero`, or give each joint its `qd`");
 }
 
+/// True if OpenMM has points of the chain to act on.
 bool has_beads(ChainSpec const& chain) {
     return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0;
 }
