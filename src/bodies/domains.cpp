@@ -30,6 +30,7 @@ struct RigidBody {
 /// Computes mass, centre of mass and principal moments of the domain's beads.
 RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     RigidBody body;
+    // Sums relative to the first bead keep their digits far from the origin.
     Vec3 const origin = beads.position[domain.first];
     for (std::size_t k = domain.first; k <= domain.last; ++k) {
         body.mass += beads.mass[k];

@@ -1,4 +1,5 @@
 // Implements the keys that all kinds of chains share: name, anchor, positions and lengths of links.
+// Positions are fitted by StartFit, which notes or refuses large changes.
 #include "reader/chain_request.hpp"
 
 #include <fmt/format.h>
@@ -84,6 +85,7 @@ calvados2::ChargedTermini ChainRequest::termini() const {
 
 void ChainRequest::set_lengths(BeadArrays& beads) const {
     if (system == nullptr || links_as_given()) return;
+    // Each longer or shorter link shifts all beads after it.
     Vec3 shift = Vec3::zero();
     for (std::size_t k = 1; k < beads.size(); ++k) {
         double const length = system->length(particle + static_cast<std::int64_t>(k)),
@@ -147,11 +149,13 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
     StartFit fit(scene, from, "give positions of this model, or write `links: as_given`",
                  largest_change_of(spread), system ? largest_relaxed_change : 0);
     StartFit::Chain const chain{name(), beads, base, rigid};
+    // The chain is made whole first, so that distances of neighbours are those along its links.
     fit.make_whole(chain, links_as_given());
     refuse_coincident(beads, from);
     if (links_as_given()) {
         take_lengths(beads, base);
     } else {
+        // Links within rigid domains keep the distances of the file.
         for (Domain const& domain : rigid)
             for (std::size_t k = domain.first + 1; k <= domain.last; ++k)
                 beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);

@@ -1,4 +1,7 @@
-// Implements the reader of chain entries: chooses the source of the bodies and makes the copies.
+// Implements the reader of chain entries. An entry names one source of its bodies: a sequence, a
+// FASTA or PDB file, a list or file of bodies, or a generator. Each copy is made from that source,
+// joined to its tip, and given the kind of its start velocities. Places of movable chains follow
+// later (placement.hpp).
 #include "reader/chains.hpp"
 
 #include <fmt/format.h>
@@ -195,6 +198,7 @@ class ChainReader {
         } else if (source_.key != "bodies") {
             chain.beads = read_sequence(request_, copy);
             velocities = false;
+            // Rigid domains become bodies; the other beads stay points.
             if (!request_.rigid.empty()) {
                 chain.linked =
                     with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));

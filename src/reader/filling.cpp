@@ -1,4 +1,5 @@
-// Implements the filling of slabs and droplets.
+// Implements the filling of slabs and droplets. The region is treated as a periodic box of its own
+// size, which also keeps chains apart across its sides.
 #include "reader/filling.hpp"
 
 #include <fmt/format.h>

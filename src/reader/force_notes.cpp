@@ -1,4 +1,5 @@
-// Implements the notes on forces.
+// Implements the notes on forces. Thresholds are physical: solubility of salts, range of measured
+// permittivities, steps of models with one bead per residue.
 #include "reader/force_notes.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// Notes on doubtful settings of forces.
+// Notes on doubtful settings of forces. The values are used as written; a note tells the user what
+// is unusual about them.
 #pragma once
 
 #include "scene/scene.hpp"

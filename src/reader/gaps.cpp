@@ -1,4 +1,6 @@
-// Implements the check for gaps between residues.
+// Implements the check for gaps between residues. Three criteria decide: the distance of the alpha
+// carbons, the peptide bond if the file has its atoms, and the residue numbers. A distance that
+// fits a bond of the scene's System is accepted, too.
 #include "reader/gaps.hpp"
 
 #include <fmt/format.h>

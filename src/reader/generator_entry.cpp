@@ -1,4 +1,5 @@
-// Implements the readers of the parameters of each generator.
+// Implements the readers of the parameters of each generator. The names of generators and
+// parameters are those in inputs/keys/generators.md.
 #include "reader/generator_entry.hpp"
 
 #include <fmt/format.h>

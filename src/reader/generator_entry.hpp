@@ -6,7 +6,8 @@
 
 namespace catena::scene {
 
-/// One `generator` entry of a chain.
+/// One `generator` entry of a chain. Parameters are read once; each copy of the chain differs by
+/// its seed only.
 class GeneratorEntry {
   public:
     /// Reads the entry. Throws InputError for a generator that is unknown or incomplete.

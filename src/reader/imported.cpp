@@ -1,4 +1,5 @@
-// Implements the import of chains.
+// Implements the import of chains. Names, residues and positions are those of the topology; masses
+// and lengths are those of the System.
 #include "reader/imported.hpp"
 
 #include <fmt/format.h>

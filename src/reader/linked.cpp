@@ -1,4 +1,6 @@
-// Implements the reader of linked bodies.
+// Implements the reader of linked bodies. Positions in the file are those of the bodies' origins;
+// the arrays hold centres of mass. Bodies are read in the order of the chain, so that each link
+// starts at a body that has its final place.
 #include "reader/linked.hpp"
 
 #include <fmt/format.h>

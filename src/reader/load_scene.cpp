@@ -1,4 +1,7 @@
-// Implements the reader's sequence: sections, chains, checks, places, fingerprint.
+// Implements the order in which a scene is read. Overrides are applied to the tree first. The
+// sections follow, because chains depend on units, box, forces and dynamics. The chains are then
+// read as drafts and checked together. Movable drafts receive their places last, and the
+// fingerprint covers the result.
 #include "reader/load_scene.hpp"
 
 #include <filesystem>

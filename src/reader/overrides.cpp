@@ -1,4 +1,5 @@
-// Implements the parsing and application of overrides.
+// Implements the parsing and application of overrides. The tree is changed before any key is read,
+// so that overrides are checked like the file itself.
 #include "reader/overrides.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,9 @@ namespace {
 
 /// One step of a path: a map key or, if `key` is empty, a list index.
 struct Step {
+    /// Map key; empty for an index.
     std::string key;
+    /// List index, from 0.
     std::size_t index = 0;
 };
 
@@ -37,6 +40,7 @@ class Override {
         Node* at = &root;
         for (std::size_t i = 0; i < steps_.size(); ++i) {
             bool const last = i + 1 == steps_.size();
+            // `null` removes a key; a list entry becomes empty instead.
             if (last && value.kind == Node::Kind::null && !steps_[i].key.empty())
                 return remove(*at, steps_[i].key);
             at = steps_[i].key.empty() ? &entry(*at, steps_[i].index) : &member(*at, steps_[i].key);

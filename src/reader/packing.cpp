@@ -1,4 +1,6 @@
-// Implements the packing: checks, growth and relaxation.
+// Implements the packing of chains. Impossible boxes are refused first, by the volume of the beads
+// and by the narrowest edge. The chains then grow at the same pace, and the remaining overlaps are
+// relaxed.
 #include "reader/packing.hpp"
 
 #include <fmt/format.h>
@@ -107,6 +109,7 @@ void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char 
                          crowd.chains(), name, text_of(box), relaxed.overlaps, crowd.excluded,
                          relaxed.nearest, relaxed.steps),
              fmt::format("enlarge {} or lower `count`", name));
+    // Positions return in the order in which crowd_of() collected them.
     std::size_t next = 0;
     for (Draft& draft : drafts)
         if (draft.regrown == Regrowth::yes)

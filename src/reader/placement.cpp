@@ -1,4 +1,6 @@
-// Implements the placement of chains by their bounding spheres.
+// Implements the placement of chains by their bounding spheres. All movable chains share one grid,
+// whose cells are as wide as the largest of them. If a box has too few clear cells, chains that may
+// be regrown are packed instead.
 #include "reader/placement.hpp"
 
 #include <fmt/format.h>
@@ -25,6 +27,7 @@ Sphere sphere_around(ChainSpec const& chain) {
     for (Vec3 const& p : outline.points)
         for (int i = 0; i < 3; ++i)
             low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+    // The centre of the bounding box is close to that of the smallest sphere.
     Sphere sphere{0.5 * (low + high), 0, 2 * outline.link};
     for (Vec3 const& p : outline.points)
         sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));

@@ -221,6 +221,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     if (Node const* const tolerance = fields.find("tolerance"))
         dynamics.tolerance = read_tolerance(*tolerance, dynamics.integrator);
     take(fields, "fixman", dynamics.fixman, truth);
+    // The default friction is in 1/ps, which has no meaning in SI units.
     if (si && is_langevin(dynamics.integrator)) fields.need("friction", "friction: 1e10");
     return dynamics;
 }

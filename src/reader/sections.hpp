@@ -7,7 +7,8 @@
 
 namespace catena::scene {
 
-/// Reads `box`: edges of the periodic box, or none.
+/// Reads `box`: edges of the periodic box, or none. Throws InputError for edges that are not
+/// positive or that a double cannot resolve.
 std::optional<Vec3> read_box(Node const& box);
 /// Reads `dynamics`. `si` is true for SI units, which require a friction for Langevin integrators.
 DynamicsSpec read_dynamics(Node const& dynamics, bool si);
@@ -20,9 +21,9 @@ calvados2::ChargedTermini read_charged_termini(Node const&);
 inline std::pair<std::int64_t, std::int64_t> as_numbers(calvados2::ChargedTermini ends) {
     return {ends.n ? 1 : 0, ends.c ? 1 : 0};
 }
-/// Reads `solver`.
+/// Reads `solver`. The choice of a backend for `auto` is left to the planner.
 SolverSpec read_solver(Node const& solver);
-/// Reads `output`.
+/// Reads `output`. Throws InputError for unknown or repeated observables.
 OutputSpec read_output(Node const& output);
 
 }  // namespace catena::scene

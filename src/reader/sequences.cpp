@@ -1,4 +1,5 @@
-// Implements the reader of chains of residues.
+// Implements the reader of chains of residues. Residues become beads at the positions of a file, or
+// at an extended or self-avoiding start conformation.
 #include "reader/sequences.hpp"
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) 
         ResidueMeaning const meaning = meaning_of(site.residue);
         std::string const residue = site.residue + (site.label.empty() ? "" : " " + site.label);
         auto const bead = static_cast<std::int64_t>(residues.size()) + 1;
+        // A bead would have the charge of the parent: the chain's charge would change silently.
         if (meaning.kind == ResidueKind::charged)
             fail_at(source, "bead", bead,
                     fmt::format(

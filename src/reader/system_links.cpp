@@ -1,4 +1,5 @@
-// Implements the links of written chains by the System's bonds and constraints.
+// Implements the links of written chains by the System's bonds and constraints. Particles of a
+// chain are consecutive, so that bead k of a chain is particle `first` + k.
 #include "reader/system_links.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Links of chains that are written together with an OpenMM System, and notes on doubtful ones.
+// Links of chains that are written together with an OpenMM System, and notes on doubtful ones. The
+// System's bonds and constraints decide the lengths of links; the scene decides which beads exist.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
-// Implements the tips of chains and the closure of their joints at the start.
+// Implements the tips of chains and the closure of their joints at the start. A link of a chain of
+// beads is closed by a least change of positions. Other joints are left to the run's constraint
+// projection if they are nearly closed.
 #include "reader/tip.hpp"
 
 #include <fmt/format.h>
@@ -30,6 +32,7 @@ void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
         reach.end * frame * joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
     double const error = norm(end.origin - *tip.anchor),
                  along = reach.length + norm(end.origin - reach.end.origin);
+    // A chain of zero reach is measured in absolute lengths.
     double const length = along > 0 ? along : 1;
     if (error <= closure_tolerance * length) return;
     std::string const what = fmt::format(
@@ -165,6 +168,7 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
                                        [](JointType t) { return t == JointType::spherical; });
     if (chain.base != Base::fixed || !(chain.is_beads() || spherical)) return;
     std::vector<Vec3> const points = points_of_bridge(chain);
+    // The test needs two handle vectors.
     if (points.size() < 3) return;  // one rod between two spherical joints still rotates
     Vec3 const first = points[1] - points[0];
     for (std::size_t k = 1; k + 1 < points.size(); ++k) {

@@ -6,8 +6,9 @@
 
 namespace catena::scene {
 
-/// Tip as read, before it is joined to the chain.
+/// Tip as read, before it is joined to the chain. Copies of a chain share it.
 struct ReadTip {
+    /// Free without the key `tip`.
     Tip kind = Tip::free;
     /// Joint of the tip; its type is a link or a weld for bare tips.
     TipJoint joint;

@@ -1,4 +1,5 @@
-// Implements the checks that involve more than one section of a scene.
+// Implements the checks that involve more than one section of a scene. Each check names the key
+// that must change. Copies of an entry are checked once.
 #include "reader/validation.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// Checks of the whole scene: compatibility of chains, forces and dynamics.
+// Checks of the whole scene: compatibility of chains, forces and dynamics. Checks of single values
+// are in the readers of their sections.
 #pragma once
 
 #include <vector>

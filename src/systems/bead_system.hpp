@@ -57,6 +57,7 @@ struct BeadSystem {
 
 /// Potential energy of one force.
 struct EnergyTerm {
+    /// Name of the term, as in the output.
     std::string name;
     double value;  // kJ/mol
 };

@@ -10,6 +10,7 @@ namespace {
 using namespace OpenMM;  // this file uses no other library
 
 template <class Source>
+/// Copies names and default values of global parameters.
 void copy_globals(Source const& from, Source& to) {
     for (int i = 0; i < from.getNumGlobalParameters(); ++i)
         to.addGlobalParameter(from.getGlobalParameterName(i),
@@ -17,6 +18,7 @@ void copy_globals(Source const& from, Source& to) {
 }
 
 template <class Source>
+/// Copies the flag for periodic boundary conditions.
 void copy_periodicity(Source const& from, Source& to) {
     to.setUsesPeriodicBoundaryConditions(from.usesPeriodicBoundaryConditions());
 }

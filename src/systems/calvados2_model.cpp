@@ -1,4 +1,5 @@
-// Implements the CALVADOS 2 force field as an OpenMM System of two CustomNonbondedForces.
+// Implements the CALVADOS 2 force field as an OpenMM System of two CustomNonbondedForces. The
+// model's harmonic bonds are absent, because rigid links replace them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,6 +38,7 @@ std::string chain_key(BeadSystem const& beads, Place const& at) {
     return fmt::format("{}: chain {}, body {}", beads.scene_file, at.chain, at.k + 1);
 }
 
+/// Parameters of a bead's residue; throws InputError for unknown names.
 Calvados2Residue const& residue_of(BeadSystem const& beads, std::int64_t bead, Place const& at) {
     std::string const& name = beads.residue[bead];
     if (auto const* residue = find_calvados2(std::string_view(name))) return *residue;
@@ -123,12 +125,14 @@ void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSys
     force.setForceGroup(group);
 }
 
+/// Part of the note on rigid bodies; empty without any.
 std::string rigid_note(BeadSystem const& beads) {
     if (beads.rigid.empty()) return {};
     return fmt::format("no forces within {} rigid {}; ", beads.rigid.size(),
                        beads.rigid.size() == 1 ? "body" : "bodies");
 }
 
+/// Sentences on parameters, cutoffs and links, for the user.
 std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& beads,
                                   calvados2::Yukawa const& y) {
     std::string const histidine = spec.ph
@@ -152,6 +156,7 @@ std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& bead
 OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     check(spec, beads);
     calvados2::Yukawa const y = calvados2::yukawa(spec.temperature, spec.ionic_strength);
+    // Each of the two charges of a pair carries the square root of the prefactor.
     double const unit = std::sqrt(y.prefactor);
     auto contact = ashbaugh_hatch();
     auto charges = yukawa_force(y);

@@ -24,6 +24,7 @@ std::string charge_in_e(double charge) {
 
 /// Consecutive chains of the same charge.
 struct Group {
+    /// Indices of the first and the last chain.
     std::size_t first, last;
     double charge;
 };

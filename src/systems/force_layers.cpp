@@ -19,7 +19,9 @@ using OpenMM::CustomNonbondedForce;
 
 /// Removable forces of one cutoff, and the particles that act in at least one of them.
 struct Candidate {
+    /// Indices of the forces in the System.
     std::vector<int> forces;
+    /// Flag per particle: 1 if it acts in at least one of the forces.
     std::vector<char> acts;
 
     /// Number of acting particles.

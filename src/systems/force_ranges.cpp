@@ -1,4 +1,6 @@
-// Implements the search for acting particles by symbolic simplification of energies (Lepton).
+// Implements the search for acting particles by symbolic simplification of energies (Lepton). With
+// the parameters of one partner inserted, the energy of a particle that does not act simplifies to
+// 0.
 #include "systems/force_ranges.hpp"
 
 #include <lepton/ExpressionTreeNode.h>
@@ -30,12 +32,15 @@ bool is_zero(Lepton::ParsedExpression const& energy) {
 /// always act.
 class Acting {
   public:
+    /// Parses the force's energy. Tabulated functions and computed values are not understood.
     explicit Acting(OpenMM::CustomNonbondedForce const& force)
         : understood_(force.getNumTabulatedFunctions() == 0 && computed_values_of(force) == 0) {
         if (understood_) energy_ = Lepton::Parser::parse(force.getEnergyFunction());
         for (int i = 0; i < force.getNumPerParticleParameters(); ++i)
             name_.push_back(force.getPerParticleParameterName(i));
     }
+    /// True if a particle with these parameters acts. Results are stored per set of parameters,
+    /// because most particles share them.
     bool operator()(Parameters const& of_particle) {
         // Lepton does not terminate for parameters that are not finite.
         bool const finite = std::all_of(of_particle.begin(), of_particle.end(),
@@ -59,9 +64,11 @@ class Acting {
         return values;
     }
 
+    /// True if the energy can be simplified.
     bool understood_;
     Lepton::ParsedExpression energy_;
     std::vector<std::string> name_;
+    /// Results so far.
     std::map<Parameters, bool> known_;
 };
 

@@ -13,6 +13,7 @@ namespace catena {
 
 /// One chain of a topology; arrays have one entry per bead.
 struct ImportedChain {
+    /// Name of the chain in the topology.
     std::string name;
     std::vector<std::string> residue;  // three letters
     std::vector<double> mass;          // amu, from the System

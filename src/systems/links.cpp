@@ -1,4 +1,5 @@
-// Implements the collection of bonds and constraints and the messages on missing links.
+// Implements the collection of bonds and constraints and the messages on missing links. Each pair
+// of particles is stored at the higher one; parallel bonds are merged into one Joining.
 #include "systems/links.hpp"
 
 #include <fmt/format.h>

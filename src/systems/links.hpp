@@ -27,6 +27,7 @@ class Joinings {
     [[noreturn]] void refuse_gap(int p, int first, std::string const& at) const;
 
   private:
+    /// Kind of a custom bond between two particles; empty if there is none.
     std::string custom_bond(int a, int b) const;
 
     OpenMM::System const& system_;

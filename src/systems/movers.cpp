@@ -56,6 +56,7 @@ std::vector<std::string> leave_movers_out(OpenMM::System& system, std::vector<in
                                           std::string const& where) {
     refuse_particles(system, where);
     std::vector<std::string> notes;
+    // The loop runs backwards, because removals shift later indices.
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         OpenMM::Force const& force = system.getForce(i);
         std::string remedy;

@@ -41,6 +41,7 @@ std::vector<std::string> load_plugins() {
             std::error_code ignored;
             return fs::exists(f / name, ignored);
         });
+        // A missing plugin is no error: its platform is optional.
         if (folder == folders.end()) continue;
         try {
             OpenMM::Platform::loadPluginLibrary((*folder / name).string());

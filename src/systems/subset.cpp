@@ -1,4 +1,6 @@
-// Implements the Systems of subsets: copies of forces with renumbered particles.
+// Implements the Systems of subsets: copies of forces with renumbered particles. Pair forces are
+// copied for all particles of the subset. Bonded terms are copied if they involve an own particle,
+// so that each rank computes all forces on its own particles.
 #include "systems/subset.hpp"
 
 #include <algorithm>
@@ -19,6 +21,7 @@ using namespace OpenMM;  // this file uses no other library
 /// Collects the partners of own particles; keeps no term.
 class PartnerCollector : public TermFilter {
   public:
+    /// Collector for the particles `own` among `particle_count`.
     PartnerCollector(int particle_count, std::vector<int> const& own)
         : own_(particle_count, false) {
         for (int p : own) own_[p] = true;
@@ -31,6 +34,7 @@ class PartnerCollector : public TermFilter {
                 if (!own_[*p]) partners_.insert(*p);
         return false;
     }
+    /// Partners in ascending order.
     std::vector<int> partners() const { return {partners_.begin(), partners_.end()}; }
 
   private:
@@ -50,6 +54,7 @@ class JoinedAcrossRanks : public TermFilter {
             for (int const* p : particles) joined_[*p] = 1;
         return false;
     }
+    /// Flag per particle: 1 if a term joins it to another rank.
     std::vector<char> const& joined() const { return joined_; }
 
   private:
@@ -67,6 +72,7 @@ class NoTerm : public TermFilter {
 /// particles have no terms.
 class Renumbering : public TermFilter {
   public:
+    /// Numbers of the fixed particles; all others have the number -1.
     Renumbering(int particle_count, Subset const& subset)
         : particles_(subset.particles),
           after_(subset.after),

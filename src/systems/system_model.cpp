@@ -1,4 +1,6 @@
-// Implements the use of a serialised System on the beads of a scene.
+// Implements the use of a serialised System on the beads of a scene. Rigid links replace its
+// constraints and bonds along chains. Forces that move particles and groups that the scene does not
+// use are removed. The remaining forces are renamed, and each gets its own force group.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,6 +26,7 @@ using OpenMM::System;
 
 double constexpr same_length = 1e-6;  // nm; covers lengths written in decimals
 double constexpr same_mass = 1e-6;    // relative; covers masses written in decimals
+/// Number of force groups that OpenMM distinguishes.
 std::size_t constexpr force_groups_of_openmm = 32;
 
 /// Lengths of the scene's links by the particles that they join.
@@ -47,6 +50,8 @@ class LinkTable {
 
 /// Statistics of the terms that rigid links replace.
 struct Savings {
+    /// Number of terms, their range of lengths, and the largest difference from a link's length,
+    /// nm.
     int count = 0;
     double shortest = INFINITY, longest = 0, largest_difference = 0;
 
@@ -56,6 +61,7 @@ struct Savings {
         longest = std::max(longest, length);
         largest_difference = std::max(largest_difference, std::abs(length - link));
     }
+    /// Sentence on the terms; `what` is their plural noun.
     std::string note(std::string const& what) const {
         std::string text =
             longest - shortest < same_length
@@ -178,6 +184,7 @@ void check_masses(System const& system, BeadSystem const& beads,
 std::vector<std::string> remove_constraints(System& system, LinkTable const& links,
                                             std::string const& where) {
     Savings left_out;
+    // The loop runs backwards, because removals shift later indices.
     for (int i = system.getNumConstraints() - 1; i >= 0; --i) {
         int a, b;
         double length;

@@ -22,6 +22,7 @@ std::string harmless(std::string const& name) {
                                       : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+/// True if the text contains the part.
 bool has(std::string const& text, std::string_view part) {
     return text.find(part) != std::string::npos;
 }

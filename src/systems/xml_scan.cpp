@@ -1,4 +1,6 @@
 // Implements the check of a System's text by a small XML scanner without copies of the text.
+// OpenMM's own reader ignores many faults silently. The scanner therefore reports them
+// first, with the line.
 #include "systems/xml_scan.hpp"
 
 #include <fmt/format.h>
@@ -64,6 +66,7 @@ class Scanner {
     Scanner(string_view text, std::string const& file, std::string const& where)
         : text_(text), file_(file), where_(where) {}
 
+    /// Checks the whole text and returns its outline.
     XmlOutline scan() {
         if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
         while (at_ < text_.size()) {
@@ -99,6 +102,7 @@ class Scanner {
         return std::count(part.begin(), part.end(), '\n');
     }
 
+    /// Throws InputError with the line of position `at`.
     [[noreturn]] void fail(std::size_t at, std::string const& what) const {
         throw InputError(
             fmt::format("{} is not well-formed: {} (line {})", file_, what, 1 + lines(0, at)),
@@ -138,6 +142,7 @@ class Scanner {
             fail(begin, "a tag or attribute without a name");
         return text_.substr(begin, at_ - begin);
     }
+    /// Skips blanks; returns true if there were any.
     bool blanks() {
         std::size_t const begin = at_;
         while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
@@ -150,6 +155,7 @@ class Scanner {
         return true;
     }
 
+    /// Reads an end tag and closes the innermost element, which must have that name.
     void end_tag() {
         std::size_t const begin = at_;
         at_ += 2;
@@ -162,6 +168,7 @@ class Scanner {
         open_.pop_back();
     }
 
+    /// Reads a start tag or an empty element with its attributes and opens it.
     void start_tag() {
         std::size_t const begin = at_++;
         if (open_.empty() && rooted_) fail(begin, "a second element beside the System");
@@ -222,6 +229,7 @@ class Scanner {
                 fail(element.at, fmt::format("`{}` of {} is no number", shown(value), shown(key)));
     }
 
+    /// Value of an attribute; empty if the attribute is absent.
     static string_view value_of(Attributes const& attributes, string_view key) {
         for (auto const& [other, value] : attributes)
             if (other == key) return value;
@@ -252,8 +260,10 @@ class Scanner {
     string_view text_;
     std::string const& file_;
     std::string const& where_;
+    /// Position in the text.
     std::size_t at_ = 0;
     bool rooted_ = false;
+    /// Open elements, the outermost first.
     std::vector<Element> open_;
     XmlOutline outline_;
 };
