@@ -11,7 +11,8 @@ namespace catena::scene {
 
 /// Permission to replace the shape of a movable chain, to find a place for it. `yes`: a free chain
 /// of residues that is self-avoiding, or one of several copies without a given shape. `if_asked`:
-/// other free chains of residues, if the scene asked for self-avoidance. `no`: all other chains.
+/// other free chains of residues, which may be regrown only if the scene asks for self-avoidance.
+/// `no`: all other chains.
 enum class Regrowth : std::uint8_t { no, if_asked, yes };
 
 /// A chain of the scene before it has a place.

@@ -38,8 +38,8 @@ enum class Tip { free, jointed };
 /// Velocities at the start: as written in the scene, zero, or drawn at DynamicsSpec::temperature.
 enum class StartVelocities { given, zero, thermal };
 
-/// Prescribed coordinate: offset + rate t + amplitude sin(2 pi frequency t + phase). Lengths or
-/// angles (rad); `frequency` is in cycles per time unit, `phase` in rad.
+/// Prescribed coordinate: offset + rate t + amplitude sin(2 pi frequency t + phase). The coordinate
+/// is a length or an angle (rad); `frequency` is in cycles per time unit, `phase` in rad.
 struct PrescribedMotion {
     double offset = 0, rate = 0, amplitude = 0, frequency = 0, phase = 0;
 };
@@ -166,7 +166,7 @@ struct TipJoint {
     /// Joint position at the start, in the format of BodyArrays::q.
     std::array<double, 4> q{0, 0, 0, 0};
     /// Required position of G's origin, W. A closure error above 1e-9 of the chain's reach is
-    /// refused. Links need it.
+    /// refused. Links to the ground require it.
     std::optional<Vec3> anchor;
     /// Length of a link; 0 means the distance at the start.
     double length = 0;

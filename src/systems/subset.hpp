@@ -36,7 +36,7 @@ std::vector<char> joined_across_ranks(OpenMM::System const&,
                                       std::vector<int> const& rank_of_particle);
 
 /// Particles of another System. The first `own` particles receive all the forces that act on them.
-/// The first `fixed` particles are permanent; the following ones (ghosts) can be exchanged.
+/// The first `fixed` particles are permanent; the following ones can be exchanged.
 struct Subset {
     /// Numbers of the particles in the other System.
     std::vector<int> particles;
