@@ -1,3 +1,4 @@
+// Implements the YAML readers of rigid bodies and point beads.
 #include "bodies/bodies.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@ namespace catena::scene {
 
 namespace {
 
+/// Reads the joint of body k (from 0). Body 1 of a free base needs no joint and gets a free one.
+/// Throws InputError for a free joint in any other place.
 JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     bool const first = k == 0;
     if (first && base == Base::free && !body.find("joint")) {
@@ -35,6 +38,7 @@ JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     return entry;
 }
 
+/// Appends the joint to the arrays; all optional arrays are filled and reduced later by Needed.
 void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.joint.push_back(entry.type);
     bodies.axis.push_back(entry.axis);
@@ -59,11 +63,12 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.driven.push_back(driven);
 }
 
-/// Which of the arrays that may stay empty are needed.
+/// Records which of the optional arrays are needed, and empties the others.
 struct Needed {
     bool torque = false, spring = false, damping = false, wrench = false, drag = false,
          first_axis = false, pitch = false;
 
+    /// Marks the arrays that this joint needs.
     void take(JointEntry const& joint) {
         torque = torque || joint.loaded;
         spring = spring || joint.sprung;
@@ -71,6 +76,7 @@ struct Needed {
         first_axis = first_axis || joint.type == JointType::universal;
         pitch = pitch || joint.type == JointType::helical;
     }
+    /// Clears all arrays that no body needs; an empty array means zero.
     void drop_rest(BodyArrays& bodies) const {
         if (!torque) bodies.torque = {};
         if (!spring) bodies.stiffness = {}, bodies.rest = {};
@@ -82,6 +88,7 @@ struct Needed {
     }
 };
 
+/// Reads `wrench: {torque, force}`, in W at the centre of mass; zero without the key.
 std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
     std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
     if (!wrench) return load;
@@ -91,6 +98,7 @@ std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
     return load;
 }
 
+/// Returns the node of the joint's type, or nullptr.
 Node const* type_of(Node const& body) {
     Node const* const joint = body.find("joint");
     return joint ? joint->find("type") : nullptr;
@@ -110,6 +118,7 @@ BodyList kind_of_list(Node const& bodies) {
         rigid = rigid || body.find("inertia");
         if (!link && !other) other = body.find("joint");
     }
+    // A chain is stored in absolute coordinates (links) or in joint coordinates (all other joints).
     if (links && other) {
         Node const* const type = other->find("type");
         fail(*other,
@@ -118,8 +127,9 @@ BodyList kind_of_list(Node const& bodies) {
              "make it a link, or give every joint another type");
     }
     Node const& first = bodies.items[0];
-    bool const lone_bead = bodies.items.size() == 1 && !rigid && !first.find("joint") &&
-                           first.find("position");  // an ion
+    // A single point without links, such as an ion, is a chain of one bead.
+    bool const lone_bead =
+        bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");
     if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
     return rigid ? BodyList::linked : BodyList::beads;
 }
@@ -131,6 +141,7 @@ std::array<double, 2> read_drag(Node const& drag) {
     return {linear ? non_negative(*linear) : 0, angular ? non_negative(*angular) : 0};
 }
 
+// The arrays have one entry per body at first, also those that are usually empty.
 ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> const& scene_drag) {
     ExplicitBodies made;
     BodyArrays& bodies = made.bodies;
@@ -180,6 +191,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         double length = std::numeric_limits<double>::quiet_NaN();
         Node const* const joint_node =
             k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
+        // Bead 1 of a free base has no link and thus no length.
         if (joint_node) {
             Fields const joint(*joint_node, {"type", "length"});
             Node const* const given = joint.find("length");

@@ -1,4 +1,4 @@
-// Chains written body by body: `bodies: [...]`.
+// Readers of chains written body by body: `bodies: [...]`.
 #pragma once
 
 #include "scene/node.hpp"
@@ -6,29 +6,38 @@
 
 namespace catena::scene {
 
-/// What the list describes. beads: points on links. linked: links between rigid bodies and beads.
-/// bodies: any other joints.
+/// Content of the list. beads: point beads on links. linked: rigid bodies and beads on links.
+/// bodies: rigid bodies on any other joints.
 enum class BodyList { bodies, beads, linked };
 
-/// InputError for an empty list and for a mixture of links with other joints.
+/// Determines the content of the list. Throws InputError for an empty list and for a mixture of
+/// links with other joints.
 BodyList kind_of_list(Node const& bodies);
 
+/// Rigid bodies read from a list.
 struct ExplicitBodies {
+    /// Arrays of the chain; optional arrays that no body needs are empty.
     BodyArrays bodies;
-    Node const* planar = nullptr;  // the first joint that is written `planar`
+    /// First joint that is written `planar`, or nullptr. The caller checks that all axes of such a
+    /// chain are parallel.
+    Node const* planar = nullptr;
 };
-/// Rigid bodies on any joints but links; every number checked. `scene_drag`: {linear, angular} of
-/// bodies that have none of their own. InputError names the body.
+/// Reads rigid bodies on any joints but links and checks every number. `scene_drag` {linear,
+/// angular} applies to bodies without drag of their own. Throws InputError that names the body.
 ExplicitBodies read_bodies(Node const& bodies, Base base, std::array<double, 2> const& scene_drag);
 
+/// Point beads read from a list.
 struct ExplicitBeads {
-    BeadArrays beads;         // `length`: NaN where none is given
-    bool velocities = false;  // some bead says its velocity
+    /// The beads; `length` is NaN where none is given.
+    BeadArrays beads;
+    /// True if at least one bead has a velocity.
+    bool velocities = false;
 };
-/// Beads {mass, position, velocity, residue, joint: {type: link, length}}.
+/// Reads beads {mass, position, velocity, residue, joint: {type: link, length}}. Throws InputError
+/// for keys of rigid bodies.
 ExplicitBeads read_beads(Node const& bodies, Base base);
 
-/// `drag: {linear, angular}`.
+/// Reads `drag: {linear, angular}`; both default to 0. Throws InputError for negative values.
 std::array<double, 2> read_drag(Node const& drag);
 
 }  // namespace catena::scene

@@ -1,3 +1,4 @@
+// Implements the list of carried beads.
 #include "bodies/carried_beads.hpp"
 
 #include "scene/calvados2.hpp"
@@ -23,6 +24,7 @@ void CarriedList::add(Node const* beads, Vec3 const& origin) {
             Node const* const mass = bead.find("mass");
             Node const* const residue = bead.find("residue");
             std::string const name = residue ? text(*residue) : "UNK";
+            // The mass defaults to that of a known residue.
             Calvados2Residue const* const known = find_calvados2(name);
             append(vector3(bead.need("position", "position: [0, 0, 0]")) - origin,
                    mass    ? positive(*mass)

@@ -1,4 +1,4 @@
-// Beads that rigid bodies carry: `beads: [{residue, position, mass}]`.
+// Reader of the beads that rigid bodies carry: `beads: [{residue, position, mass}]`.
 #pragma once
 
 #include "scene/node.hpp"
@@ -6,19 +6,22 @@
 
 namespace catena::scene {
 
-/// The beads of body after body; without any bead CarriedBeads stay empty.
+/// Collects the beads body by body. Without any bead the CarriedBeads stay empty.
 class CarriedList {
   public:
-    /// One more bead of the present body.
+    /// Adds a bead to the current body.
     void append(Vec3 const& position, double mass, std::string const& residue);
-    /// The present body has all its beads.
+    /// Ends the current body.
     void close();
-    /// The whole body: its list in the scene, or null for none. Positions are moved by -`origin`
-    /// (linked chains count from the centre of mass).
+    /// Adds all beads of the next body and ends it. `beads` is its list in the scene, or nullptr.
+    /// `origin` is subtracted from the positions: linked chains measure from the centre of mass.
+    /// The mass defaults to that of the residue in CALVADOS 2, else to 1.
     void add(Node const* beads, Vec3 const& origin = Vec3::zero());
+    /// Moves the result out.
     CarriedBeads take();
 
   private:
+    /// The beads of all bodies that have been added so far.
     CarriedBeads beads_;
 };
 

@@ -1,3 +1,4 @@
+// Implements rigid domains: numbering of residues, inertia and principal axes.
 #include "bodies/domains.hpp"
 
 #include <fmt/format.h>
@@ -13,18 +14,23 @@ namespace catena::scene {
 
 namespace {
 
-/// Below this ratio of principal moments the beads stand on a line as far as positions with a few
-/// digits can tell.
+/// Smallest ratio of principal moments. Below it the beads lie on one line within the precision of
+/// positions with a few digits.
 double constexpr least_ratio = 1e-6;
 
+/// Mass properties of a domain.
 struct RigidBody {
     double mass = 0;
+    /// Centre of mass, W, and principal moments in ascending order.
     Vec3 com = Vec3::zero(), moments = Vec3::zero();
-    Mat3 axes = Mat3::identity();  // R_WB: principal axes as columns
+    /// R_WB, with the principal axes as columns.
+    Mat3 axes = Mat3::identity();
 };
 
+/// Computes mass, centre of mass and principal moments of the domain's beads.
 RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     RigidBody body;
+    // Sums relative to the first bead keep their digits far from the origin.
     Vec3 const origin = beads.position[domain.first];
     for (std::size_t k = domain.first; k <= domain.last; ++k) {
         body.mass += beads.mass[k];
@@ -40,6 +46,7 @@ RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     }
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const solver(inertia);
     Eigen::Matrix3d axes = solver.eigenvectors();
+    // Eigenvectors may form a left-handed system; body axes must be right-handed.
     if (axes.determinant() < 0) axes.col(2) *= -1;
     for (int i = 0; i < 3; ++i) {
         body.moments[i] = solver.eigenvalues()[i];
@@ -48,12 +55,15 @@ RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
     return body;
 }
 
+/// Builds a linked chain from beads and domains, in the order of the chain.
 class LinkedBuilder {
   public:
+    /// Builder for the chain of `beads`; a fixed base keeps its anchor.
     explicit LinkedBuilder(BeadArrays const& beads) : beads_(beads) {
         linked_.anchor = beads.anchor;
     }
 
+    /// Adds bead k as a point that carries itself.
     void add_bead(std::size_t k) {
         add(k, beads_.mass[k], beads_.position[k], beads_.velocity[k]);
         linked_.inertia.push_back(Sym3::zero());
@@ -64,6 +74,8 @@ class LinkedBuilder {
         carried_.close();
     }
 
+    /// Adds a domain as one rigid body, at rest. Throws InputError for beads on one line, whose
+    /// smallest principal moment vanishes.
     void add_domain(Domain const& domain, Node const& node) {
         RigidBody const body = body_of(beads_, domain);
         if (!(body.moments[0] > least_ratio * body.moments[2]))
@@ -91,6 +103,7 @@ class LinkedBuilder {
     }
 
   private:
+    /// Adds the entries that beads and domains share. The inboard link is that of bead k.
     void add(std::size_t k, double mass, Vec3 const& position, Vec3 const& velocity) {
         linked_.mass.push_back(mass);
         linked_.position.push_back(position);
@@ -100,18 +113,22 @@ class LinkedBuilder {
     }
 
     BeadArrays const& beads_;
+    /// Arrays of the chain so far.
     LinkedArrays linked_;
+    /// Beads carried by its bodies so far.
     CarriedList carried_;
 };
 
-/// What the numbers of a scene's `rigid` mean.
+/// Resolves the residue numbers of a scene's `rigid`.
 class Numbering {
   public:
+    /// Numbering by `labels`, or from 1 to `residues` without labels.
     Numbering(std::size_t residues, std::vector<std::string> const& labels)
         : residues_(residues), labels_(labels) {
         for (std::size_t k = 0; k < labels.size(); ++k) beads_[labels[k]].push_back(k);
     }
 
+    /// Advice for messages: the valid range of numbers.
     std::string remedy() const {
         return labels_.empty()
                    ? fmt::format("give [first, last] with residues from 1 to {}, both included",
@@ -121,6 +138,7 @@ class Numbering {
                          "included",
                          labels_.front(), labels_.back());
     }
+    /// Reads one domain [first, last]. Throws InputError for fewer than three residues.
     Domain domain(Node const& pair) const {
         if (pair.kind != Node::Kind::list || pair.items.size() != 2)
             fail(pair, describe(pair) + " is not a pair of residues", remedy());
@@ -135,6 +153,8 @@ class Numbering {
     }
 
   private:
+    /// Bead (from 0) of the residue number `end`. Throws InputError for unknown and ambiguous
+    /// numbers.
     std::size_t bead(Node const& pair, Node const& end) const {
         if (labels_.empty()) {
             std::int64_t const number = whole(end, 1);
@@ -152,6 +172,7 @@ class Numbering {
                  "give each residue its own number or insertion code");
         return found->second[0];
     }
+    /// Returns whole numbers in plain form ("7" for "7.0"), other labels as written.
     static std::string label(Node const& end) {
         double value = 0;
         std::string const written = text(end);
@@ -162,6 +183,8 @@ class Numbering {
 
     std::size_t residues_;
     std::vector<std::string> const& labels_;
+    /// Beads of each label. A file may use a label more than once, which only matters if a domain
+    /// names it.
     std::map<std::string, std::vector<std::size_t>> beads_;
 };
 

@@ -1,3 +1,4 @@
+// Implements the reader of rigid bodies from HDF5 datasets.
 #include "bodies/hdf5_bodies.hpp"
 
 #include <fmt/format.h>
@@ -16,13 +17,14 @@ namespace catena::scene {
 
 namespace {
 
-/// The file's own numbers: those of the enumeration may move.
+/// The file's own numbering of joint types, because the enumeration may change.
 constexpr std::pair<std::string_view, JointType> types[] = {
     {"free", JointType::free},           {"link", JointType::link},
     {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
     {"universal", JointType::universal}, {"weld", JointType::weld},
     {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
 
+/// Datasets that a file may have.
 constexpr std::string_view known[] = {
     "mass", "com",    "inertia",    "joint_type",    "axis",         "rotation",  "translation",
     "q",    "qd",     "first_axis", "pitch",         "torque",       "stiffness", "damping",
@@ -30,10 +32,13 @@ constexpr std::string_view known[] = {
 
 Vec3 vector_at(double const* v) { return {{v[0], v[1], v[2]}}; }
 
+/// Reads all datasets of one file, with one check per body and quantity.
 class Hdf5Bodies {
   public:
     Hdf5Bodies(std::string const& path, Base base) : table_(path, "mass"), base_(base) {}
 
+    /// Reads the datasets in the order of their dependencies: joints decide which numbers a body
+    /// needs.
     BodyArrays read() {
         refuse_unknown();
         read_masses();
@@ -46,6 +51,7 @@ class Hdf5Bodies {
     }
 
   private:
+    /// Throws InputError for a dataset that is unknown, with the nearest known name.
     void refuse_unknown() const {
         for (std::string const& name : table_.names()) {
             if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
@@ -54,14 +60,18 @@ class Hdf5Bodies {
                           near ? "did you mean `" + *near + "`?" : "use " + joined(known));
         }
     }
+    /// Throws InputError if the dataset is missing; `why` is the reason in the message.
     void need(char const* name, std::string const& why) const {
         if (!table_.has(name))
             table_.refuse(name, Hdf5Table::whole, "the dataset is missing", "add it: " + why);
     }
+    /// Throws InputError for body k if there is a fault.
     void refuse(char const* name, std::size_t k, std::optional<Fault> const& fault) const {
         if (fault) table_.refuse(name, k, fault->what, fault->remedy);
     }
 
+    /// Reads `mass` [n], `com` [n, 3] and `inertia` [n, 3, 3] or [n, 6]. Six numbers are the lower
+    /// triangle, row by row.
     void read_masses() {
         bodies_.mass.resize(table_.rows());
         table_.for_each("mass", {{}}, [&](std::size_t k, double const* v, std::size_t) {
@@ -82,7 +92,8 @@ class Hdf5Bodies {
             });
     }
 
-    /// [n, 3] where it is there, else zeros; `check(k, vector)` may change it.
+    /// Reads a dataset [n, 3]; zeros if it is absent. `check(k, vector)` may change the vector of
+    /// row k.
     template <class Check>
     void vectors(char const* name, std::vector<Vec3>& into, Check check) {
         into.assign(table_.rows(), Vec3::zero());
@@ -93,6 +104,7 @@ class Hdf5Bodies {
         });
     }
 
+    /// Reads `joint_type` [n]: names, or the numbers of `types`.
     void read_joints() {
         need("joint_type", "a number or a name a body");
         bodies_.joint.resize(table_.rows());
@@ -119,6 +131,8 @@ class Hdf5Bodies {
         });
     }
 
+    /// Sets the type of joint k. Throws InputError for links, and for a free joint anywhere but at
+    /// body 1 of a free base.
     void set_joint(std::size_t k, JointType type) {
         bool const free = type == JointType::free;
         if (type == JointType::link)
@@ -138,6 +152,8 @@ class Hdf5Bodies {
         bodies_.joint[k] = type;
     }
 
+    /// Reads `translation` [n, 3] and `rotation` [n, 3, 3]; by default joint frames coincide with
+    /// the inboard body's.
     void read_frames() {
         vectors("translation", bodies_.translation, [](std::size_t, Vec3&) {});
         bodies_.rotation.assign(table_.rows(), Mat3::identity());
@@ -149,14 +165,18 @@ class Hdf5Bodies {
         });
     }
 
+    /// True if joint k has an axis: one coordinate, or a universal joint.
     bool has_axis(std::size_t k) const {
         JointType const type = bodies_.joint[k];
         return numbers_of(type) == 1 || type == JointType::universal;
     }
+    /// True if any joint has that type.
     bool any(JointType type) const {
         return std::find(bodies_.joint.begin(), bodies_.joint.end(), type) != bodies_.joint.end();
     }
 
+    /// Reads `axis` [n, 3], `first_axis` [n, 3] and `pitch` [n]. Axes are normalised; those of
+    /// joints without an axis become 0.
     void read_axes() {
         for (std::size_t k = 0; k < table_.rows(); ++k)
             if (has_axis(k)) {
@@ -188,7 +208,7 @@ class Hdf5Bodies {
         });
     }
 
-    /// [n, 4]; what the joint has no use for becomes 0.
+    /// Reads a dataset [n, 4] of joint positions. Entries that the joint does not use become 0.
     void positions(char const* name, std::vector<std::array<double, 4>>& into) {
         into.resize(table_.rows());
         for (std::size_t k = 0; k < table_.rows(); ++k) into[k] = {turns(k) ? 1.0 : 0.0, 0, 0, 0};
@@ -202,10 +222,13 @@ class Hdf5Bodies {
             }
         });
     }
+    /// True if the position of joint k is a quaternion.
     bool turns(std::size_t k) const {
         return bodies_.joint[k] == JointType::spherical || bodies_.joint[k] == JointType::free;
     }
 
+    /// Reads `q` [n, 4], `qd` [n, 3], `free_position` [3] and `free_velocity` [3]. Rates that a
+    /// joint does not have become 0.
     void read_state() {
         positions("q", bodies_.q);
         vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
@@ -214,12 +237,14 @@ class Hdf5Bodies {
         table_.vector("free_position", bodies_.free_position.data);
         table_.vector("free_velocity", bodies_.free_velocity.data);
     }
+    /// Number of coordinates of joint k; 0 for a free joint.
     int count(std::size_t k) const { return numbers_of(bodies_.joint[k]); }
+    /// Sets the components from `count` on to zero.
     static void keep(Vec3& v, int count) {
         for (int i = count; i < 3; ++i) v[i] = 0;
     }
 
-    /// Stiffness or damping.
+    /// Reads a dataset of stiffness or damping and refuses negative numbers.
     void resistances(char const* name, std::vector<Vec3>& into) {
         vectors(name, into, [&](std::size_t k, Vec3& v) {
             keep(v, count(k));
@@ -230,6 +255,8 @@ class Hdf5Bodies {
         });
     }
 
+    /// Reads `torque`, `stiffness`, `damping` [n, 3], `rest` [n, 4], `wrench` [n, 6] (torque,
+    /// force) and `drag` [n, 2]. All are optional; a spring needs `stiffness` or `rest`.
     void read_forces() {
         if (table_.has("torque"))
             vectors("torque", bodies_.torque, [&](std::size_t k, Vec3& v) { keep(v, count(k)); });
@@ -261,6 +288,7 @@ class Hdf5Bodies {
 
 }  // namespace
 
+// The trial runs in a child process and shows whether HDF5 survives the file; its result is lost.
 BodyArrays read_hdf5_bodies(std::string const& path, Base base) {
     std::string const end = trial([&] { Hdf5Bodies(path, base).read(); }, limits_for_file(path));
     if (!end.empty())

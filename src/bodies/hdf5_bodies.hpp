@@ -1,4 +1,4 @@
-// Large chains of rigid bodies: `bodies: {hdf5: chain.h5}`.
+// Reader of large chains of rigid bodies: `bodies: {hdf5: chain.h5}`.
 #pragma once
 
 #include <string>
@@ -7,9 +7,10 @@
 
 namespace catena::scene {
 
-/// Reads `path`, whose datasets inputs/keys/bodies.md lists, row by row into the arrays, with every
-/// check that the YAML reader makes. A child process reads it first: HDF5 breaks on many damaged
-/// files. Throws InputError that names file, dataset and body; "built without HDF5".
+/// Reads the file `path` block by block into the arrays; inputs/keys/bodies.md lists its datasets.
+/// Every check of the YAML reader applies. A child process reads the file first, because HDF5
+/// crashes on many damaged files. Throws InputError that names file, dataset and body. A build
+/// without HDF5 throws "built without HDF5".
 BodyArrays read_hdf5_bodies(std::string const& path, Base base);
 
 }  // namespace catena::scene

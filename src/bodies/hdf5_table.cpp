@@ -1,3 +1,4 @@
+// Implements the checked, block by block reading of HDF5 datasets.
 #include "bodies/hdf5_table.hpp"
 
 #include <fmt/format.h>
@@ -19,12 +20,15 @@ namespace catena::scene {
 
 namespace {
 
-double constexpr best_compression = 1100;  // deflate makes 1032 bytes of one
+/// Largest ratio of compression to believe: deflate compresses at most 1032 bytes into one.
+double constexpr best_compression = 1100;
+/// Memory of a body in the arrays, bytes, rounded up.
 double constexpr bytes_a_body = 256;
 hsize_t constexpr largest_chunk = hsize_t{1} << 30;  // bytes
+/// Number of rows per block, and longest text of fixed length in bytes.
 std::size_t constexpr rows_a_block = 1 << 16, longest_text = 1024;
 
-/// Half precision as h5py writes it; HDF5 1.10 has no name for it.
+/// Half-precision type as h5py writes it; HDF5 1.10 has no name for it.
 hdf5::Type half(H5T_order_t order) {
     hdf5::Type type(H5Tcopy(H5T_IEEE_F32LE));
     H5Tset_fields(type.get(), 15, 10, 5, 0, 10);
@@ -34,8 +38,8 @@ hdf5::Type half(H5T_order_t order) {
     return type;
 }
 
-/// Whether it is one of those that machines have. HDF5 runs over its buffers converting others,
-/// such as integers of no bits.
+/// True for the number types of common machines. HDF5 overruns its buffers when it converts other
+/// types, such as integers of zero bits.
 bool is_number(hdf5::Type const& type) {
     hid_t const known[] = {H5T_IEEE_F64LE,     H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE,
                            H5T_NATIVE_LDOUBLE, H5T_STD_I64LE,  H5T_STD_I64BE,  H5T_STD_U64LE,
@@ -48,6 +52,7 @@ bool is_number(hdf5::Type const& type) {
            is(half(H5T_ORDER_BE).get());
 }
 
+/// Shape for messages: "[10, 3]".
 std::string shape_text(std::vector<hsize_t> const& shape) {
     return fmt::format("[{}]", fmt::join(shape, ", "));
 }
@@ -76,7 +81,8 @@ Hdf5Table::Hdf5Table(std::string const& path, std::string const& counted) : path
     refuse_too_large(counted);
 }
 
-/// What a small file claims must not take the memory first.
+/// Refuses row counts that the file cannot hold or the memory cannot take. A small damaged file may
+/// claim any number of rows.
 void Hdf5Table::refuse_too_large(std::string const& name) const {
     hdf5::Dataset const data = open(name);
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
@@ -86,6 +92,7 @@ void Hdf5Table::refuse_too_large(std::string const& name) const {
         refuse(name, whole,
                fmt::format("the dataset has {} rows, which the file does not hold", rows_),
                "write the whole of it");
+    // The check precedes all allocations, which could end the process.
     auto const present = static_cast<double>(memory_limit());
     if (rows * bytes_a_body > present)
         refuse(name, whole,
@@ -132,6 +139,7 @@ std::size_t Hdf5Table::for_each(std::string const& name, std::vector<Shape> cons
     refuse_unless_numbers(data, name);
     std::size_t width = 1;
     for (hsize_t const extent : row) width *= extent;
+    // One block serves all rows, so that no dataset is held twice.
     std::vector<double> block(std::min(rows_, rows_a_block) * width);
     for (std::size_t first = 0; first < rows_; first += rows_a_block) {
         std::size_t const count = std::min(rows_a_block, rows_ - first);
@@ -236,7 +244,8 @@ void Hdf5Table::refuse_unless_numbers(hdf5::Dataset const& data, std::string con
     refuse_large_chunks(data, name);
 }
 
-/// HDF5 takes the memory of a chunk whether or not the file holds it.
+/// Refuses chunks larger than `largest_chunk`. HDF5 allocates the memory of a chunk whether or not
+/// the file holds it.
 void Hdf5Table::refuse_large_chunks(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
     hsize_t extent[H5S_MAX_RANK], chunk = H5Tget_size(type.get());

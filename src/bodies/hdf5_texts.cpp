@@ -1,3 +1,4 @@
+// Implements the reader of HDF5's global heap ("GCOL" collections) with bounds checks.
 #include "bodies/hdf5_texts.hpp"
 
 #include <sys/stat.h>
@@ -10,17 +11,20 @@ namespace catena::scene {
 
 namespace {
 
-/// On disk: four bytes of length, eight of the collection's address, four of the object's number.
+/// Size of an element on disk: four bytes of length, eight of the collection's address, four of the
+/// object's number.
 std::uint64_t constexpr element_size = 16;
-/// Signature, version, size.
+/// Size of a collection's header: signature, version, size.
 std::uint64_t constexpr collection_head = 16;
-/// Number, references, size.
+/// Size of an object's header: number, references, size.
 std::uint64_t constexpr object_head = 16;
 
+/// Throws the error for a damaged file.
 [[noreturn]] void damaged(char const* what) {
     throw std::runtime_error(std::string("damaged text, ") + what);
 }
 
+/// Reads a little-endian number of `width` bytes.
 std::uint64_t number(std::string const& bytes, std::uint64_t at, std::uint64_t width) {
     std::uint64_t value = 0;
     for (std::uint64_t i = 0; i < width; ++i)
@@ -28,11 +32,12 @@ std::uint64_t number(std::string const& bytes, std::uint64_t at, std::uint64_t w
     return value;
 }
 
+/// Creation properties of the file: sizes of addresses, user block.
 hdf5::Properties creation_of(hdf5::File const& file) {
     return hdf5::Properties(H5Fget_create_plist(file.get()));
 }
 
-/// Whether the elements lie in this file, one after the other, with addresses of eight bytes.
+/// True if the elements lie in this file, contiguously, with addresses of eight bytes.
 bool is_plain(hdf5::File const& file, hdf5::Dataset const& data, std::uint64_t count) {
     hdf5::Properties const how(H5Dget_create_plist(data.get()));
     std::size_t address = 0, length = 0;
@@ -64,6 +69,7 @@ VariableTexts::VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, 
 std::string VariableTexts::at(std::size_t k) {
     std::string const element = bytes(elements_ + k * element_size, element_size);
     std::uint64_t const length = number(element, 0, 4), address = number(element, 4, 8);
+    // An empty text has no object in the heap.
     if (length == 0) return {};
     Collection const& objects = collection(address);
     auto const found = objects.find(static_cast<unsigned>(number(element, 12, 4)));
@@ -100,17 +106,19 @@ VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
     if (!head.starts_with("GCOL") || head[4] != 1 || size < collection_head)
         damaged("there is no heap where the dataset says");
     std::string const all = bytes(base_ + at, size);
+    // Sound collections are disjoint, so that their sizes cannot add up to more than the file.
     parsed_ += size;
     if (parsed_ > size_) damaged("heaps lie over one another");
     Collection objects;
     for (std::uint64_t place = collection_head; size - place >= object_head;) {
         auto const of = static_cast<unsigned>(number(all, place, 2));
         std::uint64_t const length = number(all, place + 8, 8);
-        if (of == 0) break;  // free from here on
+        if (of == 0) break;  // the rest of the collection is free
         place += object_head;
         if (length > size - place) damaged("an object ends behind its heap");
         if (!objects.emplace(of, all.substr(place, length)).second)
             damaged("two objects have one number");
+        // Objects are padded to multiples of eight bytes.
         std::uint64_t const padded = (length + 7) / 8 * 8;
         if (padded > size - place) break;
         place += padded;

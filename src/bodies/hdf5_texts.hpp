@@ -1,5 +1,5 @@
-// Texts of variable length in an HDF5 file, without HDF5's own reader of them: that one goes beyond
-// its buffers where the file is damaged.
+// Reader of variable-length texts in an HDF5 file. HDF5's own reader overruns its buffers if the
+// file is damaged.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,31 @@
 
 namespace catena::scene {
 
-/// The texts of a dataset whose elements lie in the file one after the other, as h5py and HDF5's
-/// tools write them. Members throw std::runtime_error, which says what is wrong, for another layout
-/// and for damage. The file stays open longer than this.
+/// The texts of a dataset whose elements lie contiguously in the file, as h5py and HDF5's tools
+/// write them. Members throw std::runtime_error with the reason for another layout and for damage.
+/// The file must stay open longer than this object.
 class VariableTexts {
   public:
+    /// Throws if the elements are not contiguous in this file. `count` is the number of texts.
     VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, std::size_t count);
-    /// Text k, k < count.
+    /// Returns text k; precondition: k < count.
     std::string at(std::size_t k);
 
   private:
-    /// Objects of one collection of the global heap by their numbers.
+    /// Objects of one collection of the global heap, by their numbers.
     using Collection = std::map<unsigned, std::string>;
+    /// Reads `count` bytes from position `from` of the file.
     std::string bytes(std::uint64_t from, std::uint64_t count) const;
+    /// Returns the collection at that address, parsed at first use.
     Collection const& collection(std::uint64_t address);
+    /// Parses the collection at address `at` and checks all its sizes.
     Collection parsed(std::uint64_t at);
 
-    int descriptor_ = -1;         // HDF5's
-    std::uint64_t base_ = 0;      // in the file, of the addresses that it holds
-    std::uint64_t elements_ = 0;  // where they begin in the file
-    std::uint64_t size_ = 0;      // of the file
-    std::uint64_t parsed_ = 0;    // bytes of collections so far
+    int descriptor_ = -1;         // file descriptor, owned by HDF5
+    std::uint64_t base_ = 0;      // offset in the file of the addresses that it holds
+    std::uint64_t elements_ = 0;  // offset in the file of the first element
+    std::uint64_t size_ = 0;      // size of the file, bytes
+    std::uint64_t parsed_ = 0;    // size of all collections parsed so far, bytes
     std::map<std::uint64_t, Collection> collections_;
 };
 

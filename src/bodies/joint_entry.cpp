@@ -1,3 +1,4 @@
+// Implements the readers of joints of bodies and tips.
 #include "bodies/joint_entry.hpp"
 
 #include <fmt/format.h>
@@ -14,11 +15,13 @@ namespace {
 
 using Four = std::array<double, 4>;
 
+/// Joint type with its spelling.
 struct TypeName {
     JointType type;
     bool planar = false;
 };
 
+/// Reads the type. `planar` is a revolute joint with a promise, see JointEntry.
 TypeName type_of(Node const& joint) {
     Node const* const type = joint.find("type");
     if (!type) fail(joint, "key `type` is missing", "add `type: revolute`");
@@ -33,7 +36,7 @@ TypeName type_of(Node const& joint) {
                                     {"weld", {JointType::weld}}});
 }
 
-/// Refuses the keys that mean nothing for this type of joint.
+/// Refuses the keys without meaning for this type of joint.
 void check_keys(Node const& joint, JointType type, std::vector<std::string_view> const& allowed) {
     for (Node const& item : joint.items)
         if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end())
@@ -42,7 +45,7 @@ void check_keys(Node const& joint, JointType type, std::vector<std::string_view>
                  "leave it out or correct `type`");
 }
 
-/// Keys that say where the joint's axes are.
+/// Keys of the joint's axes and frame.
 std::vector<std::string_view> geometry_keys(JointType type) {
     std::vector<std::string_view> keys{"type", "rotation", "translation"};
     if (type == JointType::universal) keys.emplace_back("axes");
@@ -51,6 +54,7 @@ std::vector<std::string_view> geometry_keys(JointType type) {
     return keys;
 }
 
+/// All keys of a joint of a body.
 std::vector<std::string_view> joint_keys(JointType type) {
     if (type == JointType::free) return {"type", "q", "qd"};
     std::vector<std::string_view> keys = geometry_keys(type);
@@ -61,6 +65,7 @@ std::vector<std::string_view> joint_keys(JointType type) {
     return keys;
 }
 
+/// Reads a list of `count` numbers; the other components are zero.
 Vec3 several(Node const& node, int count) {
     std::vector<double> const values = numbers(node, static_cast<std::size_t>(count));
     Vec3 v = Vec3::zero();
@@ -68,8 +73,7 @@ Vec3 several(Node const& node, int count) {
     return v;
 }
 
-/// The joint's numbers; where it has several coordinates and `alike` is set, one number stands for
-/// all.
+/// Reads the joint's numbers. For several coordinates with `alike` set, one number applies to all.
 Vec3 components(Node const& node, JointType type, bool alike) {
     int const count = numbers_of(type);
     Vec3 v = Vec3::zero();
@@ -79,7 +83,7 @@ Vec3 components(Node const& node, JointType type, bool alike) {
     return v;
 }
 
-/// Stiffness or damping.
+/// Reads a stiffness or damping and refuses negative numbers.
 Vec3 resistance(Node const& node, JointType type) {
     Vec3 const v = components(node, type, true);
     for (double const x : v.data)
@@ -90,13 +94,14 @@ Vec3 resistance(Node const& node, JointType type) {
     return v;
 }
 
-/// q or rest.
+/// Reads q or rest in the format of BodyArrays::q.
 Four position(Node const& node, JointType type, bool alike) {
     if (type == JointType::spherical) return unit_quaternion(node);
     Vec3 const v = components(node, type, alike);
     return {v[0], v[1], 0, 0};
 }
 
+/// Reads pose and rates of a free joint: position and velocity in W, omega in B.
 void read_free(Fields const& joint, JointEntry& entry) {
     entry.q = entry.rest = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) {
@@ -113,7 +118,7 @@ void read_free(Fields const& joint, JointEntry& entry) {
     }
 }
 
-/// Axes, pitch and joint frame: alike in JointEntry and TipJoint.
+/// Reads axes, pitch and joint frame into a JointEntry or a TipJoint.
 template <class Entry>
 void read_geometry(Fields const& joint, Entry& entry) {
     if (entry.type == JointType::universal) {
@@ -140,6 +145,7 @@ void read_geometry(Fields const& joint, Entry& entry) {
         entry.translation = vector3(*translation);
 }
 
+/// Reads one prescribed coordinate.
 PrescribedMotion read_course(Node const& node) {
     Fields const fields(node, {"offset", "rate", "amplitude", "frequency", "phase"});
     if (node.items.empty())
@@ -154,6 +160,7 @@ PrescribedMotion read_course(Node const& node) {
     return course;
 }
 
+/// Reads prescribed motions, one per coordinate, and sets q and qd to their values at time 0.
 void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
     for (char const* const key : {"q", "qd", "torque", "stiffness", "damping", "rest"})
         if (Node const* const other = joint.find(key))
@@ -167,14 +174,17 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
     } else {
         entry.motion.push_back(read_course(motion));
     }
+    // The motion decides position and rate, also those of the start.
     for (std::size_t i = 0; i < entry.motion.size(); ++i) {
         entry.q[i] = value_at(entry.motion[i], 0);
         entry.qd[static_cast<int>(i)] = rate_at(entry.motion[i], 0);
     }
 }
 
+/// Reads position, rates, torque, spring and damper.
 void read_state(Fields const& joint, JointEntry& entry) {
     JointType const type = entry.type;
+    // The default position is zero; for quaternions that is the identity.
     if (type == JointType::spherical) entry.q = entry.rest = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) entry.q = position(*q, type, false);
     if (Node const* const rest = joint.find("rest")) entry.rest = position(*rest, type, true);
@@ -196,6 +206,7 @@ int numbers_of(JointType type) {
     return type == JointType::free || type == JointType::link ? 0 : coordinates_of(type);
 }
 
+// The joint's type decides which keys have a meaning.
 JointEntry read_joint(Node const& node) {
     Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "qd",
                               "torque", "stiffness", "damping", "rest", "motion", "length"});
@@ -213,6 +224,7 @@ JointEntry read_joint(Node const& node) {
     return entry;
 }
 
+// Links and joints with axes have different keys; both may have an anchor unless they close a ring.
 TipEntry read_tip_joint(Node const& node, bool ring) {
     Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q",
                               "anchor", "length"});

@@ -1,4 +1,4 @@
-// One `joint: {...}`: its type, its place and what acts in it.
+// Reader of one `joint: {...}`: its type, its axes and frame, and its loads.
 #pragma once
 
 #include <array>
@@ -10,36 +10,46 @@
 
 namespace catena::scene {
 
-/// What a joint says, with the defaults of what it does not say. The members mean what BodyArrays
-/// says of them.
+/// One joint as read, with defaults for the missing keys. The members are documented at BodyArrays.
 struct JointEntry {
     JointType type = JointType::free;
-    bool planar = false;  // written `planar`: a revolute joint in a chain of parallel axes
+    /// True if the type is written `planar`: a revolute joint in a chain of parallel axes.
+    bool planar = false;
+    /// Axes and joint frame, see BodyArrays.
     Vec3 axis = Vec3::zero(), first_axis = Vec3::zero(), translation = Vec3::zero();
     double pitch = 0;
     Mat3 rotation = Mat3::identity();
+    /// Position and rest position, rates and loads, see BodyArrays.
     std::array<double, 4> q{0, 0, 0, 0}, rest{0, 0, 0, 0};
     Vec3 qd = Vec3::zero(), torque = Vec3::zero(), stiffness = Vec3::zero(), damping = Vec3::zero();
-    Vec3 position = Vec3::zero(), velocity = Vec3::zero();  // free
-    std::vector<PrescribedMotion> motion;                   // empty: not driven
+    /// Position and velocity of a free joint, W.
+    Vec3 position = Vec3::zero(), velocity = Vec3::zero();
+    /// Prescribed motion per coordinate; empty without prescribed motion.
+    std::vector<PrescribedMotion> motion;
     bool loaded = false, sprung = false,
-         damped = false;  // torque; stiffness or rest; damping is given
+         /// True if the joint gives a torque (loaded), a stiffness or rest position (sprung), a
+         /// damping (damped).
+        damped = false;
 };
 
-/// Any joint but a link. InputError for keys that mean nothing for the joint's type and for values
-/// that are wrong in themselves.
+/// Reads any joint but a link. Throws InputError for keys without meaning for the joint's type and
+/// for invalid values.
 JointEntry read_joint(Node const& joint);
 
-/// The joint of `tip: {joint: ...}`: any type but free; a link needs its anchor. `ring`: that of
-/// `tip: {ring: ...}`, which has neither anchor nor q; joints but links need their translation.
+/// Joint of a tip as read.
 struct TipEntry {
+    /// Joint in the form of the chain.
     TipJoint joint;
+    /// True if the type is written `planar`.
     bool planar = false;
 };
+/// Reads the joint of `tip: {joint: ...}`: any type but free; a link needs its anchor. If `ring` is
+/// set, reads that of `tip: {ring: ...}`, which has neither anchor nor q. Joints of rings other
+/// than links need their translation.
 TipEntry read_tip_joint(Node const& joint, bool ring);
 
-/// How many numbers a torque, stiffness or damping of the joint has: 1, 2 or 3; 0 for links, welds
-/// and free joints.
+/// Number of components of the joint's torque, stiffness or damping: 1, 2 or 3. It is 0 for links,
+/// welds and free joints.
 int numbers_of(JointType type);
 
 }  // namespace catena::scene

@@ -1,4 +1,4 @@
-// Stands in for hdf5_bodies.cpp in a build without HDF5.
+// Replaces hdf5_bodies.cpp in a build without HDF5.
 #include "bodies/hdf5_bodies.hpp"
 #include "error.hpp"
 

@@ -1,3 +1,4 @@
+// Implements the checks of inertia, rotations and directions.
 #include "bodies/physics.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,9 @@ namespace catena::scene {
 
 namespace {
 
+/// Rounding error of a few products and sums, relative.
 double constexpr rounding = 64 * std::numeric_limits<double>::epsilon();
+/// Tolerance for numbers printed with seven digits.
 double constexpr printed_digits = 1e-6;
 
 double largest_entry(Mat3 const& m) {
@@ -21,10 +24,12 @@ double largest_entry(Mat3 const& m) {
     return largest;
 }
 
+/// Throws InputError with the fault, if any.
 void refuse(Node const& node, std::optional<Fault> const& fault) {
     if (fault) fail(node, fault->what, fault->remedy);
 }
 
+/// Reads three numbers as a diagonal, or a 3x3 matrix.
 Mat3 full_inertia(Node const& node) {
     if (node.kind == Node::Kind::list && node.items.size() == 3 &&
         node.items[0].kind != Node::Kind::list) {
@@ -34,9 +39,9 @@ Mat3 full_inertia(Node const& node) {
     return matrix3(node);
 }
 
-/// Whether the second moments of the mass, tr(J) / 2 - J, are positive definite with room: then so
-/// is J, and the triangle inequality holds. Sylvester's minors: a tenth of the time of principal
-/// moments, which decide what this does not.
+/// True if the second moments of the mass, tr(J) / 2 - J, are positive definite with a margin. J
+/// then is positive definite, and the triangle inequality holds. Sylvester's minors take a tenth of
+/// the time of principal moments, which decide the remaining cases.
 bool is_plainly_physical(Sym3 const& j) {
     double const half = 0.5 * (j(0, 0) + j(1, 1) + j(2, 2)), margin = 1e-9;
     double const a = (half - j(0, 0)) / half, b = (half - j(1, 1)) / half,
@@ -46,7 +51,7 @@ bool is_plainly_physical(Sym3 const& j) {
            a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > margin;
 }
 
-/// One Jacobi rotation that makes entry (p, q) zero.
+/// One Jacobi rotation, which makes entry (p, q) zero.
 void rotate(Mat3& a, int p, int q) {
     if (a(p, q) == 0) return;
     double const theta = (a(q, q) - a(p, p)) / (2 * a(p, q));
@@ -70,8 +75,9 @@ std::array<double, 3> principal_moments(Sym3 const& j) {
     Mat3 a = full(j);
     double const scale = largest_entry(a);
     if (scale == 0) return {0, 0, 0};
+    // Scaling prevents overflow and underflow of the squares.
     for (double& entry : a.data) entry /= scale;
-    // Quadratic convergence: six sweeps take a 3x3 matrix to rounding from anywhere.
+    // Convergence is quadratic: six sweeps reduce any 3x3 matrix to rounding.
     for (int sweep = 0; sweep < 6; ++sweep) {
         rotate(a, 0, 1);
         rotate(a, 0, 2);
@@ -95,6 +101,7 @@ std::optional<Fault> make_inertia(Mat3 const& m, Sym3& j) {
         }
     if (is_plainly_physical(j)) return std::nullopt;
     auto const [a, b, c] = principal_moments(j);
+    // The tolerance is relative to the largest moment, as all entries are rounded on its scale.
     double const slack = rounding * std::max(std::abs(a), std::abs(c));
     if (a < -slack)
         return Fault{
@@ -124,11 +131,12 @@ std::optional<Fault> make_rotation(Mat3& r) {
         return Fault{fmt::format("the rotation is not orthonormal: R^T R differs from 1 by {:.3g}",
                                  deviation),
                      "give unit columns at right angles"};
+    // Orthonormal columns have the determinant 1 or -1.
     if (dot(r.column(0), cross(r.column(1), r.column(2))) < 0)
         return Fault{"the rotation is left-handed: its determinant is -1",
                      "change the sign of one column"};
-    // Newton's iteration for the nearest rotation, R (3 - R^T R) / 2: quadratic, so that two steps
-    // take 1e-6 below rounding.
+    // Newton's iteration for the nearest rotation, R (3 - R^T R) / 2. Convergence is quadratic, so
+    // that two steps reduce 1e-6 below rounding.
     for (int step = 0; step < 2; ++step) {
         Mat3 correction = transposed_times(r, r);
         for (int i = 0; i < 9; ++i)
@@ -149,11 +157,12 @@ std::optional<Fault> make_unit(std::array<double, 4>& q) {
 }
 
 std::optional<Fault> make_direction(Vec3& v) {
+    // Scaling by the largest component prevents overflow and underflow of the norm.
     double const scale = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (scale == 0) return Fault{"the axis is zero", "give a direction such as [0, 0, 1]"};
     for (double& x : v.data) x /= scale;
     double const length = norm(v);
-    // A vector that is a unit vector to rounding stays as it was written.
+    // A vector that is a unit vector to rounding stays as written.
     v = std::abs(scale * length - 1) <= 4 * std::numeric_limits<double>::epsilon()
             ? scale * v
             : (1 / length) * v;

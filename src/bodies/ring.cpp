@@ -1,3 +1,4 @@
+// Implements the closure check of rings.
 #include "bodies/ring.hpp"
 
 #include <fmt/format.h>
@@ -10,14 +11,16 @@ namespace catena::scene {
 
 namespace {
 
-/// How far the first body is from where the joint lets it be: distance and angle.
+/// Closure error of a ring: distance, and angle in rad, of the first body from the nearest pose
+/// that the joint allows.
 struct Opening {
     double distance = 0, angle = 0;
 };
 
-/// `b`: the first body against the joint frame.
+/// Computes the closure error. `b` is the pose of the first body relative to the joint frame.
 Opening opening_of(TipJoint const& joint, Pose const& b) {
     Mat3 const turn = to_matrix(b.orientation);
+    // Distance from the axis, and sine of the angle between the axes on both sides.
     double const across = norm(cross(joint.axis, b.origin)),
                  tilt = norm(cross(joint.axis, turn * joint.axis));
     switch (joint.type) {
@@ -29,6 +32,8 @@ Opening opening_of(TipJoint const& joint, Pose const& b) {
         case JointType::prismatic:
             return {across, norm(rotation_vector(b.orientation))};
         case JointType::helical: {
+            // The motion repeats after each rotation by 2 pi: only the remainder of its translation
+            // counts.
             double const a_turn = 2 * std::acos(-1.0) * std::abs(joint.pitch);
             double const along = dot(joint.axis, b.origin) -
                                  joint.pitch * dot(joint.axis, rotation_vector(b.orientation));
@@ -66,12 +71,14 @@ void close_ring(ChainSpec& chain, Node const& node, Scene& scene) {
     TipJoint& joint = chain.tip_joint;
     Reach const reach = reach_of(chain.bodies);
     Pose const first = next_pose(chain.bodies, 0, {}), &end = reach.end;
+    // All poses are relative to the last body, in which the joint frame is fixed.
     Quat const to_last = conjugate(end.orientation);
     if (!node.find("rotation")) joint.rotation = to_matrix(to_last * first.orientation);
     Vec3 const apart = to_matrix(to_last) * (first.origin - end.origin) - joint.translation;
     Pose const b{conjugate(to_quaternion(joint.rotation)) * (to_last * first.orientation),
                  transposed_times(joint.rotation, apart)};
     Opening const open = opening_of(joint, b);
+    // A ring of zero length, with all joints at one point, is measured in absolute lengths.
     double const around = reach.length + norm(joint.translation), length = around > 0 ? around : 1;
     if (open.distance <= closure_tolerance * length && open.angle <= closure_tolerance) return;
     std::string const what = fmt::format(

@@ -1,5 +1,4 @@
-// A periodic box cut into cells, so that what is near a point is found by looking into the cells
-// around it.
+// Periodic box divided into cells, so that the neighbours of a point lie in the cells around it.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +10,20 @@
 
 namespace catena::scene {
 
-/// The periodic images of a rectangular box.
+/// Periodic images of a rectangular box.
 class Images {
   public:
     explicit Images(Vec3 const& box) : edge_(box), inverse_{{1 / box[0], 1 / box[1], 1 / box[2]}} {}
 
     Vec3 const& edge() const { return edge_; }
-    /// The image of `point` in the box, between 0 and the edges.
+    /// Returns the image of `point` in the box, between 0 and the edges.
     Vec3 wrapped(Vec3 point) const {
         for (int i = 0; i < 3; ++i) point[i] -= edge_[i] * std::floor(point[i] * inverse_[i]);
         return point;
     }
-    /// The shortest image of a difference.
+    /// Returns the shortest image of a difference (minimum image convention).
     Vec3 shortest(Vec3 const& apart) const { return apart - whole_edges(apart); }
-    /// What a difference has beyond its shortest image.
+    /// Returns the difference minus its shortest image: whole edges of the box.
     Vec3 whole_edges(Vec3 const& apart) const {
         Vec3 edges = Vec3::zero();
         for (int i = 0; i < 3; ++i) edges[i] = edge_[i] * std::rint(apart[i] * inverse_[i]);
@@ -35,26 +34,27 @@ class Images {
     Vec3 edge_, inverse_;
 };
 
-/// Cells `width` wide or wider, few enough for `points` of them to be worth while.
+/// Cells of at least the width `width`. Their number is at most 16 (8 `points` + 64).
 class Cells {
   public:
     Cells(Vec3 const& box, double width, std::size_t points) {
         double const wanted = 8.0 * static_cast<double>(points) + 64;
         double least = std::max(width, std::cbrt(box[0] * box[1] * box[2] / wanted));
-        // A box flatter than its cells has one layer of them, and with that more in all than its
-        // volume says.
+        // A box flatter than its cells has one layer of them. It then has more cells in all than
+        // its volume implies.
         while (cut(box, least) > 16 * wanted) least *= 2;
     }
 
+    /// Number of cells.
     std::size_t size() const { return static_cast<std::size_t>(count_[0] * count_[1] * count_[2]); }
 
-    /// The cell of a point in the box.
+    /// Index of the cell that contains a point of the box.
     std::size_t of(Vec3 const& wrapped) const {
         return index(at(wrapped, 0), at(wrapped, 1), at(wrapped, 2));
     }
 
-    /// Calls visit(cell) for the cells that hold points within `width` of a point in the box, each
-    /// once, until it returns true; whether it did.
+    /// Calls visit(cell) for the cells that hold all points within `width` of a point in the box,
+    /// each once. Stops and returns true as soon as visit returns true; returns false otherwise.
     template <class Visit>
     bool any_around(Vec3 const& wrapped, Visit visit) const {
         std::array<Run, 3> const run{around(wrapped, 0), around(wrapped, 1), around(wrapped, 2)};
@@ -66,6 +66,7 @@ class Cells {
     }
 
   private:
+    /// Up to three consecutive cells along one axis, with periodic wrap.
     struct Run {
         std::int64_t begin, size, count;
         std::int64_t cell(std::int64_t i) const {
@@ -74,7 +75,7 @@ class Cells {
         }
     };
 
-    /// Into cells `width` wide or wider; their number.
+    /// Divides the box into cells of at least the width `width` and returns their number.
     double cut(Vec3 const& box, double width) {
         double cells = 1;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -87,7 +88,7 @@ class Cells {
         return cells;
     }
     std::int64_t at(Vec3 const& wrapped, std::size_t axis) const {
-        // Rounding may put a point of the last cell one too far.
+        // Rounding may move a point of the last cell one cell too far.
         return std::min(
             static_cast<std::int64_t>(wrapped[static_cast<int>(axis)] * per_length_[axis]),
             count_[axis] - 1);

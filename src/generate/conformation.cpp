@@ -1,3 +1,4 @@
+// Implements extended and self-avoiding conformations and the lengths of links.
 #include "generate/conformation.hpp"
 
 #include <cmath>
@@ -10,8 +11,8 @@ namespace catena::scene {
 
 namespace {
 
-/// Points in cubic cells as wide as the excluded distance. The last point put in is the first taken
-/// out.
+/// Stack of points in cubic cells of the excluded distance. Only the point pushed last can be
+/// popped.
 class CellStack {
   public:
     explicit CellStack(double width) : width_(width) {}
@@ -19,6 +20,7 @@ class CellStack {
     std::int64_t size() const { return static_cast<std::int64_t>(points_.size()); }
     Vec3 const& top() const { return points_.back(); }
 
+    /// Adds a point on top of the stack.
     void push(Vec3 const& point) {
         auto [head, fresh] = heads_.try_emplace(key(point, 0, 0, 0), -1);
         next_.push_back(head->second);
@@ -30,7 +32,7 @@ class CellStack {
         next_.pop_back();
         points_.pop_back();
     }
-    /// Whether a point other than the last one lies nearer than the width.
+    /// True if a point other than the last one is nearer than the width.
     bool crowded(Vec3 const& point) const {
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)
@@ -49,6 +51,8 @@ class CellStack {
                 return true;
         return false;
     }
+    /// Key of the cell shifted by (x, y, z) cells from the point's cell: 21 bits per axis. Distant
+    /// cells may share a key, which only costs time.
     std::uint64_t key(Vec3 const& p, int x, int y, int z) const {
         auto const cell = [&](double coordinate, int shift) {
             return static_cast<std::uint64_t>(
@@ -64,6 +68,7 @@ class CellStack {
     std::unordered_map<std::uint64_t, std::int64_t> heads_;
 };
 
+/// Inboard end of link k (from 0): the preceding bead, or the anchor.
 Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {
     return k == 0 ? beads.anchor : beads.position[k - 1];
 }
@@ -96,7 +101,7 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
             furthest = grown.size();
             retreat = 1;
         }
-        // Stuck: further back each time, so that the way out of any pocket is found.
+        // The retreat doubles with each failure, so that the walk leaves any dead end.
         if (!found) {
             for (std::int64_t i = 0; i < retreat && grown.size() > 1; ++i) grown.pop();
             retreat *= 2;
@@ -114,8 +119,8 @@ void take_lengths(BeadArrays& beads, Base base) {
 std::int64_t coincident_bead(BeadArrays const& beads, Base base) {
     for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k) {
         Vec3 const from = inboard_of(beads, k);
-        // Positions carry half a unit in their last place: a link shorter than some of these has no
-        // direction.
+        // Positions are rounded to half a unit in their last place. A link shorter than a few of
+        // these units has no direction.
         double const rounding =
             16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(beads.position[k]));
         if (!(norm(beads.position[k] - from) > rounding)) return static_cast<std::int64_t>(k);

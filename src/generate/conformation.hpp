@@ -1,4 +1,4 @@
-// Where the beads of a link chain stand at the start.
+// Start positions of the beads of a link chain.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace catena::scene {
 
-/// Planar zig-zag along x with bond angles of 120 degrees, from the origin. Not straight: a
-/// straight chain under forces along itself would never bend without noise, and its link matrix is
+/// Planar zig-zag along x with bond angles of 120 degrees, from the origin. A straight chain is
+/// avoided: under forces along itself it would never bend without noise. Its link matrix is also
 /// the worst conditioned one.
 std::vector<Vec3> extended_conformation(std::int64_t points, double length);
 
-/// Random walk from the origin whose points, neighbours apart, stay `excluded` or more from each
-/// other (excluded < 2 length); grown point by point, stepping back where it is stuck. O(points); a
-/// function of its arguments alone.
+/// Random walk from the origin. Points that are not neighbours keep the distance `excluded` or more
+/// (precondition: excluded < 2 length). The walk grows point by point and steps back when no place
+/// is free. Cost is O(points); the result depends on the arguments alone.
 std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length, double excluded,
                                              std::uint64_t seed);
 
@@ -25,8 +25,8 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
 /// else 0).
 void take_lengths(BeadArrays& beads, Base base);
 
-/// First bead, from 0, that stands on its inboard neighbour (entry 0: on the anchor of a fixed
-/// base) as far as rounding can tell; -1: none does.
+/// Returns the first bead (from 0) that coincides with its inboard neighbour within rounding. Entry
+/// 0 is compared with the anchor of a fixed base. Returns -1 if no bead coincides.
 std::int64_t coincident_bead(BeadArrays const& beads, Base base);
 
 }  // namespace catena::scene

@@ -1,5 +1,5 @@
-// Chains of beads in a periodic box that is too crowded for places side by side: grown into it,
-// then relaxed.
+// Chains of beads in a dense periodic box without room for separate places: grown into it, then
+// relaxed.
 #pragma once
 
 #include <cstdint>
@@ -9,37 +9,45 @@
 
 namespace catena::scene {
 
-/// Beads of all chains, one chain after the other, then points that stand still.
+/// Beads of all chains, one chain after the other, then fixed points.
 struct Crowd {
+    /// Edges of the periodic box.
     Vec3 box = Vec3::zero();
-    double excluded = 0;             // beads that are not link neighbours keep this distance
-    std::vector<Vec3> at;            // unwrapped
-    std::vector<double> length;      // of the link to the point before; 0: there is none
-    std::vector<std::size_t> first;  // bead of each chain, and the end of the last
+    /// Smallest distance of beads that are not link neighbours.
+    double excluded = 0;
+    /// Positions, not wrapped into the box.
+    std::vector<Vec3> at;
+    /// Length of the link to the preceding point; 0 if there is none.
+    std::vector<double> length;
+    /// Index of the first bead of each chain, and the end of the last chain.
+    std::vector<std::size_t> first;
 
     std::size_t chains() const { return first.size() - 1; }
+    /// Number of beads that belong to chains; points from there on are fixed.
     std::size_t movable() const { return first.back(); }
+    /// True if a link joins points i and j.
     bool linked(std::size_t i, std::size_t j) const {
         return i < j ? j - i == 1 && length[j] > 0 : i - j == 1 && length[i] > 0;
     }
 };
 
-/// Puts the beads of every chain along random walks from random points of the box that keep the
-/// excluded distance from all that is there, stepping back where they are stuck; where that fails,
-/// the bead goes where it overlaps least. All chains grow at one pace, so that none finds the box
-/// full. A function of its arguments alone. Precondition: edges of 2.5 excluded distances or more;
-/// links shorter than the excluded distance, longer than half of it.
+/// Places the beads of every chain along random walks from random points of the box. Beads keep the
+/// excluded distance from all points; a walk steps back when no place is free. If that fails, the
+/// bead is placed with the least overlap. All chains grow at the same pace, so that none meets a
+/// full box. The result depends on the arguments alone. Precondition: edges of at least 2.5
+/// excluded distances; links between half of the excluded distance and the excluded distance.
 void grow(Crowd& crowd, std::uint64_t seed);
 
+/// Result of a relaxation.
 struct Relaxed {
     std::int64_t steps = 0;
-    std::int64_t overlaps = 0;  // pairs that are nearer than the excluded distance
-    double nearest = 0;         // distance of the nearest such pair
+    std::int64_t overlaps = 0;  // pairs closer than the excluded distance
+    double nearest = 0;         // distance of the closest such pair
 };
 
-/// Pushes beads that are too near apart by forces with a cap, each step followed by the projection
-/// of the links to their lengths (1e-13 of them, as far as the positions' rounding allows), until
-/// no two are nearer than the excluded distance or `most_steps` are done.
+/// Separates beads that are too close by forces with a cap. Each step ends with the projection of
+/// the links to their lengths (relative error 1e-13, as far as the positions' rounding allows).
+/// Stops when no pair is closer than the excluded distance, or after `most_steps` steps.
 Relaxed relax(Crowd& crowd, std::int64_t most_steps);
 
 }  // namespace catena::scene

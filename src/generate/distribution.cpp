@@ -1,3 +1,4 @@
+// Implements the drawing and reading of distributions; normal numbers by the Box-Muller method.
 #include "generate/distribution.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Implements the generators of rods, polygons and beads at given points.
 #include "generate/generators.hpp"
 
 #include <cmath>
@@ -10,7 +11,7 @@ namespace catena::scene {
 
 namespace {
 
-/// An empty chain of n bodies on revolute joints at rest.
+/// Chain of n bodies on revolute joints at rest, with zero masses.
 BodyArrays revolute_chain(std::size_t n) {
     BodyArrays bodies;
     bodies.mass.assign(n, 0);
@@ -25,8 +26,8 @@ BodyArrays revolute_chain(std::size_t n) {
     return bodies;
 }
 
-/// Makes body k a solid cylinder along +x, its origin in one end, and puts the next body's joint
-/// frame into the other.
+/// Makes body k a solid cylinder along +x with its origin at one end. The next body's joint frame
+/// is placed at the other end.
 void set_rod(BodyArrays& bodies, std::size_t k, double mass, double length, double radius) {
     double const along = mass * radius * radius / 2,
                  across = mass * (3 * radius * radius + length * length) / 12;
@@ -36,7 +37,7 @@ void set_rod(BodyArrays& bodies, std::size_t k, double mass, double length, doub
     if (k + 1 < bodies.size()) bodies.translation[k + 1] = {{length, 0, 0}};
 }
 
-/// Draws the sizes of rod k; `scale` of its length and radius.
+/// Draws the sizes of rod k; `scale` multiplies its length and radius.
 void draw_rod(BodyArrays& bodies, Rods const& rods, std::size_t k, double scale) {
     auto const body = static_cast<std::int64_t>(k);
     double const mass = draw_size(rods.mass, rods.seed, body, SizeStream::mass);
@@ -52,7 +53,7 @@ Mat3 about_x(double angle) {
     return {{1, 0, 0, 0, c, -s, 0, s, c}};
 }
 
-/// Every joint at the angle `turn`, its axis turned by `twist` about the rod before it.
+/// Sets every joint to the angle `turn`, its axis rotated by `twist` about the rod before it.
 void wind(BodyArrays& bodies, Winding const& winding, double twist) {
     Mat3 const turned = about_x(twist);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -65,8 +66,9 @@ void wind(BodyArrays& bodies, Winding const& winding, double twist) {
     bodies.q[0] = {1, 0, 0, 0};
 }
 
-/// A rotation vector with the normal density of its springs, times what the rotation group makes of
-/// it: (sin(a / 2) / (a / 2))^2.
+/// Draws the rotation of a spherical joint from the equilibrium of its springs. A rotation vector
+/// is drawn from the normal density of the springs. It is accepted with the weight of the rotation
+/// group: (sin(a / 2) / (a / 2))^2.
 Quat elastic_turn(ElasticRod const& rod, Vec3 const& stiffness, std::int64_t k) {
     for (std::uint64_t attempt = 0;; ++attempt) {
         Vec3 turn =

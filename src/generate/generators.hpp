@@ -1,5 +1,5 @@
-// Chains made from a few numbers. All are O(n), functions of their arguments alone, and body k does
-// not depend on n.
+// Generators of chains from a few numbers. All cost O(n) and depend on their arguments alone; body
+// k does not depend on n.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,8 @@
 
 namespace catena::scene {
 
+/// Joint types of random chains. planar: revolute joints with parallel axes. mixed: each joint has
+/// a random type other than link.
 enum class RandomJoint : std::uint8_t {
     link,
     planar,
@@ -23,77 +25,88 @@ enum class RandomJoint : std::uint8_t {
     mixed
 };
 
+/// Parameters of a random chain.
 struct RandomChain {
     std::int64_t bodies = 0;
     RandomJoint joint = RandomJoint::revolute;
     Base base = Base::fixed;
     std::uint64_t seed = 0;
     Distribution mass{Distribution::Kind::log_uniform, {0.5, 2}};
-    Distribution length{Distribution::Kind::uniform, {0.5, 1.5}};  // between joints; of links
-    Distribution inertia{
-        Distribution::Kind::uniform,
-        {0.05, 0.15}};           // second moments of the mass along the principal axes, per mass
-    Vec3 anchor = Vec3::zero();  // links on a fixed base
-    double rigid = 0;            // links: the fraction of rigid bodies among beads
+    Distribution length{Distribution::Kind::uniform,
+                        {0.5, 1.5}};  // distance between joints; length of links
+    Distribution inertia{Distribution::Kind::uniform,
+                         /// Second moments of the mass along the principal axes, per mass.
+                         {0.05, 0.15}};
+    /// Ground point of the first link for a fixed base.
+    Vec3 anchor = Vec3::zero();
+    /// Fraction of rigid bodies among the beads of a chain of links.
+    double rigid = 0;
 };
 
-/// Random rigid bodies of about unit size, mass and speed. Inertias m R diag(s2+s3, s3+s1, s1+s2)
-/// R^T with R uniform, so that the triangle inequality holds with room; centres of mass in [-0.5,
-/// 0.5]^3; joint frames at `length` in a uniform direction, uniformly rotated; angles and
-/// orientations uniform, shifts in [-0.5, 0.5]; rates and joint torques in [-1, 1]; every fourth
-/// body (at random) carries a wrench with components in [-1, 1]. Axes are uniform; those of a
-/// universal joint are 30 degrees or more apart; planar: revolute joints whose axes are all
-/// parallel; pitches in [0.05, 0.3] of either sign; mixed: each joint one of the six at random. A
-/// free base gets a random pose and velocity.
+/// Random rigid bodies of about unit size, mass and speed. Inertias are m R diag(s2+s3, s3+s1,
+/// s1+s2) R^T with R uniform, so that the triangle inequality holds with a margin. Centres of mass
+/// lie in [-0.5, 0.5]^3. Joint frames lie at `length` in a uniform direction and are uniformly
+/// rotated. Angles and orientations are uniform, displacements in [-0.5, 0.5], rates and joint
+/// torques in [-1, 1]. Every fourth body (at random) carries a wrench with components in [-1, 1].
+/// Axes are uniform; those of a universal joint are at least 30 degrees apart. planar: revolute
+/// joints whose axes are all parallel. Pitches are in [0.05, 0.3] of either sign. mixed: each joint
+/// is one of the six types at random. A free base has a random pose and velocity.
 BodyArrays random_bodies(RandomChain const& chain);
 
-/// Random beads on links in uniform directions; velocities satisfy the links: each link turns with
-/// components of its angular velocity in
-/// [-1, 1] (bead 1 of a free base moves at up to 1).
+/// Random beads on links in uniform directions. Velocities satisfy the links: each link rotates
+/// with components of its angular velocity in [-1, 1]. Bead 1 of a free base has velocity
+/// components in [-1, 1].
 BeadArrays random_beads(RandomChain const& chain);
 
-/// As random_beads, with rigid bodies in the place of a fraction `rigid` of the beads: inertias as
-/// random_bodies', ends of links at 0.25 to 0.75 from the centre of mass in uniform directions,
-/// orientations uniform, angular velocities in [-1, 1]. Beads carry themselves.
+/// Chain like random_beads() with rigid bodies in place of a fraction `rigid` of the beads.
+/// Inertias are those of random_bodies(). Ends of links lie at 0.25 to 0.75 from the centre of mass
+/// in uniform directions. Orientations are uniform, components of angular velocities in [-1, 1].
+/// Beads carry themselves.
 LinkedArrays random_linked(RandomChain const& chain);
 
-/// Sizes of equal or random links.
+/// Sizes of equal or random rods.
 struct Rods {
     std::int64_t bodies = 0;
     Distribution mass{1.0}, length{1.0};
-    std::optional<Distribution> radius;  // not given: 0.05 of the length
+    /// Radius of the rods; 0.05 of the length if not given.
+    std::optional<Distribution> radius;
     std::uint64_t seed = 0;
+    /// True if chains with different seeds differ.
     bool is_random() const {
         return !mass.is_fixed() || !length.is_fixed() || (radius && !radius->is_fixed());
     }
 };
 
-/// The chapter's test case (Fig. 2.4): equal uniform rods, all along +x, at rest, joints revolute
-/// about +z, joint 1 at the ground's origin. Each is a solid cylinder: inertia m r^2 / 2 along, m
-/// (3 r^2 + l^2) / 12 across.
+/// The chapter's test case (Fig. 2.4): equal uniform rods, all along +x, at rest. Joints are
+/// revolute about +z, joint 1 at the ground's origin. Each rod is a solid cylinder: inertia m r^2 /
+/// 2 along, m (3 r^2 + l^2) / 12 across.
 BodyArrays pendulum(Rods const& rods);
 
 /// Standard hard shapes after Featherstone's ("An empirical study of the joint space inertia
-/// matrix", 2004; "A divide-and-conquer articulated-body algorithm, part 2", 1999), whose condition
-/// numbers grow up to O(n^4). These are serial chains of rods as pendulum's, on revolute joints, at
-/// rest, all joints at the angle `turn`; where they differ from the published ones in detail, these
-/// definitions hold. coil: joint axes stand across the rods, each turned by `twist` about its rod
-/// against the one before, so that the chain winds up into a helix and far bodies come to lie near
-/// each other. dill: self-similar: rod k (from 1) is `ratio`^v times as long and as thick as given,
-/// its mass times ratio^(3 v), v the number of times that 2 divides k: every second rod is of full
-/// size, every fourth the next smaller, and so on; axes alternate by a right angle. (Featherstone's
-/// dill is a tree with such branches.)
+/// matrix", 2004; "A divide-and-conquer articulated-body algorithm, part 2", 1999), with condition
+/// numbers up to O(n^4). They are serial chains of rods like pendulum(), on revolute joints, at
+/// rest, with all joints at the angle `turn`. These definitions hold if they differ from the
+/// published ones in detail. coil: joint axes are perpendicular to the rods. Each axis is rotated
+/// by `twist` about its rod relative to the preceding axis. The chain forms a helix, so that
+/// distant bodies come close to each other. dill: a self-similar chain. Rod k (from 1) has
+/// `ratio`^v times the given length and radius and ratio^(3 v) times the given mass. The exponent v
+/// is the number of times that 2 divides k. Every second rod has full size, every fourth the next
+/// smaller size, and so on; axes alternate by a right angle. (Featherstone's dill is a tree with
+/// such branches.)
 struct Winding {
     double turn = 0.3, twist = 0.1, ratio = 0.5;
     Base base = Base::fixed;
 };
+/// Helix of rods, see Winding.
 BodyArrays coil(Rods const& rods, Winding const& winding);
+/// Self-similar chain of rods, see Winding.
 BodyArrays dill(Rods const& rods, Winding const& winding);
 
-/// Equal rods as pendulum's on spherical joints whose springs, kt bend / length across and kt twist
-/// / length along the rods, make them an elastic rod with these persistence lengths where the rods
-/// are short. At rest, every joint drawn from its equilibrium, exp(-U / kt) over the rotations. The
-/// first rod lies along +x from the origin, free or welded to the ground.
+/// Equal rods like pendulum() on spherical joints with springs. The springs are kt bend / length
+/// across and kt twist / length along the rods. They make an elastic rod with these persistence
+/// lengths if the rods are short. The chain is at rest; every joint is drawn from its equilibrium,
+/// exp(-U / kt) over the rotations. The first rod lies along +x from the origin, free or welded to
+/// the ground.
 struct ElasticRod {
     std::int64_t bodies = 0;
     double mass = 1, length = 1, radius = 0.05, bend = 1, twist = 1, kt = 1;
@@ -102,22 +115,22 @@ struct ElasticRod {
 };
 BodyArrays elastic_rod(ElasticRod const& rod);
 
-/// A regular polygon of equal rods as pendulum's, in the plane of x and y with its first side along
-/// +x from the origin (a fixed base: on a joint there), left open for a tip to close. It turns with
-/// angular velocity `spin`, W, as if it were rigid: about its centre, or with a fixed base about
-/// the first corner.
+/// Regular polygon of equal rods like pendulum(), in the xy plane, with its first side along +x
+/// from the origin. A fixed base has a joint at the origin. The polygon is left open for a tip to
+/// close. It rotates with angular velocity `spin`, W, as a rigid body. The centre of rotation is
+/// its own centre, or the first corner for a fixed base.
 struct Polygon {
     std::int64_t sides = 0;
-    JointType joint = JointType::spherical;  // or revolute, about z
+    JointType joint = JointType::spherical;  // spherical, or revolute about z
     double mass = 1, length = 1, radius = 0.05;
     Vec3 spin = Vec3::zero();
     Base base = Base::free;
 };
 BodyArrays polygon(Polygon const& shape);
-/// The same of beads on links, at rest, the first at the origin; free base.
+/// Regular polygon of beads on links, at rest, with the first bead at the origin; free base.
 BeadArrays polygon_of_beads(Polygon const& shape);
 
-/// Beads on links, at rest.
+/// Parameters of a random walk of beads on links, at rest.
 struct Walk {
     std::int64_t beads = 0;
     Distribution mass{1.0}, length{1.0};
@@ -126,19 +139,19 @@ struct Walk {
     std::uint64_t seed = 0;
 };
 
-/// Independent uniform directions.
+/// Walk with independent uniform directions.
 BeadArrays freely_jointed(Walk const& walk);
 
-/// The discrete worm-like chain, drawn exactly: angles between successive links with weight
-/// exp(kappa cos theta) on the sphere, uniform azimuths, kappa such that <cos theta> = exp(-l /
-/// persistence), l the mean length of the two links; the first direction is uniform.
+/// Discrete worm-like chain, drawn exactly. Angles between successive links have weight exp(kappa
+/// cos theta) on the sphere, azimuths are uniform. kappa satisfies <cos theta> = exp(-l /
+/// persistence), with l the mean length of the two links. The first direction is uniform.
 BeadArrays worm_like(Walk const& walk, double persistence);
 
-/// kappa with coth(kappa) - 1 / kappa = exp(-ratio), ratio > 0.
+/// Solves coth(kappa) - 1 / kappa = exp(-ratio) for kappa; precondition: ratio > 0.
 double bending_of(double ratio);
 
-/// Beads of equal mass and link length at `points` (of a fixed base: one more point, the anchor,
-/// first), which are moved so that the first lies at `anchor`. Residues are UNK.
+/// Beads of equal mass and link length at `points`, shifted so that the first point lies at
+/// `anchor`. A fixed base has one more point at the front, the anchor. Residues are UNK.
 BeadArrays beads_at(std::vector<Vec3> const& points, double length, double mass, Base base,
                     Vec3 const& anchor);
 

@@ -1,4 +1,4 @@
-// Self-avoiding growth of many chains in one periodic box.
+// Implements grow(): self-avoiding growth of many chains in one periodic box.
 #include <algorithm>
 
 #include "generate/cells.hpp"
@@ -9,7 +9,7 @@ namespace catena::scene {
 
 namespace {
 
-/// Points in the cells of a periodic box, put in and taken out by their number.
+/// Points in the cells of a periodic box, inserted and removed by their number.
 class Occupied {
   public:
     Occupied(Vec3 const& box, double width, std::size_t points)
@@ -19,21 +19,23 @@ class Occupied {
           next_(points, none),
           at_(points) {}
 
+    /// Inserts point i.
     void put(std::size_t i, Vec3 const& point) {
         at_[i] = images_.wrapped(point);
         std::int32_t& head = head_[cells_.of(at_[i])];
         next_[i] = head;
         head = static_cast<std::int32_t>(i);
     }
+    /// Removes point i, which must have been inserted.
     void take(std::size_t i) {
         std::int32_t* link = &head_[cells_.of(at_[i])];
         while (*link != static_cast<std::int32_t>(i))
             link = &next_[static_cast<std::size_t>(*link)];
         *link = next_[i];
     }
-    /// Square of the distance from `point` to the nearest other than `passed_over` (none: -1),
-    /// `most` where that is larger; where it is `least` or smaller the search ends early, with any
-    /// such number.
+    /// Square of the distance from `point` to the nearest point, at most `most`. Point
+    /// `passed_over` is ignored (none: -1). The search may end early once the result is at most
+    /// `least`; it then returns any such value.
     double clearance(Vec3 const& point, std::int32_t passed_over, double least, double most) const {
         Vec3 const here = images_.wrapped(point);
         double nearest = most;
@@ -57,6 +59,7 @@ class Occupied {
     std::vector<Vec3> at_;
 };
 
+/// Grows all chains of a crowd, one bead per chain in turns.
 class Growth {
   public:
     Growth(Crowd& crowd, std::uint64_t seed)
@@ -79,10 +82,13 @@ class Growth {
     }
 
   private:
+    /// State of a growing chain.
     struct Tip {
+        /// Number of beads placed so far.
         std::size_t grown = 0;
-        std::size_t allowance =
-            0;  // beads that the chain may still take back; at 0 it puts up with overlaps
+        /// Number of beads that the chain may still remove; at 0 it accepts overlaps.
+        std::size_t allowance = 0;
+        /// Number of random streams used so far.
         std::uint64_t draws = 0;
     };
 
@@ -90,10 +96,11 @@ class Growth {
         return crowd_.first[chain + 1] - crowd_.first[chain];
     }
 
+    /// Grows the chain to `size` beads. The retreat doubles with each failure, so that the chain
+    /// leaves any dead end.
     void grow_to(std::size_t chain, std::size_t size) {
         Tip& tip = tips_[chain];
-        std::size_t retreat =
-            1;  // further back each time, so that the way out of any pocket is found
+        std::size_t retreat = 1;
         while (tip.grown < size) {
             if (extend(chain)) continue;
             std::size_t const back =
@@ -105,8 +112,8 @@ class Growth {
         }
     }
 
-    /// Adds a bead in the first place found that is free or, where the chain has no allowance left,
-    /// overlaps least.
+    /// Adds a bead at the first free place among 64 trials and returns true. Without free place it
+    /// returns false or, if the chain has no allowance left, accepts the least overlap.
     bool extend(std::size_t chain) {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;
@@ -127,6 +134,8 @@ class Growth {
         return true;
     }
 
+    /// Draws a trial position: at the link's length from the preceding bead, or anywhere for the
+    /// first bead.
     Vec3 candidate(std::size_t chain) {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;

@@ -1,3 +1,4 @@
+// Implements the projection by a tridiagonal solver (Thomas algorithm), bordered for rings.
 #include "generate/link_projection.hpp"
 
 #include <cmath>
@@ -13,8 +14,8 @@ double mobility_of(LinkedUnits const& units, std::size_t k) {
     return units.mobility.empty() ? 1 : units.mobility[k];
 }
 
-/// Minus what the shift of a unit between two links changes the one by, where the other's lambda
-/// is 1.
+/// Off-diagonal entry of the system: minus the change of one link's length by the displacement of
+/// the unit between two links, if the other link's lambda is 1.
 double beside(LinkedUnits const& units, std::size_t between, Vec3 const& a, Vec3 const& b) {
     return -dot(a, b) * mobility_of(units, between);
 }
@@ -44,13 +45,13 @@ LinkProjection::Link LinkProjection::link_between(LinkedUnits const& units, std:
     Vec3 const link = end - start;
     double const distance = norm(link), error = distance - length;
     double const rounding = 4 * std::numeric_limits<double>::epsilon() * norm(start);
-    // Not `>`: what is not finite is wrong too.
+    // The negated form also reports values that are not finite.
     bool const wrong = !(std::abs(error) <= 1e-13 * length + rounding);
     return {distance > 0 ? (1 / distance) * link : Vec3{{1, 0, 0}}, error, wrong};
 }
 
-/// Links' directions and errors, and the elimination of the system from its first row on; false:
-/// nothing is left to correct.
+/// Computes the links' directions and errors and eliminates the system from its first row on.
+/// Returns false if no link needs a correction.
 bool LinkProjection::eliminate(LinkedUnits const& units) {
     std::size_t const n = units.at.size();
     along_.resize(n), factor_.resize(n), lambda_.resize(n);
@@ -72,7 +73,7 @@ bool LinkProjection::eliminate(LinkedUnits const& units) {
     return wrong;
 }
 
-/// From the last row back, shifting the units.
+/// Back substitution from the last row on; displaces the units.
 void LinkProjection::substitute(LinkedUnits const& units) {
     std::size_t const n = units.at.size();
     if (units.closing > 0) close(units);
@@ -84,14 +85,15 @@ void LinkProjection::substitute(LinkedUnits const& units) {
     }
 }
 
+/// True if the closing link of a ring has a length error.
 bool LinkProjection::is_open(LinkedUnits const& units) {
     if (units.closing == 0) return false;
     closing_ = link_between(units, units.at.size() - 1, 0, units.closing);
     return closing_.wrong;
 }
 
-/// The closing link borders the system: the others' lambdas without it, less what a unit of its
-/// lambda changes them by, times its lambda.
+/// Solves the system bordered by the closing link. The other links' lambdas are those without the
+/// closing link, less their response to its lambda.
 void LinkProjection::close(LinkedUnits const& units) {
     std::size_t const n = units.at.size(), last = n - 1;
     double const at_first = beside(units, 0, closing_.along, along_[1]),

@@ -1,4 +1,4 @@
-// The least change of positions that gives the links of a chain their lengths.
+// Projection of positions to the lengths of a chain's links by the least change.
 #pragma once
 
 #include <span>
@@ -8,33 +8,39 @@
 
 namespace catena::scene {
 
-/// Units (points, or rigid shapes that are shifted and not turned) in the order of their chain.
+/// Units in the order of their chain: points, or rigid shapes that translate without rotation.
 struct LinkedUnits {
-    std::span<Vec3> at;  // what is moved
-    std::span<double const>
-        length;  // of the link from the unit before to this one; entry 0 means nothing
-    std::span<double const> mobility =
-        {};  // the inverse of each unit's weight, 0: it is held; empty: 1
-    std::span<Vec3 const> inboard = {};  // ends of a unit's links from `at`; empty: zero
+    /// Positions of the units, which the projection changes.
+    std::span<Vec3> at;
+    /// Length of the link from the preceding unit to this one; entry 0 is ignored.
+    std::span<double const> length;
+    /// Inverse weight of each unit: 0 holds it fixed, empty means 1.
+    std::span<double const> mobility = {};
+    /// Ends of a unit's links relative to `at`; empty means zero.
+    std::span<Vec3 const> inboard = {};
     std::span<Vec3 const> outboard = {};
-    double closing = 0;  // length of a link from the last unit to the first; 0: there is none
+    /// Length of a link from the last unit to the first; 0 means no such link.
+    double closing = 0;
 };
 
-/// Newton's iteration for the lengths of a chain's links. Shifts of both ends along the links,
-/// equal and opposite where the weights are equal, by lambda: the system is that of the link
-/// chain's constraint forces (for equal weights diagonal 2, beside it minus the cosines between
-/// links). O(units) a sweep; a function of its arguments alone. An object keeps its memory from
-/// call to call.
+/// Newton's iteration for the lengths of a chain's links. Both ends of a link are displaced along
+/// it by its multiplier lambda times their mobility. The linear system is that of the link chain's
+/// constraint forces. For equal weights its diagonal is 2 and its off-diagonal entries are minus
+/// the cosines between links. Cost is O(units) per sweep; the result depends on the arguments
+/// alone. An object reuses its memory from call to call.
 class LinkProjection {
   public:
-    /// Whether every link has its length, to 1e-13 of it as far as the positions' rounding allows,
-    /// after 20 sweeps at most.
+    /// Moves the units; returns true if every link has its length. The tolerance is 1e-13 of the
+    /// length, as far as the positions' rounding allows. At most 20 sweeps are done.
     bool project(LinkedUnits const&);
 
   private:
+    /// Unit direction and length error of one link.
     struct Link {
         Vec3 along;
+        /// Distance of the ends minus the length.
         double error;
+        /// True if the error exceeds the tolerance.
         bool wrong;
     };
     static Link link_between(LinkedUnits const&, std::size_t from, std::size_t to, double length);

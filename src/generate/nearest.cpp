@@ -1,3 +1,4 @@
+// Implements the search for close pairs by cells.
 #include "generate/nearest.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace catena::scene {
 
 namespace {
 
-/// Edges so long that no point meets the image of another one.
+/// Edges of a box so large that no point meets the image of another one.
 Vec3 edges_around(std::span<Vec3 const> points, double within) {
     Vec3 low = points[0], high = low, edges;
     for (Vec3 const& point : points)
@@ -21,7 +22,7 @@ Vec3 edges_around(std::span<Vec3 const> points, double within) {
     return edges;
 }
 
-/// Points in the box, in the order of their cells.
+/// Points wrapped into the box and sorted by their cells.
 class PointsByCell {
   public:
     PointsByCell(std::span<Vec3 const> points, Images const& images, double within)

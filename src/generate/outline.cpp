@@ -1,3 +1,4 @@
+// Implements the outlines of the three kinds of chains.
 #include "generate/outline.hpp"
 
 #include <algorithm>

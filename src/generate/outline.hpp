@@ -1,4 +1,4 @@
-// The points of a chain that count where chains are given their places.
+// Points of a chain that decide its place among other chains.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,12 @@
 
 namespace catena::scene {
 
-/// Beads; origins, centres of mass and carried beads of rigid bodies; ends of links in them.
+/// Points of a chain: beads; origins, centres of mass and carried beads of rigid bodies; ends of
+/// links.
 struct Outline {
     std::vector<Vec3> points;
-    double link = 0;  // the longest stretch between two of them along the chain
+    /// Longest distance between two consecutive points along the chain.
+    double link = 0;
 };
 Outline outline_of(ChainSpec const& chain);
 

@@ -1,3 +1,4 @@
+// Implements the search for free places layer by layer and row by row.
 #include "generate/place_grid.hpp"
 
 #include <algorithm>
@@ -7,16 +8,17 @@ namespace catena::scene {
 
 namespace {
 
-/// Looks at spheres after which grids grow by doubling, and after which a box counts as full.
+/// Numbers of sphere tests after which grids grow by doubling, and after which a box counts as
+/// full.
 double constexpr patience = 1e8, end_of_patience = 10 * patience;
-/// Cells along an edge of a grid without a box.
+/// Largest number of cells along an edge of a grid without a box.
 std::int64_t constexpr widest = 4096;
-/// Rounding, of distances: what is within it is tested cell by cell.
+/// Relative rounding of distances; cells within it are tested one by one.
 double constexpr rounding = 1e-9;
 
-/// The smallest n from `least` on with `wanted` cells in a grid of n along each edge, where it is
-/// not longer than `limit`; else the largest of these: a long or flat box has far fewer cells than
-/// a cube.
+/// Returns the smallest n >= `least` with `wanted` cells in a grid of n along each edge, limited to
+/// `limit`. If there is none, returns the largest of the limits. A long or flat box has far fewer
+/// cells than a cube.
 std::int64_t with_room_for(std::size_t wanted, std::int64_t least,
                            std::array<std::int64_t, 3> const& limit) {
     auto const has_room = [&](std::int64_t n) {
@@ -48,8 +50,8 @@ std::vector<Vec3> PlaceGrid::find(std::size_t wanted) {
     Counts const limit = most();
     std::int64_t const largest = *std::max_element(limit.begin(), limit.end());
     std::vector<Vec3> cells;
-    // The coarsest grid that has room, so that few chains spread over the box and a lone one lies
-    // in its middle.
+    // The coarsest grid with enough room spreads few chains over the box and puts a single chain
+    // into its middle.
     for (std::int64_t n = with_room_for(wanted, smallest_of_use(wanted), limit);
          cells.size() < wanted; n = work_ < patience ? n + 1 : 2 * n) {
         if (!box_ && n > widest && !placed_.empty()) return beside(wanted);
@@ -68,7 +70,8 @@ PlaceGrid::Counts PlaceGrid::most() const {
     return limit;
 }
 
-/// Smaller grids have too few cells or, without a box, lie within one sphere.
+/// Smallest number of cells along an edge that can succeed. Smaller grids have too few cells or,
+/// without a box, lie within one sphere.
 std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
     double n = std::ceil(std::cbrt(static_cast<double>(wanted)) - 1e-9);
     for (std::size_t i = 0; i < placed_.size() && !box_; ++i) {
@@ -76,8 +79,9 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
         double const sum = std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]);
         double const under = sum * sum - 3 * (dot(c, c) - reach_[i] * reach_[i]);
         if (under <= sum * sum) continue;
-        double const half = (std::sqrt(under) - sum) / 3 *
-                            (1 - rounding);  // of a cube whose farthest corner the sphere reaches
+        double const half =
+            (std::sqrt(under) - sum) / 3 *
+            (1 - rounding);  // half the edge of a cube whose farthest corner the sphere reaches
         n = std::max(n, std::floor(2 * half / width_) + 1);
     }
     return static_cast<std::int64_t>(std::min(n, 1e15));
@@ -85,7 +89,7 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
 
 std::vector<Vec3> PlaceGrid::clear_cells(Counts const& n, std::size_t wanted) {
     std::vector<Vec3> cells;
-    if (n[0] == 0 || n[1] == 0) return cells;  // layers and rows without cells may be very many
+    if (n[0] == 0 || n[1] == 0) return cells;  // the number of empty layers and rows may be huge
     for (std::int64_t z = 0; z < n[2] && cells.size() < wanted && work_ <= end_of_patience; ++z)
         add_layer(z, n, wanted, cells);
     return cells;
@@ -103,7 +107,7 @@ void PlaceGrid::add_layer(std::int64_t z, Counts const& n, std::size_t wanted,
             square += farthest * farthest;
         }
         if (std::sqrt(square) < reach_[near.sphere] * (1 - rounding))
-            return;  // it covers the layer
+            return;  // the sphere covers the layer
     }
     for (std::int64_t y = 0; y < n[1] && cells.size() < wanted && work_ <= end_of_patience; ++y)
         add_row(y, z, n, wanted, cells);
@@ -139,8 +143,8 @@ void PlaceGrid::select(std::vector<Near> const& among, double at, int axis,
     }
 }
 
-/// The cells of the row that lie within the sphere whatever rounding does, which leaves one at each
-/// end to the exact test.
+/// Marks the cells of the row that lie within the sphere despite rounding. One cell at each end is
+/// left to the exact test.
 void PlaceGrid::add_surely_full(Near const& near, std::int64_t count) {
     double const reach = reach_[near.sphere],
                  half = std::sqrt(std::max(0.0, reach * reach - near.square)) * (1 - rounding);
@@ -183,7 +187,7 @@ double PlaceGrid::apart(double from, double to, int axis) const {
     return box_ ? difference - (*box_)[axis] * std::round(difference / (*box_)[axis]) : difference;
 }
 
-/// A cubic grid next to the sphere that reaches farthest along x.
+/// Cubic grid next to the sphere that reaches farthest along x.
 std::vector<Vec3> PlaceGrid::beside(std::size_t wanted) const {
     auto const n =
         static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(wanted)) - 1e-9));

@@ -1,4 +1,4 @@
-// Random chains: every joint, physically possible bodies.
+// Implements random chains: all joint types, physically possible bodies.
 #include <cmath>
 
 #include "generate/generators.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 std::array<double, 4> numbers_of(Quat const& q) { return {q.w, q.x, q.y, q.z}; }
 
-/// R diag(J) R^T
+/// Returns R diag(J) R^T with the rotation matrix R of `orientation`.
 Sym3 rotated_inertia(Vec3 const& principal, Quat const& orientation) {
     Mat3 const r = to_matrix(orientation);
     Sym3 j;
@@ -20,12 +20,15 @@ Sym3 rotated_inertia(Vec3 const& principal, Quat const& orientation) {
     return j;
 }
 
+/// Draws an inertia that satisfies the triangle inequality: the principal moments are sums of
+/// second moments.
 Sym3 random_inertia(Draws& draws, RandomChain const& chain, double mass) {
     double const x = chain.inertia.draw(draws), y = chain.inertia.draw(draws),
                  z = chain.inertia.draw(draws);
     return rotated_inertia({{mass * (y + z), mass * (z + x), mass * (x + y)}}, draws.rotation());
 }
 
+/// Joint type of one body; draws a random number only for `mixed`.
 JointType type_of(RandomJoint joint, Draws& draws) {
     static constexpr JointType all[] = {JointType::revolute,  JointType::universal,
                                         JointType::spherical, JointType::prismatic,
@@ -52,14 +55,14 @@ JointType type_of(RandomJoint joint, Draws& draws) {
     return all[static_cast<int>(6 * draws.uniform()) % 6];
 }
 
-/// A number of components in [-1, 1].
+/// Draws `count` components in [-1, 1]; the others are zero.
 Vec3 components(Draws& draws, int count) {
     Vec3 v = Vec3::zero();
     for (int i = 0; i < count; ++i) v[i] = draws.between(-1, 1);
     return v;
 }
 
-/// Axes, coordinates, rates and torques of the bodies.
+/// Draws axes, coordinates, rates and torques of the bodies.
 class RandomJoints {
   public:
     RandomJoints(BodyArrays& bodies, RandomJoint kind) : bodies_(bodies), kind_(kind) {
@@ -92,6 +95,7 @@ class RandomJoints {
         if (rates(joint) == 3 || joint == JointType::weld) return Vec3::zero();
         return kind_ == RandomJoint::planar ? Vec3{{0, 0, 1}} : draws.on_sphere();
     }
+    /// Draws a first axis at least 30 degrees from `axis`.
     static Vec3 across(Draws& draws, Vec3 const& axis) {
         Vec3 first = draws.on_sphere();
         while (norm(cross(first, axis)) < 0.5) first = draws.on_sphere();
@@ -128,6 +132,7 @@ class RandomJoints {
     bool axes_ = false, pitches_ = false;
 };
 
+/// Draws the joint frame, or position and velocity of a free body.
 void random_frame(BodyArrays& bodies, Draws& draws, JointType joint, RandomChain const& chain) {
     if (joint == JointType::free) {
         bodies.free_position = draws.in_cube(1);
@@ -150,10 +155,11 @@ void reserve(std::int64_t n, Array&... arrays) {
     (arrays.reserve(static_cast<std::size_t>(n)), ...);
 }
 
-/// A chain of links as it grows: where the last body's outboard point is and how it moves.
+/// Outboard point of the last body of a growing chain of links, and its velocity.
 struct LinkEnd {
     Vec3 position, velocity;
-    /// Goes along a random link that turns at random; returns its length.
+    /// Advances along a random link with a random angular velocity and returns its length. Without
+    /// a link only the velocity is drawn and 0 returned.
     double step(Draws& draws, RandomChain const& chain, bool linked) {
         double const length = chain.length.draw(draws);
         Vec3 const along = length * draws.on_sphere(), turning = draws.in_cube(1);
@@ -164,7 +170,8 @@ struct LinkEnd {
     }
 };
 
-/// Makes body k of `linked` rigid, its inboard end where `end` is; moves `end` to its outboard end.
+/// Makes body k of `linked` rigid with its inboard end at `end`, then moves `end` to its outboard
+/// end.
 void add_rigid(LinkedArrays& linked, Draws& draws, RandomChain const& chain, LinkEnd& end) {
     linked.inertia.push_back(random_inertia(draws, chain, linked.mass.back()));
     Quat const orientation = draws.rotation();
@@ -184,6 +191,7 @@ void add_rigid(LinkedArrays& linked, Draws& draws, RandomChain const& chain, Lin
     end.velocity = end.velocity + r * cross(omega, outboard);
 }
 
+/// Adds a point bead at `end`.
 void add_bead(LinkedArrays& linked, LinkEnd const& end) {
     linked.inertia.push_back(Sym3::zero());
     linked.position.push_back(end.position);

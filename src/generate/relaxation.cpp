@@ -1,4 +1,5 @@
-// Capped forces under link constraints: what growth left overlapping is pushed apart.
+// Implements relax(): capped forces under link constraints separate the overlaps that growth
+// leaves.
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -11,15 +12,19 @@ namespace catena::scene {
 
 namespace {
 
-double constexpr push_reach =
-    1.02;  // excluded distances: pushing a little further ends in finitely many steps
-double constexpr skin =
-    0.2;  // excluded distances: pairs are listed anew when beads have moved half as far
-double constexpr stiffness = 0.4;  // of an overlap that each bead of a pair gives way in one step
-double constexpr cap = 0.1;  // excluded distances: the furthest that a bead is pushed in one step
+/// Range of the push in excluded distances. A range slightly above 1 lets the relaxation end in
+/// finitely many steps.
+double constexpr push_reach = 1.02;
+/// Skin of the neighbour list in excluded distances. The list is rebuilt when a bead has moved half
+/// as far.
+double constexpr skin = 0.2;
+/// Fraction of an overlap that each bead of a pair moves in one step.
+double constexpr stiffness = 0.4;
+/// Largest displacement of a bead in one step, in excluded distances.
+double constexpr cap = 0.1;
 
-/// Pairs of points that may come within the reach before beads have moved by half the skin; link
-/// neighbours and pairs of points that stand still are left out.
+/// Neighbour list with a skin. It holds the pairs that can come within range before a bead has
+/// moved by half the skin. Link neighbours and pairs of fixed points are left out.
 class Pairs {
   public:
     void list(Crowd const& crowd) {
@@ -44,7 +49,7 @@ class Pairs {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> const& all() const { return pairs_; }
 
   private:
-    /// Points in the order of their cells.
+    /// Sorts the points by their cells.
     void sort(Crowd const& crowd, Images const& images, Cells const& cells) {
         std::size_t const n = crowd.at.size();
         wrapped_.resize(n), order_.resize(n);
@@ -65,11 +70,13 @@ class Pairs {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
 };
 
+/// State of a relaxation: positions, neighbour list and displacements.
 class Relaxation {
   public:
     explicit Relaxation(Crowd& crowd) : crowd_(crowd), images_(crowd.box) { relist(); }
 
-    /// Overlaps as they are, and what pushes them apart.
+    /// Counts the overlaps and computes the displacements that reduce them. Rebuilds the neighbour
+    /// list if needed.
     Relaxed look() {
         if (moved() > 0.5 * skin * crowd_.excluded) relist();
         double const reach = push_reach * crowd_.excluded,
@@ -93,6 +100,7 @@ class Relaxation {
         return found;
     }
 
+    /// Moves the beads, each by at most the cap, and projects the links to their lengths.
     void step() {
         double const furthest = cap * crowd_.excluded;
         for (std::size_t i = 0; i < crowd_.movable(); ++i) {
@@ -113,6 +121,7 @@ class Relaxation {
         pairs_.list(crowd_);
         listed_ = crowd_.at;
     }
+    /// Largest displacement since the neighbour list was built.
     double moved() const {
         double most = 0;
         for (std::size_t i = 0; i < crowd_.movable(); ++i) {

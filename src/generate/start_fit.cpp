@@ -1,3 +1,4 @@
+// Implements the fit of start positions: nearest images, projection of links and notes.
 #include "generate/start_fit.hpp"
 
 #include <fmt/format.h>
@@ -14,13 +15,14 @@ namespace catena::scene {
 
 namespace {
 
-/// Below this, relative to the link, a change is rounding.
+/// Relative change of a link below which it is rounding.
 double constexpr rounding = 1e-9;
-/// Of a distance: pairs that are further apart by less are as near.
+/// Relative difference of distances below which pairs count as equally near.
 double constexpr as_near = 0.01;
-/// Links: beads that are no neighbours overlap below.
+/// Distance in links below which beads that are not neighbours overlap.
 double constexpr overlap = 0.66;
 
+/// Inboard end of link k (from 0): the preceding bead, or the anchor.
 Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {
     return k == 0 ? beads.anchor : beads.position[k - 1];
 }
@@ -33,17 +35,18 @@ std::vector<double> distances_of(StartFit::Chain const& chain) {
     return distances;
 }
 
-/// The two ends of link k.
+/// Names the two ends of link k.
 std::string ends_of(std::size_t k) {
     return k == 0 ? "the anchor and bead 1" : fmt::format("beads {} and {}", k, k + 1);
 }
-/// The same where the link may be the tip's, which comes after the others.
+/// Names the two ends of a link that may be the tip's, whose index is the number of beads.
 std::string ends_of(StartFit::Chain const& chain, std::size_t k) {
     if (k < chain.beads.size()) return ends_of(k);
     return chain.tip->ring ? fmt::format("beads {} and 1", k)
                            : fmt::format("bead {} and the tip's anchor", k);
 }
 
+/// Longest link within half of every edge of the box.
 double longest_uncut(StartFit::Chain const& chain, Vec3 const& edge) {
     double longest = 0;
     for (std::size_t k = first_link(chain.base); k < chain.beads.size(); ++k) {
@@ -55,7 +58,7 @@ double longest_uncut(StartFit::Chain const& chain, Vec3 const& edge) {
     return longest;
 }
 
-/// A chain's beads and domains as units of LinkProjection; of a fixed base the anchor comes first
+/// Beads and domains of a chain as units of LinkProjection. The anchor of a fixed base comes first
 /// and is held.
 class Units {
   public:
@@ -76,7 +79,8 @@ class Units {
         given_ = at_;
     }
 
-    /// Whether the links got their lengths. The beads move with their units.
+    /// Projects the links; returns true if they have their lengths. The beads move with their
+    /// units.
     bool project() {
         double const closing = chain_.tip && chain_.tip->ring ? chain_.tip->length : 0;
         bool const closed =
@@ -101,7 +105,7 @@ class Units {
     StartFit::Chain const& chain_;
     std::vector<Vec3> at_, given_, inboard_, outboard_;
     std::vector<double> length_, mobility_;
-    std::vector<std::size_t> first_;  // bead of each unit that has beads
+    std::vector<std::size_t> first_;  // first bead of each unit
 };
 
 }  // namespace
@@ -111,8 +115,8 @@ void StartFit::make_whole(Chain const& chain, bool as_given) {
     Images const images(*scene_.box);
     double const usual = as_given ? longest_uncut(chain, images.edge()) : 0;
     std::vector<Vec3>& position = chain.beads.position;
-    Vec3 before = chain.base == Base::fixed ? chain.beads.anchor
-                                            : position[0];  // the inboard end as the file has it
+    /// Inboard end as the file has it.
+    Vec3 before = chain.base == Base::fixed ? chain.beads.anchor : position[0];
     Vec3 shift = Vec3::zero();
     std::int64_t cut = 0;
     for (std::size_t k = first_link(chain.base); k < chain.beads.size(); ++k) {
@@ -202,13 +206,13 @@ void StartFit::refuse(Chain const& chain, Change const& worst,
     fail_at(from_, "bead", static_cast<std::int64_t>(named.link) + 1, what, remedy);
 }
 
-/// Of an overlap beside what else is wrong.
+/// Describes an overlap in addition to the error found; empty if there is none.
 std::string StartFit::nearest_text(Chain const& chain) const {
     double const within =
         overlap * *std::max_element(chain.beads.length.begin(), chain.beads.length.end());
     std::vector<Vec3> const& position = chain.beads.position;
-    // Beads next but one bound the search, whose time goes with the pairs that it meets: a table in
-    // another unit has all within a link.
+    // The distance of second neighbours bounds the search, whose time grows with the number of
+    // pairs. In a table in another unit all beads lie within one link.
     double bound = within;
     std::size_t nearest = 0;
     for (std::size_t k = 2; k < position.size(); ++k)
@@ -221,8 +225,8 @@ std::string StartFit::nearest_text(Chain const& chain) const {
     std::optional<NearPair> const near =
         nearest_pair(position, scene_.box, bound * (1 + rounding), counts);
     if (!near) return "";
-    // Where many are as near, as in a hairpin, those in their midst feel more than those at the
-    // ends.
+    // Many pairs may be equally near, as in a hairpin. The overlap of those in its middle is more
+    // typical than that at its ends.
     std::vector<NearPair> pairs;
     for_each_near_pair(position, scene_.box,
                        std::max(near->distance * (1 + as_near), rounding * within),

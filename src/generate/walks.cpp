@@ -1,4 +1,4 @@
-// Beads on links that follow a random walk.
+// Implements the random walks of beads on links.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@ namespace catena::scene {
 
 namespace {
 
-/// Lengths of the links and masses of the beads; entry 0 of a free base has no link.
+/// Draws the lengths of the links and the masses of the beads; entry 0 of a free base has no link.
 BeadArrays drawn_sizes(Walk const& walk) {
     BeadArrays beads;
     auto const n = static_cast<std::size_t>(walk.beads);
@@ -25,7 +25,8 @@ BeadArrays drawn_sizes(Walk const& walk) {
     return beads;
 }
 
-/// A unit vector at the angle acos(`cosine`) to the unit vector `axis`, at `azimuth` about it.
+/// Returns a unit vector at the angle acos(`cosine`) to the unit vector `axis`, at `azimuth` about
+/// it.
 Vec3 tilted(Vec3 const& axis, double cosine, double azimuth) {
     int const least = std::abs(axis[0]) < std::abs(axis[1])
                           ? (std::abs(axis[0]) < std::abs(axis[2]) ? 0 : 2)
@@ -40,13 +41,13 @@ Vec3 tilted(Vec3 const& axis, double cosine, double azimuth) {
     return (1 / norm(direction)) * direction;
 }
 
-/// 1 - cos of an angle with weight exp(kappa cos theta) on the sphere: the distribution's inverse
-/// at `u` in (0, 1).
+/// Returns 1 - cos theta of an angle with weight exp(kappa cos theta) on the sphere. It is the
+/// inverse of the distribution at `u` in (0, 1).
 double versine(double kappa, double u) {
     return kappa < 1e-9 ? 2 * u : -std::log1p(u * std::expm1(-2 * kappa)) / kappa;
 }
 
-/// Puts the beads along `next(k, direction before)`.
+/// Places the beads one by one; `next(k, direction before)` returns the direction of link k.
 template <class Next>
 void follow(BeadArrays& beads, Base base, Next next) {
     Vec3 at = beads.anchor, direction = Vec3::zero();
@@ -65,8 +66,8 @@ double bending_of(double ratio) {
     double const c = std::exp(-ratio), rest = -std::expm1(-ratio);  // rest = 1 - c
     if (c < 1e-3) return 3 * c * (1 + 0.6 * c * c);
     double kappa = c * (3 - c * c) / (rest * (1 + c));
-    // Newton on 1 / kappa - 2 / (exp(2 kappa) - 1) = 1 - c, which keeps its digits where c is
-    // near 1.
+    // Newton's iteration on 1 / kappa - 2 / (exp(2 kappa) - 1) = 1 - c, which keeps its digits for
+    // c near 1.
     for (int i = 0; i < 50; ++i) {
         double const e = std::expm1(2 * kappa), f = 1 / kappa - 2 / e - rest;
         double const slope = -1 / (kappa * kappa) + (std::isinf(e) ? 0 : 4 * (e + 1) / (e * e));
@@ -80,7 +81,7 @@ double bending_of(double ratio) {
 
 BeadArrays freely_jointed(Walk const& walk) {
     BeadArrays beads = drawn_sizes(walk);
-    // Point k of the walk, the anchor included, is drawn from stream k.
+    // Stream k yields point k of the walk, the anchor included.
     std::int64_t const first = walk.base == Base::fixed ? 1 : 0;
     follow(beads, walk.base, [&](std::size_t k, Vec3 const&) {
         return Draws(walk.seed, static_cast<std::int64_t>(k) + first).on_sphere();
@@ -90,7 +91,8 @@ BeadArrays freely_jointed(Walk const& walk) {
 
 BeadArrays worm_like(Walk const& walk, double persistence) {
     BeadArrays beads = drawn_sizes(walk);
-    double mean = 0, kappa = 0;  // of the joint drawn last
+    /// Values of the joint drawn last; equal links share them.
+    double mean = 0, kappa = 0;
     bool first = true;
     follow(beads, walk.base, [&](std::size_t k, Vec3 const& before) {
         Draws draws(walk.seed, static_cast<std::int64_t>(k));

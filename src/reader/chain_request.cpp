@@ -1,3 +1,5 @@
+// Implements the keys that all kinds of chains share: name, anchor, positions and lengths of links.
+// Positions are fitted by StartFit, which notes or refuses large changes.
 #include "reader/chain_request.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ namespace catena::scene {
 
 namespace {
 
-/// PDB files, and those that its reader refuses by name.
+/// True for the extensions of PDB files and of formats that the PDB reader refuses by name.
 bool is_structure(std::string const& path) {
     std::string kind = std::filesystem::path(path).extension().string();
     std::transform(kind.begin(), kind.end(), kind.begin(),
@@ -27,8 +29,8 @@ bool is_structure(std::string const& path) {
     return kind == ".pdb" || kind == ".ent" || kind == ".cif" || kind == ".mmcif";
 }
 
-/// Amino acids of the file, by their parents, that are not those of the chain. 0 where the numbers
-/// differ, which is refused elsewhere.
+/// Number of amino acids in the file whose parent differs from the chain's residue. Returns 0 if
+/// the numbers of residues differ, which is refused elsewhere.
 std::size_t other_residues(PdbSites const& from, std::vector<std::string> const& residues) {
     std::size_t others = 0;
     for (std::size_t k = 0; from.sites.size() == residues.size() && k < residues.size(); ++k) {
@@ -38,7 +40,7 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
     return others;
 }
 
-/// Whether the file counts its residues from 1 on, or not at all.
+/// True if the file numbers its residues from 1 on, or not at all.
 bool counts_from_one(PdbSites const& from) {
     for (std::size_t k = 0; k < from.sites.size(); ++k)
         if (from.sites[k].number && from.sites[k].label != std::to_string(k + 1)) return false;
@@ -54,7 +56,7 @@ void ChainRequest::allow(char const* kind, Names keys) const {
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
     }
-    links_as_given();  // checks the word even where no positions are given
+    links_as_given();  // checks the value even if no positions are given
     Node const* const ground = fields.find("anchor");
     if (ground && base == Base::free)
         fail(*ground, "an anchor without a fixed base",
@@ -73,7 +75,7 @@ bool ChainRequest::links_as_given() const {
 
 calvados2::ChargedTermini ChainRequest::termini() const {
     if (Node const* const here = fields.find("charge_termini")) return read_charged_termini(*here);
-    // The entry of all chains comes first: those of chains before this one are not looked through.
+    // The entry for all chains is the first one. Entries of preceding chains need no search.
     bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() &&
                       scene.forces.openmm->map.front().first.empty();
     if (!said) return {};
@@ -83,12 +85,13 @@ calvados2::ChargedTermini ChainRequest::termini() const {
 
 void ChainRequest::set_lengths(BeadArrays& beads) const {
     if (system == nullptr || links_as_given()) return;
+    // Each longer or shorter link shifts all beads after it.
     Vec3 shift = Vec3::zero();
     for (std::size_t k = 1; k < beads.size(); ++k) {
         double const length = system->length(particle + static_cast<std::int64_t>(k)),
                      before = beads.length[k];
         if (length > 0 && length != before) {
-            Vec3 const inboard = beads.position[k - 1] - shift;  // where it was
+            Vec3 const inboard = beads.position[k - 1] - shift;  // position before its shift
             shift = plus_scaled(shift, length / before - 1, beads.position[k] - inboard);
             beads.length[k] = length;
         }
@@ -146,11 +149,13 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
     StartFit fit(scene, from, "give positions of this model, or write `links: as_given`",
                  largest_change_of(spread), system ? largest_relaxed_change : 0);
     StartFit::Chain const chain{name(), beads, base, rigid};
+    // The chain is made whole first, so that distances of neighbours are those along its links.
     fit.make_whole(chain, links_as_given());
     refuse_coincident(beads, from);
     if (links_as_given()) {
         take_lengths(beads, base);
     } else {
+        // Links within rigid domains keep the distances of the file.
         for (Domain const& domain : rigid)
             for (std::size_t k = domain.first + 1; k <= domain.last; ++k)
                 beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);

@@ -1,4 +1,4 @@
-// What every kind of chain asks of its entry in `chains:`.
+// The part of an entry in `chains:` that is common to all kinds of chains.
 #pragma once
 
 #include <cstdint>
@@ -13,44 +13,56 @@
 
 namespace catena::scene {
 
+/// The scene's System, see system_links.hpp.
 class WrittenSystem;
 
+/// One entry of `chains` with its context; the readers of each kind of chain share it.
 struct ChainRequest {
+    /// The entry as a map of known keys.
     Fields fields;
+    /// The entry as a node, for messages.
     Node const& node;
-    std::size_t index;  // in `chains`, from 0
-    Scene& scene;       // everything but the chains; readers add notes
+    std::size_t index;  // index in `chains`, from 0
+    Scene& scene;       // all sections except the chains; readers add notes
     Base base = Base::free;
-    std::vector<Domain> rigid = {};          // ascending; of a chain of residues
-    std::vector<std::string> residues = {};  // three-letter names, of a chain of residues
-    WrittenSystem const* system = nullptr;   // that the scene names beside its chains
-    std::int64_t particle = 0;               // of the first bead in it
+    /// Rigid domains of a chain of residues, ascending.
+    std::vector<Domain> rigid = {};
+    /// Three-letter names of a chain of residues.
+    std::vector<std::string> residues = {};
+    /// System that the scene names together with written chains, or nullptr.
+    WrittenSystem const* system = nullptr;
+    /// Number of the chain's first bead in that System.
+    std::int64_t particle = 0;
 
-    /// Refuses those of `record, model, positions, links, anchor, conformation, rigid` that are not
-    /// in `keys`: they mean nothing for this kind of chain.
+    /// Throws InputError for keys without meaning for this kind of chain: those of `record, model,
+    /// positions, links, anchor, conformation, rigid, charge_termini` that are not in `keys`.
+    /// Refuses an anchor without a fixed base, too.
     void allow(char const* kind, Names keys) const;
-    /// Origin where none is given.
+    /// Ground point of a fixed base; the origin by default.
     Vec3 anchor() const;
-    /// As written, else by its number.
+    /// Name as written, or "chain-N" with the entry's number N from 1.
     std::string name() const;
+    /// True for `links: as_given`: links take their lengths from the positions.
     bool links_as_given() const;
-    /// The chain's `charge_termini`, else what the scene says of all.
+    /// Value of the chain's `charge_termini`, by default that of the whole scene.
     calvados2::ChargedTermini termini() const;
-    /// Gives links the lengths of the System that the scene names, where it joins the two beads,
-    /// and moves the beads to these.
+    /// Sets the lengths of links from the System if it joins the two beads, and moves the beads
+    /// accordingly. Does nothing without a System or with `links: as_given`.
     void set_lengths(BeadArrays& beads) const;
-    /// The scene's seed, told apart by chain and copy.
+    /// Seed of one copy of this chain; each chain and copy has its own stream of the scene's seed.
     std::uint64_t seed(std::int64_t copy) const;
 
-    /// Positions from the table or PDB file that `file` names: one a bead.
+    /// Reads positions, nm, from the table or PDB file that `file` names. Throws InputError unless
+    /// there is one position per bead.
     std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
-    /// Puts the beads at `positions`, which `from` gave, whole across the periodic box, and fits
+    /// Places the beads at `positions`, read from `from`, whole across the periodic box. Then fits
     /// positions to lengths or, with `links: as_given`, lengths to positions (StartFit). Rigid
     /// domains keep their shape.
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
-    /// InputError when two neighbours coincide.
+    /// Throws InputError if two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;
-    /// Positions of the sites of a PDB file; a note where its residues are not the chain's.
+    /// Returns the positions of the sites of a PDB file. Notes residues that differ from the
+    /// chain's.
     std::vector<Vec3> from_structure(std::string const& path, Node const& file) const;
 };
 

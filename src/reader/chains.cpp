@@ -1,3 +1,7 @@
+// Implements the reader of chain entries. An entry names one source of its bodies: a sequence, a
+// FASTA or PDB file, a list or file of bodies, or a generator. Each copy is made from that source,
+// joined to its tip, and given the kind of its start velocities. Places of movable chains follow
+// later (placement.hpp).
 #include "reader/chains.hpp"
 
 #include <fmt/format.h>
@@ -27,13 +31,15 @@ namespace catena::scene {
 
 namespace {
 
+/// The entry with all keys that a chain may have.
 Fields chain_fields(Node const& entry) {
     return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies",
                           "generator", "model", "positions", "links", "base", "tip", "anchor",
                           "conformation", "rigid", "charge_termini", "velocities"});
 }
 
-/// The one key that says what the chain is made of.
+/// Returns the single key that defines the bodies of the chain. Throws InputError for none or
+/// several.
 Node const& source_of(Fields const& fields) {
     Node const* source = nullptr;
     for (char const* const key : {"sequence", "fasta", "pdb", "bodies", "generator"}) {
@@ -49,13 +55,14 @@ Node const& source_of(Fields const& fields) {
     return *source;
 }
 
+/// Base of the chain as written, or the default of its source.
 Base base_of(Fields const& fields, Node const& source) {
     if (Node const* const base = fields.find("base"))
         return choice<Base>(*base, {{"free", Base::free}, {"fixed", Base::fixed}});
     return stands_fixed(source) ? Base::fixed : Base::free;
 }
 
-/// Joints that are written `planar` promise parallel axes.
+/// Throws InputError unless all axes of a chain with `planar` joints are parallel.
 void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& planar) {
     std::size_t odd = 0;
     if (axes_are_parallel(chain, odd)) return;
@@ -68,8 +75,8 @@ void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& p
          "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
-/// Beads written one by one: lengths as written, else (and with `links: as_given`) as the positions
-/// say. Whether velocities are written.
+/// Reads beads written one by one. Links have the written lengths, or those of the positions if no
+/// length is written or with `links: as_given`. Returns true if velocities are written.
 bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays& beads) {
     request.allow("beads written one by one", {"links", "anchor"});
     ExplicitBeads made = read_beads(source, request.base);
@@ -93,7 +100,7 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     return made.velocities;
 }
 
-/// Bodies on links that the sides of the box cut.
+/// Notes the links of rigid bodies that the sides of the box cut, and those that may be cut.
 void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
     if (made.doubtful > 0)
         request.scene.note(
@@ -109,8 +116,10 @@ void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
                     shown(request.name()), made.cut_links == 1 ? "is" : "are", made.first_cut));
 }
 
+/// Reads one entry and makes its copies.
 class ChainReader {
   public:
+    /// Reads what all copies share: base, tip, count and generator.
     ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm,
                 WrittenSystem const* system)
         : request_{chain_fields(entry), entry, index, scene},
@@ -123,12 +132,16 @@ class ChainReader {
         if (source_.key == "generator") generator_.emplace(request_, source_);
     }
 
+    /// Makes all copies and appends them. Copies that do not differ are copied from the first, not
+    /// read again.
     void append_to(std::vector<Draft>& drafts) {
         std::string const name = request_.name();
         if (printable(name) != name)
             fail(*request_.fields.find("name"),
                  "the name has control characters or bytes that are not UTF-8",
                  "give printable UTF-8");
+        // The memory of generated chains is checked before they are made, that of others after the
+        // first copy.
         double const before = drafts.empty() ? 0 : drafts.back().bytes;
         if (generator_) with_copies(before, generator_->size(), generator_->is_beads());
         std::int64_t const next =
@@ -144,6 +157,7 @@ class ChainReader {
         bool const free_to_move = movable(first);
         Regrowth const shape = regrown(first);
         std::size_t const wanted = drafts.size() + static_cast<std::size_t>(count_);
+        // The capacity grows by a factor, so that many entries do not copy the drafts each time.
         if (wanted > drafts.capacity()) drafts.reserve(std::max(wanted, 2 * drafts.capacity()));
         std::size_t const at = drafts.size();
         first.name = count_ == 1 ? name : name + "-1";
@@ -162,8 +176,8 @@ class ChainReader {
     }
 
   private:
-    /// Of the chain that is made next: its place in the System, and its charged ends where it says
-    /// them.
+    /// Sets the next chain's first particle in the System, and its charged ends if they are
+    /// written.
     void prepare(std::string const& name, std::int64_t next) {
         OpenMmSpec* const openmm =
             request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
@@ -172,6 +186,7 @@ class ChainReader {
             openmm->map.push_back({name, as_numbers(request_.termini())});
     }
 
+    /// Makes one copy with its tip and the kind of its start velocities.
     ChainSpec make(std::int64_t copy) {
         ChainSpec chain;
         chain.base = request_.base;
@@ -183,6 +198,7 @@ class ChainReader {
         } else if (source_.key != "bodies") {
             chain.beads = read_sequence(request_, copy);
             velocities = false;
+            // Rigid domains become bodies; the other beads stay points.
             if (!request_.rigid.empty()) {
                 chain.linked =
                     with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
@@ -216,6 +232,8 @@ class ChainReader {
         return chain;
     }
 
+    /// Sets the kind of start velocities and clears the given ones if they are not used. `given` is
+    /// true if the source has velocities.
     void set_velocities(ChainSpec& chain, bool given) const {
         chain.velocities = given   ? StartVelocities::given
                            : warm_ ? StartVelocities::thermal
@@ -232,25 +250,29 @@ class ChainReader {
         std::fill(chain.linked.omega.begin(), chain.linked.omega.end(), Vec3::zero());
     }
 
-    /// Whether copies differ from each other.
+    /// True if copies differ from each other.
     bool is_random() const {
         Node const* const conformation = request_.fields.find("conformation");
         return (generator_ && generator_->is_random()) ||
                (conformation && conformation->text == "self_avoiding");
     }
+    /// True if the scene gives no place for the chain: several copies, or a free chain without
+    /// positions.
     bool movable(ChainSpec const& chain) const {
         if (count_ > 1) return true;
         return is_free(chain) && source_.key != "bodies" && !is_given();
     }
+    /// True for a chain of beads that nothing attaches to the ground.
     bool is_free(ChainSpec const& chain) const {
         return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free;
     }
-    /// Whether a file says where the beads are.
+    /// True if a file gives the positions of the beads.
     bool is_given() const {
         Node const* const conformation = request_.fields.find("conformation");
         return request_.fields.find("positions") || source_.key == "pdb" ||
                (conformation && conformation->kind == Node::Kind::map);
     }
+    /// Permission to regrow the chain, see Regrowth.
     Regrowth regrown(ChainSpec const& chain) const {
         if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta"))
             return Regrowth::no;
@@ -259,7 +281,8 @@ class ChainReader {
             conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
         return any_shape ? Regrowth::yes : Regrowth::if_asked;
     }
-    /// Bytes that the chains take with this entry's. What cannot fit is refused before it is tried.
+    /// Estimates the memory, bytes, of all chains up to this entry's. Throws InputError before
+    /// chains are made that cannot fit.
     double with_copies(double before, std::int64_t size, bool beads) const {
         double const bytes =
             before + ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) *
@@ -274,12 +297,17 @@ class ChainReader {
         return bytes;
     }
 
+    /// Entry with its context; its members change from copy to copy.
     ChainRequest request_;
     Node const& source_;
+    /// True if chains without velocities start thermal.
     bool warm_;
+    /// Tip of all copies.
     ReadTip tip_;
+    /// Number of copies.
     std::int64_t count_ = 1;
-    std::optional<GeneratorEntry> generator_;  // refers to request_: a reader is never moved
+    /// Generator of the chain, if any. It refers to request_; a reader therefore must not be moved.
+    std::optional<GeneratorEntry> generator_;
 };
 
 }  // namespace

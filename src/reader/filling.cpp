@@ -1,3 +1,5 @@
+// Implements the filling of slabs and droplets. The region is treated as a periodic box of its own
+// size, which also keeps chains apart across its sides.
 #include "reader/filling.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +13,8 @@ namespace catena::scene {
 
 namespace {
 
-/// By whole edges of the region, so that the chain's centre is in the middle of the box as far as
-/// they allow.
+/// Moves a chain by whole edges of the region. Its centre then lies in the region in the middle of
+/// the box.
 void bring_in(std::vector<Vec3>& positions, Vec3 const& box, Vec3 const& fill) {
     Vec3 centre = Vec3::zero(), shift;
     for (Vec3 const& position : positions) centre = centre + position;
@@ -50,6 +52,7 @@ void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, 
                     "`fill` is for free chains of beads without positions, which chain `{}` is not",
                     shown(draft.chain.name)),
                 "leave `fill` out, or let the scene place every chain");
+    // The region is packed as a periodic box of its own, then its chains are moved into the middle.
     give_places(drafts, fill, seed, "the region to fill");
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);
 }

@@ -1,3 +1,5 @@
+// Implements the notes on forces. Thresholds are physical: solubility of salts, range of measured
+// permittivities, steps of models with one bead per residue.
 #include "reader/force_notes.hpp"
 
 #include <fmt/format.h>
@@ -8,11 +10,15 @@ namespace catena::scene {
 
 namespace {
 
-double constexpr most_salt = 10;       // mol/l: saturated brine has 6
-double constexpr coldest_water = 273;  // K, of the measurements behind the permittivity
+/// Largest plausible ionic strength, mol/l; saturated brine has 6.
+double constexpr most_salt = 10;
+/// Lowest temperature of the measurements behind the permittivity, K.
+double constexpr coldest_water = 273;
+/// Relative difference below which temperatures count as equal.
 double constexpr same_temperature = 1e-9;
 
-double constexpr longest_usual_step = 0.2;  // ps, of residues with a friction of their own
+/// Longest plausible step, ps, of residues with friction.
+double constexpr longest_usual_step = 0.2;
 
 }  // namespace
 

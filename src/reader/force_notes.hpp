@@ -1,15 +1,16 @@
-// What is doubtful about the forces that a scene asks for.
+// Notes on doubtful settings of forces. The values are used as written; a note tells the user what
+// is unusual about them.
 #pragma once
 
 #include "scene/scene.hpp"
 
 namespace catena::scene {
 
-/// Notes a force field's temperature that is not the run's, an ionic strength or a pH that no
-/// solution has, a step in the wrong unit, and water outside its permittivity's measurements.
-/// Everything but the chains must have been read.
+/// Notes a temperature of the force field that differs from the run's, and implausible ionic
+/// strength, pH or step. Water outside the range of measured permittivity is noted, too.
+/// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
-/// Notes a box that the forces of the scene's System leave out.
+/// Notes a box that the forces of the scene's System do not use.
 void note_box_that_no_force_knows(Scene&, bool system_is_periodic);
 
 }  // namespace catena::scene

@@ -1,3 +1,6 @@
+// Implements the check for gaps between residues. Three criteria decide: the distance of the alpha
+// carbons, the peptide bond if the file has its atoms, and the residue numbers. A distance that
+// fits a bond of the scene's System is accepted, too.
 #include "reader/gaps.hpp"
 
 #include <fmt/format.h>
@@ -13,24 +16,31 @@ namespace catena::scene {
 
 namespace {
 
-/// Alpha carbons of neighbours are 0.38 nm apart, 0.29 nm across a cis peptide bond. Frames of
-/// models with springs in the links' place (CALVADOS: 8033 kJ/mol/nm2) spread by 0.018 nm. Across
-/// one missing residue it is 0.5 nm and more in proteins.
+/// Smallest plausible distance of neighbours, nm. Alpha carbons of neighbours are 0.38 nm apart,
+/// 0.29 nm across a cis peptide bond. Frames of models with springs in place of links (CALVADOS:
+/// 8033 kJ/mol/nm2) have a spread of 0.018 nm. The distance across one missing residue is at least
+/// 0.5 nm in proteins.
 constexpr double least_distance = 0.25;
-constexpr double largest_distance =
-    0.46;  // nm, of residues with consecutive numbers: 4.5 standard deviations
-constexpr double largest_where_numbers_skip = 0.42;  // nm
-/// Carbonyl carbon to the next nitrogen: a peptide bond has 0.133 nm.
+/// Largest distance of residues with consecutive numbers, nm: 4.5 standard deviations above 0.38
+/// nm.
+constexpr double largest_distance = 0.46;
+/// Largest distance of residues whose numbers skip, nm.
+constexpr double largest_where_numbers_skip = 0.42;
+/// Largest length of a peptide bond (carbonyl carbon to the next nitrogen), nm; its usual length is
+/// 0.133 nm.
 constexpr double largest_peptide_bond = 0.2;
 
+/// Distance of the nearest images, nm; the plain distance without a box.
 double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const& box) {
     Vec3 way = b - a;
     for (int i = 0; box && i < 3; ++i) way[i] -= (*box)[i] * std::round(way[i] / (*box)[i]);
     return norm(way);
 }
 
+/// Checks pairs of neighbours and collects notes.
 class Neighbours {
   public:
+    /// Checks for the residues of one file; `at` is the key in messages.
     Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at)
         : from_(from), request_(request), at_(at) {
         if (request.system)
@@ -38,8 +48,9 @@ class Neighbours {
                 request.system->largest_spread(request.particle, std::ssize(from.sites)));
     }
 
-    /// Neighbours in the chain, `b` its bead k from 0.
+    /// Checks two neighbours in the chain; `b` is its bead k (from 0).
     void check(PdbSite const& a, PdbSite const& b, std::size_t k) {
+        // Numbers may restart after 9999 in files without a fifth digit.
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped =
             a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
@@ -50,14 +61,15 @@ class Neighbours {
         bool const bonded = peptide <= largest_peptide_bond,
                    seen = bonded && a.carbonyl && b.nitrogen;
         bool const near = apart <= (skips && !seen ? largest_where_numbers_skip : largest_distance);
-        // Fusions bear the numbers of their parts: there the peptide bond says that they are
-        // neighbours.
+        // Fusion proteins keep the numbers of their parts. There the peptide bond proves that the
+        // residues are neighbours.
         if (falls && !(seen && near)) refuse_order(a, b);
         if ((near && bonded && apart >= least_distance) || fits_system(k, apart))
             return count(a, b, skips);
         if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
     }
+    /// Notes the skips and gaps that were accepted.
     void note() const {
         if (skips_ > 0)
             request_.scene.note(
@@ -73,7 +85,8 @@ class Neighbours {
     }
 
   private:
-    /// OpenMM goes on from 9999 with A000 in base 16, where hybrid-36 has base 36.
+    /// True if OpenMM's numbers follow each other: it continues after 9999 with A000 in base 16,
+    /// whereas hybrid-36 has base 36.
     static bool follows_in_hex(std::string const& a, std::string const& b) {
         unsigned from = 0, to = 0;
         auto const read = [](std::string const& text, unsigned& value) {
@@ -83,7 +96,8 @@ class Neighbours {
         };
         return !a.empty() && !b.empty() && read(a, from) && read(b, to) && to == from + 1;
     }
-    /// Where a System is at hand, its bond between the two knows more than residues do.
+    /// True if the distance fits the System's bond between the two beads, which is more specific
+    /// than the residues.
     bool fits_system(std::size_t k, double apart) const {
         if (!request_.system) return false;
         double const length =
@@ -93,22 +107,24 @@ class Neighbours {
                    (request_.scene.relax ? largest_relaxed_change : most_) * length;
         return apart <= length &&
                (request_.scene.relax ||
-                length - apart <= most_ * length);  // false where nothing joins them: NaN
+                length - apart <= most_ * length);  // false for NaN: nothing joins the beads
     }
     static std::string times(int n) { return n == 1 ? "once" : fmt::format("{} times", n); }
 
+    /// Counts a pair whose numbers skip.
     void count(PdbSite const& a, PdbSite const& b, bool skips) {
         if (skips && skips_++ == 0) first_skip_ = fmt::format("{} to {}", a.label, b.label);
     }
-    /// By the nearest image where the scene has a box.
+    /// Distance, nm, of the nearest images if the scene has a box.
     double distance(Vec3 const& a, Vec3 const& b) const {
         return nearest_distance(a, b, request_.scene.box);
     }
-    /// Whether the chain has no gap in the cell that the file names and the scene does not.
+    /// True if the gap vanishes in the file's own cell, which the scene does not give as its box.
     bool is_wrapped(PdbSite const& a, PdbSite const& b) const {
         return from_.cell && !request_.scene.box &&
                nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
     }
+    /// Throws InputError for residues whose numbers decrease.
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
         fail(at_,
              fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue,
@@ -116,6 +132,8 @@ class Neighbours {
              "sort the residues by their numbers, number them along the chain, or keep one chain "
              "per file");
     }
+    /// Throws InputError with the most likely reason: too close, wrapped into the file's cell, or a
+    /// gap. `peptide` is the length of a broken peptide bond, nm, or 0.
     [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart,
                              double peptide) const {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label,
@@ -143,7 +161,9 @@ class Neighbours {
     PdbSites const& from_;
     ChainRequest const& request_;
     Node const& at_;
-    double most_ = 0;  // largest change of a link of the System's, relative
+    /// Largest relative change of a link of the System.
+    double most_ = 0;
+    /// Numbers of accepted skips and gaps, and the first of each.
     int skips_ = 0, gaps_ = 0;
     std::string first_skip_, first_gap_;
 };

@@ -1,3 +1,5 @@
+// Implements the readers of the parameters of each generator. The names of generators and
+// parameters are those in inputs/keys/generators.md.
 #include "reader/generator_entry.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Returns the single generator of the entry; throws InputError for several.
 Node const& single_entry(Node const& node) {
     Fields const kinds(node, {"random", "pendulum", "coil", "dill", "elastic_rod", "polygon",
                               "freely_jointed", "worm_like"});
@@ -18,14 +21,17 @@ Node const& single_entry(Node const& node) {
     return *kinds.find(node.items[0].key);
 }
 
+/// Reads an optional distribution.
 void take(Fields const& fields, char const* key, Distribution& value) {
     if (Node const* const node = fields.find(key)) value = read_distribution(*node);
 }
 
+/// Reads an optional number.
 void take(Fields const& fields, char const* key, double& value) {
     if (Node const* const node = fields.find(key)) value = number(*node);
 }
 
+/// Reads the joint type of a random chain.
 RandomJoint random_joint(Node const& node) {
     return choice<RandomJoint>(node, {{"link", RandomJoint::link},
                                       {"planar", RandomJoint::planar},
@@ -58,6 +64,7 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
         read_rods();
 }
 
+// Random bodies and joints; `rigid` mixes rigid bodies into chains of links.
 void GeneratorEntry::read_random() {
     Fields const fields(entry_,
                         {"bodies", "joint", "rigid", "mass", "length", "inertia", "seed", "loads"});
@@ -84,6 +91,7 @@ void GeneratorEntry::read_random() {
     velocities_ = true;
 }
 
+// Rods on revolute joints: pendulum, coil and dill.
 void GeneratorEntry::read_rods() {
     bool const swinging = entry_.key == "pendulum", dill = entry_.key == "dill";
     char const* const count = swinging ? "links" : "bodies";
@@ -116,6 +124,7 @@ void GeneratorEntry::read_rods() {
              "give a number above 0, at most 1");
 }
 
+// Random walks of beads; `positions` may replace the walk.
 void GeneratorEntry::read_walk() {
     bool const worm = entry_.key == "worm_like";
     char const* const count = worm ? "bodies" : "beads";
@@ -133,6 +142,7 @@ void GeneratorEntry::read_walk() {
     walk.anchor = request_.anchor();
 }
 
+// Regular polygons, to be closed by a tip.
 void GeneratorEntry::read_polygon() {
     Fields const fields(entry_, {"bodies", "joint", "mass", "length", "radius", "spin"});
     Polygon& shape = polygon_.emplace();
@@ -158,6 +168,7 @@ void GeneratorEntry::read_polygon() {
     request_.allow("generator `polygon`", {});
 }
 
+// Elastic rods in thermal equilibrium; rods longer than ten persistence lengths are refused.
 void GeneratorEntry::read_elastic_rod() {
     Fields const fields(entry_, {"bodies", "mass", "length", "radius", "bend", "twist", "seed"});
     ElasticRod& rod = elastic_.emplace();
@@ -184,7 +195,8 @@ void GeneratorEntry::read_elastic_rod() {
 }
 
 std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
-    // A seed of its own makes the same chain wherever the entry stands in the scene.
+    // The key `seed` of a generator yields the same chain at any position of the entry in the
+    // scene.
     Node const* const own = entry_.find("seed");
     return own ? seed_of_stream(seed64(*own), static_cast<std::uint64_t>(copy))
                : request_.seed(copy);

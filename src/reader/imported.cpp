@@ -1,3 +1,5 @@
+// Implements the import of chains. Names, residues and positions are those of the topology; masses
+// and lengths are those of the System.
 #include "reader/imported.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +16,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Makes a draft of an imported chain and fits its positions to the lengths of its links.
 Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fit) {
     Draft draft;
     draft.node = &openmm;

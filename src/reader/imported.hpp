@@ -1,4 +1,4 @@
-// Chains that the scene does not write down because OpenMM's System and its topology have them.
+// Import of chains from OpenMM's System and its topology, for scenes without `chains`.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace catena::scene {
 
-/// One free chain of beads for each chain of `forces.openmm.topology`: masses and link lengths from
-/// the System, positions from the topology projected to these lengths, at rest or, when `warm`,
-/// thermal. Sets the scene's box to the System's where the scene gives none and some force is
-/// periodic. Precondition: the scene has a system. Throws InputError.
+/// Makes one free chain of beads for each chain of `forces.openmm.topology`. Masses and link
+/// lengths are those of the System; positions are those of the topology, projected to these
+/// lengths. Chains start at rest or, if `warm`, thermal. Without a box in the scene, sets it to the
+/// System's if a force is periodic. Precondition: the scene has a system. Throws InputError.
 std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm);
 
 }  // namespace catena::scene

@@ -1,3 +1,6 @@
+// Implements the reader of linked bodies. Positions in the file are those of the bodies' origins;
+// the arrays hold centres of mass. Bodies are read in the order of the chain, so that each link
+// starts at a body that has its final place.
 #include "reader/linked.hpp"
 
 #include <fmt/format.h>
@@ -15,16 +18,19 @@ namespace catena::scene {
 
 namespace {
 
-/// Largest relative difference of a length that is given from the distance at the start.
+/// Largest relative difference of a given length from the distance at the start.
 double constexpr length_tolerance = 1e-9;
 
+/// Adds bodies one by one to a linked chain.
 class LinkedReader {
   public:
+    /// Reader for a chain with this base; without a box no link can be cut.
     LinkedReader(Base base, Vec3 const& anchor, std::optional<Vec3> const& box) : base_(base) {
         made_.linked.anchor = anchor;
         if (box) images_.emplace(*box);
     }
 
+    /// Adds the next body or bead with its inboard link.
     void add(Node const& item) {
         bool const bead = !item.find("inertia");
         if (bead)
@@ -47,12 +53,14 @@ class LinkedReader {
         add_link(body);
     }
 
+    /// Moves the result out.
     ExplicitLinked take() {
         linked_.carried = carried_.take();
         return std::move(made_);
     }
 
   private:
+    /// Adds the properties of a point bead.
     void add_bead(Fields const& body) {
         linked_.inertia.push_back(Sym3::zero());
         linked_.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
@@ -64,6 +72,8 @@ class LinkedReader {
         carried_.close();
     }
 
+    /// Adds the properties of a rigid body. The file measures from the body's origin, the arrays
+    /// from the centre of mass.
     void add_rigid(Fields const& body) {
         if (Node const* const residue = body.find("residue"))
             fail(*residue, "key `residue` means nothing for a rigid body",
@@ -83,14 +93,16 @@ class LinkedReader {
         carried_.add(body.find("beads"), com);
     }
 
+    /// Position in W of a point given from the centre of mass of body k, in its axes.
     Vec3 at(std::size_t k, Vec3 const& point) const {
         auto const& q = linked_.orientation[k];
         return linked_.position[k] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * point;
     }
 
-    /// The link on the body's inboard side, which also says where the body before ends.
+    /// Adds the body's inboard link, which also sets the outboard end of the preceding body.
     void add_link(Fields const& body) {
         std::size_t const k = linked_.mass.size() - 1;
+        // The next link starts where this one ends, unless its `translation` says otherwise.
         linked_.outboard.push_back(linked_.inboard[k]);
         bool const none = k == 0 && base_ == Base::free;
         Node const* const node =
@@ -110,19 +122,21 @@ class LinkedReader {
         linked_.length.push_back(none ? 0 : measured(body.node(), length, k));
     }
 
+    /// Start of the inboard link of body k, W.
     Vec3 start_of_link(std::size_t k) const {
         return k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]);
     }
 
+    /// Length of the longest link so far.
     double longest_so_far() const {
         return linked_.length.empty()
                    ? 0
                    : *std::max_element(linked_.length.begin(), linked_.length.end());
     }
 
-    /// Moves the body by whole edges of the box where the link's nearest image fits its length
-    /// better; without one, where it is half as long, or shorter and not much longer than the links
-    /// before.
+    /// Moves the body by whole edges of the box if the link's nearest image fits its length better.
+    /// Without a length the image must be half as long, or shorter and not much longer than the
+    /// preceding links.
     void make_whole(Node const* given, std::size_t k) {
         if (!images_) return;
         Vec3 const link = at(k, linked_.inboard[k]) - start_of_link(k),
@@ -142,6 +156,7 @@ class LinkedReader {
         if (made_.cut_links++ == 0) made_.first_cut = static_cast<std::int64_t>(k) + 1;
     }
 
+    /// Sets the start of the link in the preceding body, given from that body's origin.
     void start_link(Node const& translation, std::size_t k) {
         if (k == 0)
             fail(translation, "a translation for link 1, which starts at the ground",
@@ -153,11 +168,13 @@ class LinkedReader {
         linked_.outboard[k - 1] = vector3(translation) + linked_.inboard[k - 1];
     }
 
+    /// Returns the link's length. Throws InputError if its ends coincide or a given length does not
+    /// fit.
     double measured(Node const& body, Node const* given, std::size_t k) const {
         Vec3 const from = start_of_link(k), to = at(k, linked_.inboard[k]);
         double const distance = norm(to - from);
-        // Positions carry half a unit in their last place: a link shorter than some of these has no
-        // direction.
+        // Positions are rounded to half a unit in their last place. A link shorter than a few of
+        // these units has no direction.
         if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(to))))
             fail(body, fmt::format("the ends of link {} coincide: it has no direction", k + 1),
                  "move one of its bodies");
@@ -174,9 +191,12 @@ class LinkedReader {
     Base base_;
     ExplicitLinked made_;
     LinkedArrays& linked_ = made_.linked;
+    /// Beads of all bodies so far.
     CarriedList carried_;
-    std::optional<Images> images_;  // of the periodic box
-    Vec3 shift_ = Vec3::zero();     // of bodies from here on
+    /// Images in the periodic box, if any.
+    std::optional<Images> images_;
+    /// Whole edges by which this and all further bodies are moved.
+    Vec3 shift_ = Vec3::zero();
 };
 
 }  // namespace

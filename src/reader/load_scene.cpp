@@ -1,3 +1,7 @@
+// Implements the order in which a scene is read. Overrides are applied to the tree first. The
+// sections follow, because chains depend on units, box, forces and dynamics. The chains are then
+// read as drafts and checked together. Movable drafts receive their places last, and the
+// fingerprint covers the result.
 #include "reader/load_scene.hpp"
 
 #include <filesystem>
@@ -30,7 +34,7 @@ namespace {
 using scene::Fields;
 using scene::Node;
 
-/// Everything but the chains.
+/// Reads all sections except the chains.
 Scene read_frame(Fields const& fields, std::string const& name) {
     Scene made;
     made.file = name;
@@ -56,9 +60,10 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     return made;
 }
 
-/// Chains of the scene or, where it writes none, of the System it names.
+/// Reads the chains of the scene or, if it has none, those of the System that it names.
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     Node const* const dynamics = fields.find("dynamics");
+    // A temperature that is only the default does not make chains thermal, except under g-BAOAB.
     bool const warm =
         dynamics && frame.dynamics.temperature > 0 &&
         (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
@@ -73,10 +78,12 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     std::vector<scene::Draft> drafts;
     for (std::size_t i = 0; i < chains.items.size(); ++i)
         scene::read_chain(chains.items[i], i, frame, warm, system ? &*system : nullptr, drafts);
+    // Soft bonds are judged when all chains are known, for one note on all of them.
     if (system) system->judge(drafts, frame);
     return drafts;
 }
 
+/// Gives places to movable chains, in the region of `fill` or in the whole box.
 void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene const& frame) {
     Node const* const box = fields.find("box");
     if (std::optional<Vec3> const fill = box ? scene::read_fill(*box) : std::nullopt)
@@ -93,6 +100,7 @@ Scene load_scene(std::string const& file, std::vector<std::string> const& overri
     return parse_scene(scene::read_text_file(file, at), file, overrides);
 }
 
+// Memory may run out anywhere below; the error becomes a message on the scene.
 Scene parse_scene(std::string const& text, std::string const& name,
                   std::vector<std::string> const& overrides) try {
     std::unique_ptr<Node> const root = scene::parse_document(text, name);

@@ -1,4 +1,4 @@
-// --set key.path=value: a scene key changed from the command line.
+// Command-line option --set key.path=value, which changes a key of the scene.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace catena::scene {
 
-/// Applies "key.path=value" to the tree: list indices as in "chains[0].count=10", missing map keys
-/// are made, the value is YAML, `null` removes the key. Throws InputError for a malformed path or
-/// value, an index beyond its list, and a path that leads through a plain value.
+/// Applies "key.path=value" to the tree. List indices are as in "chains[0].count=10"; missing map
+/// keys are added. The value is YAML; `null` removes the key. Throws InputError for a malformed
+/// path or value, an index beyond its list, and a path through a scalar.
 void apply_override(Node& root, std::string const& override_text);
 
 }  // namespace catena::scene

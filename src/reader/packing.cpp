@@ -1,3 +1,6 @@
+// Implements the packing of chains. Impossible boxes are refused first, by the volume of the beads
+// and by the narrowest edge. The chains then grow at the same pace, and the remaining overlaps are
+// relaxed.
 #include "reader/packing.hpp"
 
 #include <fmt/format.h>
@@ -13,19 +16,23 @@ namespace catena::scene {
 
 namespace {
 
-double constexpr densest = 0.64;  // random close packing of spheres
-double constexpr narrowest =
-    2.5;  // excluded distances: a narrower box shows a bead two images of another
+/// Largest volume fraction: random close packing of spheres.
+double constexpr densest = 0.64;
+/// Smallest edge of the box in excluded distances. In a narrower box a bead interacts with two
+/// images of another bead.
+double constexpr narrowest = 2.5;
+/// Largest number of relaxation steps.
 std::int64_t constexpr most_steps = 2000;
-std::size_t constexpr most_points = std::size_t{1}
-                                    << 28;  // numbers of points and cells are of 32 bits
+/// Largest number of points; indices of points and cells have 32 bits.
+std::size_t constexpr most_points = std::size_t{1} << 28;
 
+/// Edges of a box for messages.
 std::string text_of(Vec3 const& box) {
     return fmt::format("{:.6g} x {:.6g} x {:.6g}", box[0], box[1], box[2]);
 }
 
-/// Volume of spheres as wide as the excluded distance, less half of the lens that link neighbours
-/// share for each of the two.
+/// Volume of spheres with the excluded distance as diameter. Link neighbours overlap in a lens;
+/// half of it is subtracted for each of the two.
 double volume_of(Crowd const& crowd) {
     double const d = crowd.excluded;
     double volume = 0;
@@ -37,6 +44,7 @@ double volume_of(Crowd const& crowd) {
     return volume;
 }
 
+/// Throws InputError for too many beads, too narrow a box or too high a volume fraction.
 void refuse_impossible(Crowd const& crowd, Node const& node, char const* name) {
     Vec3 const& box = crowd.box;
     if (crowd.at.size() > most_points)
@@ -58,6 +66,7 @@ void refuse_impossible(Crowd const& crowd, Node const& node, char const* name) {
                          std::cbrt(filled / densest) + 5e-4));
 }
 
+/// Collects the chains to grow, then the points of all other chains as fixed points.
 Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
     Crowd crowd;
     crowd.box = box;
@@ -68,6 +77,7 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
         BeadArrays const& beads = draft.chain.beads;
         crowd.at.insert(crowd.at.end(), beads.position.begin(), beads.position.end());
         crowd.length.insert(crowd.length.end(), beads.length.begin(), beads.length.end());
+        // The first bead of a chain has no link to the preceding point.
         crowd.length[crowd.first.back()] = 0;
         crowd.first.push_back(crowd.at.size());
     }
@@ -87,8 +97,8 @@ void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char 
     auto const first = std::find_if(drafts.begin(), drafts.end(),
                                     [](Draft const& d) { return d.regrown == Regrowth::yes; });
     refuse_impossible(crowd, *first->node, name);
-    std::uint64_t constexpr packing = std::uint64_t{1}
-                                      << 63;  // apart from the streams of single chains
+    /// Stream of the packing, distinct from the streams of single chains.
+    std::uint64_t constexpr packing = std::uint64_t{1} << 63;
     grow(crowd, seed_of_stream(seed, packing));
     Relaxed const relaxed = relax(crowd, most_steps);
     if (relaxed.overlaps > 0)
@@ -99,6 +109,7 @@ void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char 
                          crowd.chains(), name, text_of(box), relaxed.overlaps, crowd.excluded,
                          relaxed.nearest, relaxed.steps),
              fmt::format("enlarge {} or lower `count`", name));
+    // Positions return in the order in which crowd_of() collected them.
     std::size_t next = 0;
     for (Draft& draft : drafts)
         if (draft.regrown == Regrowth::yes)

@@ -1,4 +1,4 @@
-// Chains of residues in a periodic box that is too full for whole coils side by side.
+// Packing of chains of residues in a periodic box that is too dense for separate coils.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace catena::scene {
 
-/// Grows the drafts that may be regrown anew in the box, among each other and around all others,
-/// and relaxes them until no two beads, other than link neighbours, are nearer than the excluded
-/// distance of self-avoiding chains, periodic images included. Positions come out unwrapped, links
-/// exact to rounding. A function of drafts, box and seed alone. InputError when the beads' volume
-/// or an edge of the box says that it cannot be, or relaxation came to no end; it calls the box by
-/// its `name`. Precondition: one draft or more may be regrown.
+/// Grows all drafts with Regrowth::yes anew in the box, among each other and around all others.
+/// Relaxes them until no two beads, other than link neighbours, are closer than the excluded
+/// distance of self-avoiding chains. Periodic images count, positions are not wrapped, and links
+/// are exact to rounding. The result depends on drafts, box and seed alone. Throws InputError if
+/// the beads' volume or an edge of the box rules it out, or the relaxation fails. `name` is the
+/// box's name in messages. Precondition: at least one draft has Regrowth::yes.
 void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char const* name);
 
 }  // namespace catena::scene

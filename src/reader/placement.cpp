@@ -1,3 +1,6 @@
+// Implements the placement of chains by their bounding spheres. All movable chains share one grid,
+// whose cells are as wide as the largest of them. If a box has too few clear cells, chains that may
+// be regrown are packed instead.
 #include "reader/placement.hpp"
 
 #include <fmt/format.h>
@@ -14,21 +17,24 @@ namespace catena::scene {
 
 namespace {
 
-/// Of a coordinate: a double tells places apart there that are 1e-7 from each other.
+/// Largest coordinate: a double resolves 1e-7 there.
 double constexpr farthest = 1e9;
 
+/// Sphere around the centre of the chain's bounding box, with the gap of two links.
 Sphere sphere_around(ChainSpec const& chain) {
     Outline const outline = outline_of(chain);
     Vec3 low = outline.points[0], high = low;
     for (Vec3 const& p : outline.points)
         for (int i = 0; i < 3; ++i)
             low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+    // The centre of the bounding box is close to that of the smallest sphere.
     Sphere sphere{0.5 * (low + high), 0, 2 * outline.link};
     for (Vec3 const& p : outline.points)
         sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));
     return sphere;
 }
 
+/// Translates a chain, its anchors included.
 void move(ChainSpec& chain, Vec3 const& by) {
     if (chain.tip_joint.anchor) chain.tip_joint.anchor = *chain.tip_joint.anchor + by;
     for (Vec3& position : chain.beads.position) position = position + by;
@@ -44,8 +50,10 @@ void move(ChainSpec& chain, Vec3 const& by) {
     }
 }
 
+/// True if the draft may be regrown.
 bool is_regrown(Draft const* draft) { return draft->regrown == Regrowth::yes; }
 
+/// Throws InputError for a chain that extends beyond `farthest`.
 void refuse_far(Draft const& draft, Sphere const& sphere) {
     double reach = 0;
     for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius);
@@ -56,18 +64,22 @@ void refuse_far(Draft const& draft, Sphere const& sphere) {
          fmt::format("correct its coordinates: {:g} is the most", farthest));
 }
 
+/// Bounding sphere of a draft; throws InputError beyond the largest coordinate.
 Sphere sphere_of(Draft const& draft) {
     Sphere const sphere = sphere_around(draft.chain);
     refuse_far(draft, sphere);
     return sphere;
 }
 
-/// A box, or a region that is filled as one.
+/// A box, or a region that is filled like a box.
 struct Room {
+    /// Edges of the box; none for unlimited space.
     std::optional<Vec3> const& edges;
+    /// Name in messages.
     char const* name;
 };
 
+/// Throws InputError for a room that has too few places.
 [[noreturn]] void refuse(Draft const& draft, Room const& in, std::size_t room, double width,
                          std::size_t wanted) {
     Vec3 const& edges = *in.edges;
@@ -83,8 +95,8 @@ struct Room {
                          "packed more densely"));
 }
 
-/// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box
-/// has no room for chains that can be grown into it instead.
+/// Places the chains `moving` next to each other, clear of `placed`. Returns false and moves
+/// nothing if the room is too small for chains that can be regrown instead.
 bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed,
                         Room const& box) {
     std::vector<Sphere> spheres;
@@ -93,7 +105,7 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
         spheres.push_back(sphere_of(*draft));
         width = std::max(width, 2 * spheres.back().radius + spheres.back().gap);
     }
-    if (width == 0) width = 1;  // lone beads: any distance will do
+    if (width == 0) width = 1;  // single beads: any distance is enough
     std::vector<Vec3> const cells = PlaceGrid(placed, width, box.edges).find(moving.size());
     if (cells.size() < moving.size()) {
         if (std::any_of(moving.begin(), moving.end(), is_regrown)) return false;
@@ -120,7 +132,7 @@ void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std
             placed.push_back(sphere_of(draft));
     }
     if (moving.empty() || place_side_by_side(moving, placed, room)) return;
-    // Chains that keep their shape take their places first, the others grow around them.
+    // Chains that keep their shape are placed first, then the others grow around them.
     moving.erase(std::remove_if(moving.begin(), moving.end(), is_regrown), moving.end());
     if (!moving.empty()) place_side_by_side(moving, placed, room);
     pack(drafts, *box, seed, name);

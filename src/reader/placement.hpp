@@ -1,5 +1,4 @@
-// Gives a place to the chains that have none: side by side, none within reach of another, or
-// packed.
+// Placement of movable chains: next to each other, out of each other's reach, or packed.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +9,12 @@
 
 namespace catena::scene {
 
-/// Moves the movable drafts onto a cubic grid whose cells are as wide as the largest of them
-/// (bounding sphere) and a gap of two links more, leaving out cells that reach chains with a place
-/// of their own. Without a box the grid is centred on the origin and grows as needed; a lone chain
-/// then lies at the origin. In a periodic box whole chains, not only their middles, stay clear of
-/// their images; where they do not fit, those that may be regrown are packed (packing.hpp) around
-/// the others. InputError when that is impossible, which calls the box by its `name`.
+/// Moves the movable drafts onto a cubic grid. The width of its cells is that of the largest draft
+/// (bounding sphere) plus a gap of two links. Cells in reach of chains with a place are left out.
+/// Without a box the grid is centred on the origin and grows as needed; a single chain then lies at
+/// the origin. In a periodic box whole chains, not only their centres, stay clear of their images.
+/// If they do not fit, drafts with Regrowth::yes are packed (packing.hpp) around the others. Throws
+/// InputError if that is impossible; `name` is the box's name in messages.
 void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed,
                  char const* name = "the box");
 

@@ -1,3 +1,4 @@
+// Implements the readers of box, dynamics, forces, solver and output.
 #include "reader/sections.hpp"
 
 #include <fmt/format.h>
@@ -13,12 +14,13 @@ namespace catena::scene {
 
 namespace {
 
-/// Applies `read` to the value of `key` where it is there.
+/// Applies `read` to the value of `key` if the key is present.
 template <class Value, class Read>
 void take(Fields const& fields, char const* key, Value& value, Read read) {
     if (Node const* const node = fields.find(key)) value = static_cast<Value>(read(*node));
 }
 
+/// Returns the resolved path; throws InputError unless it is a regular file.
 std::string existing_file(Node const& node, std::string const& scene_file) {
     std::string const path = resolved(text(node), scene_file);
     std::error_code ignored;
@@ -27,6 +29,7 @@ std::string existing_file(Node const& node, std::string const& scene_file) {
     return path;
 }
 
+/// Reads `map`: chain name to first and last particle, from 0.
 void read_map(Node const& node, OpenMmSpec& spec) {
     if (node.kind != Node::Kind::map)
         fail(node, describe(node) + " is not a map",
@@ -43,6 +46,7 @@ void read_map(Node const& node, OpenMmSpec& spec) {
     }
 }
 
+/// Reads the keys that define the force model: a builder, or a System with topology or map.
 void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file) {
     Node const* const builder = fields.find("builder");
     Node const* const system = fields.find("system");
@@ -73,6 +77,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
              "add `topology: topology.pdb`, or `map: {chain: [first, last]}`");
 }
 
+/// Reads `forces.openmm`.
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
     Fields const fields(
         node, {"builder",        "system",    "topology",     "map",          "temperature",
@@ -84,6 +89,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
              "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);
+    // The force field has the run's temperature unless it has its own.
     if (Node const* const run = dynamics ? dynamics->find("temperature") : nullptr)
         spec.temperature = number(*run);
     take(fields, "temperature", spec.temperature, positive);
@@ -121,7 +127,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
     return spec;
 }
 
-/// `auto`, `all`, or a number or `all` once or twice.
+/// True for `auto`, `all`, or one or two counts separated by a comma; a count is a number or `all`.
 bool is_level_count(std::string const& text) {
     if (text == "auto") return true;
     std::size_t const comma = text.find(',');
@@ -134,7 +140,7 @@ bool is_level_count(std::string const& text) {
            (comma == std::string::npos || one(text.substr(comma + 1)));
 }
 
-/// Beyond them a double no longer tells places in the box apart.
+/// Range of box edges; beyond it a double does not resolve places in the box.
 double constexpr shortest_edge = 1e-30, longest_edge = 1e9;
 
 }  // namespace
@@ -159,8 +165,8 @@ std::optional<Vec3> read_box(Node const& box) {
 
 namespace {
 
-/// A solution rounds at 16 eps times the depth of its tree (ChainSystem::residual_bound): of the
-/// order of 1e-13, which no shorter step makes smaller.
+/// Reads the tolerance of adaptive steps. The least value is 1e-13: a solution rounds at 16 eps
+/// times the depth of its tree (ChainSystem::residual_bound), which no shorter step reduces.
 double read_tolerance(Node const& node, Integrator integrator) {
     double constexpr least = 1e-13, most = 0.1;
     double const tolerance = positive(node);
@@ -188,6 +194,7 @@ calvados2::ChargedTermini read_charged_termini(Node const& node) {
                                                     {"none", {false, false}}});
 }
 
+// `implicit-midpoint` is a documented name that this version refuses.
 DynamicsSpec read_dynamics(Node const& node, bool si) {
     Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed",
                                "constraint_tolerance", "tolerance", "fixman"});
@@ -214,6 +221,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     if (Node const* const tolerance = fields.find("tolerance"))
         dynamics.tolerance = read_tolerance(*tolerance, dynamics.integrator);
     take(fields, "fixman", dynamics.fixman, truth);
+    // The default friction is in 1/ps, which has no meaning in SI units.
     if (si && is_langevin(dynamics.integrator)) fields.need("friction", "friction: 1e10");
     return dynamics;
 }
@@ -268,6 +276,7 @@ SolverSpec read_solver(Node const& node) {
     return solver;
 }
 
+// Observables are compared with the known columns; the others have simple ranges.
 OutputSpec read_output(Node const& node) {
     Fields const fields(node, {"every", "checkpoint_every", "checkpoint_minutes", "observables",
                                "joint_forces", "velocities", "coordinates"});

@@ -1,4 +1,4 @@
-// The sections of a scene beside its chains.
+// Readers of the sections of a scene other than its chains.
 #pragma once
 
 #include "scene/calvados2.hpp"
@@ -7,20 +7,23 @@
 
 namespace catena::scene {
 
-/// `box`: edges of the periodic box, or none.
+/// Reads `box`: edges of the periodic box, or none. Throws InputError for edges that are not
+/// positive or that a double cannot resolve.
 std::optional<Vec3> read_box(Node const& box);
-/// `dynamics`; `si`: units of the scene.
+/// Reads `dynamics`. `si` is true for SI units, which require a friction for Langevin integrators.
 DynamicsSpec read_dynamics(Node const& dynamics, bool si);
-/// `forces`; `dynamics` may be null: its temperature is the default one of the force field. `file`:
-/// the scene's, for relative paths.
+/// Reads `forces`. `dynamics` may be nullptr; its temperature is the default of the force field.
+/// `file` is the scene's file, for relative paths.
 ForceSpec read_forces(Node const& forces, Node const* dynamics, bool si, std::string const& file);
-/// `charge_termini`: both, N, C or none.
+/// Reads `charge_termini`: both, N, C or none.
 calvados2::ChargedTermini read_charged_termini(Node const&);
-/// As OpenMmSpec::map has them.
+/// Returns the flags in the form of OpenMmSpec::map.
 inline std::pair<std::int64_t, std::int64_t> as_numbers(calvados2::ChargedTermini ends) {
     return {ends.n ? 1 : 0, ends.c ? 1 : 0};
 }
+/// Reads `solver`. The choice of a backend for `auto` is left to the planner.
 SolverSpec read_solver(Node const& solver);
+/// Reads `output`. Throws InputError for unknown or repeated observables.
 OutputSpec read_output(Node const& output);
 
 }  // namespace catena::scene

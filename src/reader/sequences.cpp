@@ -1,3 +1,5 @@
+// Implements the reader of chains of residues. Residues become beads at the positions of a file, or
+// at an extended or self-avoiding start conformation.
 #include "reader/sequences.hpp"
 
 #include <fmt/format.h>
@@ -20,14 +22,15 @@ namespace {
 
 using Residues = std::vector<Calvados2Residue const*>;
 
+/// Parameters of each residue; precondition: valid one-letter codes.
 Residues residues_of(std::string const& letters) {
     Residues residues;
     for (char const letter : letters) residues.push_back(find_calvados2(letter));
     return residues;
 }
 
-/// The model's residues for a file's names. Other names and modifications are their parents, with a
-/// note; InputError for the others.
+/// Returns the model's residues for a file's names. Other names and modifications map to their
+/// parents, with a note. Throws InputError for all others.
 Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) {
     Residues residues;
     std::map<std::pair<std::string, std::string>, int> renamed;
@@ -35,6 +38,7 @@ Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) 
         ResidueMeaning const meaning = meaning_of(site.residue);
         std::string const residue = site.residue + (site.label.empty() ? "" : " " + site.label);
         auto const bead = static_cast<std::int64_t>(residues.size()) + 1;
+        // A bead would have the charge of the parent: the chain's charge would change silently.
         if (meaning.kind == ResidueKind::charged)
             fail_at(source, "bead", bead,
                     fmt::format(
@@ -61,7 +65,7 @@ Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) 
     return residues;
 }
 
-/// How the file numbers its residues; empty where it does not number all of them.
+/// Returns the file's residue numbers; empty if it does not number all residues.
 std::vector<std::string> labels_of(PdbSites const& from) {
     std::vector<std::string> labels;
     for (PdbSite const& site : from.sites) {
@@ -71,7 +75,7 @@ std::vector<std::string> labels_of(PdbSites const& from) {
     return labels;
 }
 
-/// Says which beads are meant where the file's numbers are not those of the beads.
+/// Notes which beads `rigid` means if the file's numbers differ from those of the beads.
 void note_numbering(ChainRequest const& request, std::vector<std::string> const& labels,
                     std::string const& file) {
     bool from_one = true;
@@ -85,6 +89,7 @@ void note_numbering(ChainRequest const& request, std::vector<std::string> const&
     request.scene.note(fmt::format("`rigid` means the residue numbers of `{}`: {}", file, list));
 }
 
+/// Reads the rigid domains by the file's residue numbers, or by bead numbers if the file has none.
 void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues,
                PdbSites const& from) {
     std::vector<std::string> const labels = labels_of(from);
@@ -100,6 +105,7 @@ void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues,
                     bare->label.empty() ? "" : " `" + bare->label + "`"));
 }
 
+/// Sets masses and names of the beads.
 void set_residues(BeadArrays& beads, Residues const& residues, calvados2::ChargedTermini termini) {
     auto const n = static_cast<std::int64_t>(residues.size());
     for (std::int64_t k = 0; k < n; ++k) {
@@ -109,7 +115,7 @@ void set_residues(BeadArrays& beads, Residues const& residues, calvados2::Charge
     }
 }
 
-/// Mass and residue of each bead are still to be set.
+/// Returns beads at their start positions; mass and residue of each bead are set later.
 BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_t copy) {
     Node const* const positions = request.fields.find("positions");
     Node const* const conformation = request.fields.find("conformation");
@@ -121,6 +127,7 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
         conformation && !file &&
         choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}});
     double const length = calvados2::bond_length;
+    // A fixed base needs one more point: the anchor.
     std::int64_t const points = beads + (request.base == Base::fixed ? 1 : 0);
     std::vector<Vec3> const start =
         self_avoiding
@@ -134,6 +141,7 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
     return made;
 }
 
+/// Reads the residues of a PDB file and checks them for gaps.
 Residues residues_of_pdb(ChainRequest& request, Node const& file, PdbSites& from) {
     from = read_pdb(resolved(text(file), request.scene.file), file, true);
     for (std::string const& note : from.notes) request.scene.note(note);
@@ -142,7 +150,7 @@ Residues residues_of_pdb(ChainRequest& request, Node const& file, PdbSites& from
     return residues;
 }
 
-/// `from` takes the sites of a PDB file.
+/// Reads the residues from `pdb`, `fasta` or `sequence`. `from` receives the sites of a PDB file.
 Residues read_residues(ChainRequest& request, PdbSites& from) {
     Fields const& fields = request.fields;
     Node const* const fasta = fields.find("fasta");
@@ -159,6 +167,7 @@ Residues read_residues(ChainRequest& request, PdbSites& from) {
     return residues_of(one_letter_codes(text(sequence), sequence, request.scene));
 }
 
+/// Reads `rigid`, which requires positions.
 void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& from) {
     Fields const& fields = request.fields;
     Node const* const rigid = fields.find("rigid");
@@ -173,6 +182,7 @@ void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& fro
 
 }  // namespace
 
+// The residues come first, because rigid domains and start positions depend on their number.
 BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     Fields const& fields = request.fields;
     bool const pdb = fields.find("pdb");

@@ -1,3 +1,5 @@
+// Implements the links of written chains by the System's bonds and constraints. Particles of a
+// chain are consecutive, so that bead k of a chain is particle `first` + k.
 #include "reader/system_links.hpp"
 
 #include <algorithm>
@@ -9,7 +11,7 @@ namespace catena::scene {
 
 namespace {
 
-/// Beads of a chain that are outboard ends of links, from 0.
+/// Beads of a chain (from 0) at the outboard ends of links.
 std::vector<std::int64_t> linked_beads(ChainSpec const& chain) {
     std::vector<std::int64_t> beads;
     if (chain.is_beads())

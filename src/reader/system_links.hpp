@@ -1,5 +1,5 @@
-// Chains that the scene writes down beside a System of OpenMM's: their links, and what is doubtful
-// about them.
+// Links of chains that are written together with an OpenMM System, and notes on doubtful ones. The
+// System's bonds and constraints decide the lengths of links; the scene decides which beads exist.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +12,35 @@
 
 namespace catena::scene {
 
+/// The scene's System as seen by written chains.
 class WrittenSystem {
   public:
-    /// Reads the System that the scene names, and adds to the scene's notes what of it is left out.
-    /// Throws InputError.
+    /// Reads the System that the scene names. Adds a note to the scene for each part that is left
+    /// out. Throws InputError.
     explicit WrittenSystem(Scene&);
-    /// First particle of a chain in the System; `next`: one past the last of the chain before,
-    /// which counts where the map has no such chain.
+    /// First particle of a chain in the System. `next` is one past the last particle of the
+    /// preceding chain; it is returned if the map has no such chain.
     std::int64_t first_particle(std::string const& chain, std::int64_t next) const;
-    /// nm, of the link that bonds and constraints make between a particle and the one before; NaN
-    /// where none does.
+    /// Length in nm of the link that bonds and constraints form between a particle and the
+    /// preceding one. Returns NaN if they form none.
     double length(std::int64_t particle) const;
-    /// Largest thermal spread of the springs between neighbours in a chain of so many beads that
-    /// begins with particle `first`, relative to their length.
+    /// Largest thermal spread, relative to the length, of the springs between neighbours in a
+    /// chain. The chain has `beads` beads from particle `first` on.
     double largest_spread(std::int64_t first, std::int64_t beads) const;
-    /// Whether links in chains of so many beads that begin with particles a and b are of the same
+    /// True if chains of `beads` beads that begin with particles a and b have the same link
     /// lengths.
     bool alike(std::int64_t a, std::int64_t b, std::int64_t beads) const;
-    /// Notes springs of the System that links of these chains replace although they are soft, and
-    /// refuses the softest.
+    /// Notes soft springs of the System that links of these chains replace; throws InputError for
+    /// the softest.
     void judge(std::vector<Draft> const& drafts, Scene&) const;
 
   private:
+    /// Links between consecutive particles of the System.
     SystemLinks links_;
+    /// Temperature of the thermal spread, K.
     double temperature_;
-    std::unordered_map<std::string, std::int64_t> first_;  // of the map, by the chain's name
+    /// First particle of each chain in the map, by the chain's name.
+    std::unordered_map<std::string, std::int64_t> first_;
 };
 
 }  // namespace catena::scene

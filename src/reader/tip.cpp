@@ -1,3 +1,6 @@
+// Implements the tips of chains and the closure of their joints at the start. A link of a chain of
+// beads is closed by a least change of positions. Other joints are left to the run's constraint
+// projection if they are nearly closed.
 #include "reader/tip.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +22,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Checks that the tip's joint to the ground is closed at its anchor, if one is given.
 void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
     TipJoint const& tip = chain.tip_joint;
     if (!tip.anchor) return;
@@ -28,6 +32,7 @@ void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
         reach.end * frame * joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
     double const error = norm(end.origin - *tip.anchor),
                  along = reach.length + norm(end.origin - reach.end.origin);
+    // A chain of zero reach is measured in absolute lengths.
     double const length = along > 0 ? along : 1;
     if (error <= closure_tolerance * length) return;
     std::string const what = fmt::format(
@@ -42,13 +47,13 @@ void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
                      closable * length));
 }
 
-/// Of point `r` from the centre of body k; W.
+/// Position in W of the point `r` given from the centre of mass of body k, in its axes.
 Vec3 point_of(LinkedArrays const& linked, std::size_t k, Vec3 const& r) {
     auto const& q = linked.orientation[k];
     return linked.position[k] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * r;
 }
 
-/// Where the tip's link starts. `given`: the user says where in the last body.
+/// Start of the tip's link, W. `given` is true if the scene gives that point in the last body.
 Vec3 start_of_link(ChainSpec& chain, bool given) {
     if (chain.is_beads()) return chain.beads.position.back();
     LinkedArrays& linked = chain.linked;
@@ -56,22 +61,23 @@ Vec3 start_of_link(ChainSpec& chain, bool given) {
     if (given) linked.outboard[last] = chain.tip_joint.translation + linked.inboard[last];
     return point_of(linked, last, linked.outboard[last]);
 }
+/// End of the tip's link, W: the anchor or the first body of a ring.
 Vec3 end_of_link(ChainSpec const& chain) {
     if (!chain.tip_joint.ring) return *chain.tip_joint.anchor;
     return chain.is_beads() ? chain.beads.position.front()
                             : point_of(chain.linked, 0, chain.linked.inboard.front());
 }
 
-/// Links between ends, the longest.
+/// Length of the longest link of the chain.
 double longest_link(ChainSpec const& chain) {
     std::vector<double> const& lengths =
         chain.is_beads() ? chain.beads.length : chain.linked.length;
     return lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
 }
 
-/// The whole edges of the periodic box by which `link` is cut: to its nearest image, which fits
-/// `length` better; without a length (0) it is shorter, and not longer than 1.5 of the chain's
-/// longest link.
+/// Returns the whole edges of the periodic box by which `link` is cut, or zero. A link is cut if
+/// its nearest image fits `length` better. Without a length (0) that image must be shorter and not
+/// longer than 1.5 times the chain's longest link.
 Vec3 cut_by(Vec3 const& link, double length, double longest, std::optional<Vec3> const& box) {
     if (!box) return Vec3::zero();
     Images const images(*box);
@@ -82,8 +88,8 @@ Vec3 cut_by(Vec3 const& link, double length, double longest, std::optional<Vec3>
     return images.whole_edges(link);
 }
 
-/// The tip's anchor stands where its link is not cut. A ring that ends at an image of its first
-/// body has no first body there.
+/// Moves the tip's anchor to the image at which its link is not cut. Throws InputError for a ring
+/// that ends at an image of its first body, because no first body exists there.
 void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node,
                     ChainRequest const& request) {
     TipJoint& tip = chain.tip_joint;
@@ -105,6 +111,7 @@ void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node,
                     shown(request.name()), (*tip.anchor)[0], (*tip.anchor)[1], (*tip.anchor)[2]));
 }
 
+/// Sets the length of the tip's link and closes it, see join_tip().
 void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request) {
     TipJoint& tip = chain.tip_joint;
     Vec3 const start = start_of_link(chain, node.find("translation"));
@@ -112,7 +119,7 @@ void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request)
     Vec3 const end = end_of_link(chain);
     double const distance = norm(end - start);
     char const* const target = tip.ring ? "first body" : "anchor";
-    // Positions carry half a unit in their last place.
+    // Positions are rounded to half a unit in their last place.
     if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(start) + norm(end))))
         fail(node,
              fmt::format("the tip's {} stands on the last body: their link has no direction",
@@ -134,7 +141,7 @@ void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request)
          fmt::format("leave `length` out, or move {}the chain", tip.ring ? "" : "the anchor or "));
 }
 
-/// Ends of the links, or origins of the joints, from ground to ground.
+/// Ends of the links, or origins of the joints, from ground to ground, W.
 std::vector<Vec3> points_of_bridge(ChainSpec const& chain) {
     std::vector<Vec3> points;
     if (chain.is_beads()) {
@@ -152,8 +159,8 @@ std::vector<Vec3> points_of_bridge(ChainSpec const& chain) {
     return points;
 }
 
-/// A bridge of links or spherical joints whose handle vectors are all parallel has a singular
-/// matrix.
+/// Throws InputError for a straight bridge. If all handle vectors of links or spherical joints are
+/// parallel, its matrix is singular.
 void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
     auto const& joints = chain.bodies.joint;
     bool const spherical = chain.tip_joint.type == JointType::spherical && !joints.empty() &&
@@ -161,7 +168,8 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
                                        [](JointType t) { return t == JointType::spherical; });
     if (chain.base != Base::fixed || !(chain.is_beads() || spherical)) return;
     std::vector<Vec3> const points = points_of_bridge(chain);
-    if (points.size() < 3) return;  // one rod between two balls still turns
+    // The test needs two handle vectors.
+    if (points.size() < 3) return;  // one rod between two spherical joints still rotates
     Vec3 const first = points[1] - points[0];
     for (std::size_t k = 1; k + 1 < points.size(); ++k) {
         Vec3 const next = points[k + 1] - points[k];
@@ -173,14 +181,17 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
          "start from a bent chain");
 }
 
+/// Name of the kind of chain for messages.
 char const* kind_of(ChainSpec const& chain) {
     return chain.is_beads() ? "a chain of beads" : "a chain of links";
 }
 
-/// A tip that restricts more than the chain has leaves its forces undetermined.
+/// Throws InputError if the tip restricts more directions than the chain has degrees of freedom.
+/// The tip's forces would be undetermined.
 void refuse_too_many(ChainSpec const& chain, Node const& node) {
     std::int64_t const with = degrees_of_freedom(chain);
     if (with >= 0) return;
+    // A copy of the chain with a free tip gives its own degrees of freedom.
     ChainSpec open;
     open.base = chain.base, open.bodies.joint = chain.bodies.joint,
     open.bodies.driven = chain.bodies.driven;

@@ -1,3 +1,5 @@
+// Implements the checks that involve more than one section of a scene. Each check names the key
+// that must change. Copies of an entry are checked once.
 #include "reader/validation.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +18,7 @@ namespace catena::scene {
 
 namespace {
 
+/// Throws InputError for two chains of the same name.
 void check_names(std::vector<Draft> const& drafts) {
     std::set<std::string> names;
     for (Draft const& draft : drafts)
@@ -24,9 +27,11 @@ void check_names(std::vector<Draft> const& drafts) {
                  "give each its own `name`");
 }
 
+/// Advice for forces that only integrators in joint coordinates support.
 std::string const joint_integrators =
     "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`";
 
+/// Throws InputError at the first body whose value acts, as decided by `acts`.
 template <class Value>
 void refuse_at_body(Draft const& draft, std::vector<Value> const& values,
                     bool (*acts)(Value const&), std::string const& what,
@@ -36,8 +41,8 @@ void refuse_at_body(Draft const& draft, std::vector<Value> const& values,
         fail_at(*draft.node, "body", found - values.begin() + 1, what, remedy);
 }
 
-/// What takes energy away, which absolute coordinates do not carry and a thermostat does not give
-/// back.
+/// Refuses dissipative forces. Absolute coordinates do not support them, and a thermostat does not
+/// compensate them.
 void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft) {
     Integrator const integrator = scene.dynamics.integrator;
     std::string const under = fmt::format(" under integrator {}", name_of(integrator));
@@ -57,6 +62,8 @@ void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft)
         joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
 }
 
+/// Checks that springs and dampers add a well-conditioned inertia along all coordinates of a joint,
+/// see ImplicitInertias.
 void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
     BodyArrays const& bodies = draft.chain.bodies;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -77,10 +84,12 @@ void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
     }
 }
 
+/// Checks that the integrator supports the chain's joints and forces.
 void check_integrator(Node const& root, Scene const& scene, Draft const& draft) {
     ChainSpec const& chain = draft.chain;
     Integrator const integrator = scene.dynamics.integrator;
     Node const& at = *root.find("dynamics")->find("integrator");
+    // Joint forces are not implemented for implicit springs.
     if (is_implicit(integrator) && scene.output.joint_forces)
         fail(*root.find("output")->find("joint_forces"),
              fmt::format("not in this version: joint forces under integrator {}",
@@ -113,6 +122,7 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
                 joint_integrators + ", or leave it out");
 }
 
+/// Checks that articulated handles support the chain.
 void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
     if (scene.solver.handles != Handles::articulated || takes_articulated_handles(draft.chain))
         return;
@@ -125,6 +135,7 @@ void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
          "use `projected` or `full`: articulated ones are for open chains of rigid bodies");
 }
 
+/// Checks that the Fixman correction supports the chain.
 void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
     if (!dynamics.fixman) return;
     Node const& at = *root.find("dynamics")->find("fixman");
@@ -142,7 +153,8 @@ void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& d
         fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
 }
 
-/// Drag acts on rigid bodies; left out silently on others it would mislead.
+/// Refuses drag in scenes with links. Drag acts on rigid bodies; silence about the others would be
+/// misleading.
 void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
     if (scene.forces.linear_drag == 0 && scene.forces.angular_drag == 0) return;
     if (!draft.chain.is_beads() && !draft.chain.is_linked()) return;
@@ -151,6 +163,7 @@ void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
          "leave it out: g-baoab has `friction`");
 }
 
+/// Checks that thermal velocities can be drawn for the chain.
 void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
     if (draft.chain.velocities != StartVelocities::thermal) return;
     Node const* const asked = draft.node->find("velocities");
@@ -177,23 +190,26 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
              "write `velocities: zero`, or give each joint its `qd`");
 }
 
+/// True if OpenMM has points of the chain to act on.
 bool has_beads(ChainSpec const& chain) {
     return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0;
 }
 
+/// Residue names of the points known to OpenMM.
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
     return chain.is_beads()    ? chain.beads.residue
            : chain.is_linked() ? chain.linked.carried.residue
                                : chain.bodies.carried.residue;
 }
 
+/// Checks that each entry of `map` names a chain and has one particle per bead.
 void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
     std::unordered_map<std::string_view, Draft const*> of_name;
     for (Draft const& draft : drafts) of_name.emplace(draft.chain.name, &draft);
     for (std::size_t i = 0; i < openmm.map.size(); ++i) {
         auto const& [name, range] = openmm.map[i];
         auto const found = of_name.find(name);
-        Node const& entry = at.find("map")->items[i];  // in the order of the file
+        Node const& entry = at.find("map")->items[i];  // entries are in the order of the file
         if (found == of_name.end())
             fail(entry, fmt::format("no chain is named `{}`", shown(name)),
                  "use the chains' names");
@@ -207,6 +223,7 @@ void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> cons
     }
 }
 
+/// Checks that OpenMM's forces find beads, and the builder parameters for each residue.
 void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
     Node const& at = *root.find("forces")->find("openmm");
     if (std::none_of(drafts.begin(), drafts.end(),
@@ -224,7 +241,8 @@ void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft>
                         "amino acids");
 }
 
-/// Left out of the default columns; asked for by name it would be missed.
+/// Refuses the observable `temperature` if it has no meaning. The default columns omit it; a
+/// request by name must not be ignored.
 void check_temperature(Node const& root, OutputSpec const& output, DynamicsSpec const& dynamics,
                        std::vector<Draft> const& drafts) {
     auto const asked =
@@ -256,7 +274,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
     check_names(drafts);
     Draft const* previous = nullptr;
     for (Draft const& draft : drafts) {
-        // Copies of one entry are alike.
+        // Copies of one entry have the same properties.
         if (previous && previous->node == draft.node) continue;
         previous = &draft;
         check_drag(root, scene, draft);

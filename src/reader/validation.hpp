@@ -1,4 +1,5 @@
-// What no single section can say: do chains, forces and dynamics go together?
+// Checks of the whole scene: compatibility of chains, forces and dynamics. Checks of single values
+// are in the readers of their sections.
 #pragma once
 
 #include <vector>
@@ -9,7 +10,7 @@
 
 namespace catena::scene {
 
-/// Throws InputError for combinations that cannot be computed. `scene` has everything but the
+/// Throws InputError for combinations that cannot be computed. `scene` has all sections except the
 /// chains, which are in `drafts`.
 void check_together(Node const& root, Scene const& scene, std::vector<Draft> const& drafts);
 

@@ -1,10 +1,12 @@
+// Implements the parameters and charges of CALVADOS 2.
 #include "scene/calvados2.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "calvados2_parameters.inc"  // generated: embedded_parameters, one {name, mass, lambda, sigma, charge} a residue
+// Generated: embedded_parameters with one {name, mass, lambda, sigma, charge} per residue.
+#include "calvados2_parameters.inc"
 
 namespace catena {
 

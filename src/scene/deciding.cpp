@@ -1,3 +1,4 @@
+// Implements the list of deciding values and its comparison.
 #include "scene/deciding.hpp"
 
 #include <fmt/format.h>
@@ -50,7 +51,7 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     std::string list = fmt::format("{}", fmt::join(map, ", "));
     if (list.size() > longest_list)
         list = fmt::format("{} entries {}", map.size(),
-                           text_print(list));  // a line names what differs
+                           text_print(list));  // one line names the difference
     if (!map.empty()) add(values, at + (o.builder.empty() ? "map" : "charge_termini"), list);
     add(values, at + "temperature", o.temperature);
     add(values, at + "ionic_strength", o.ionic_strength);
@@ -67,7 +68,8 @@ void add_forces(Values& values, ForceSpec const& f) {
     if (f.openmm) add_openmm(values, *f.openmm);
 }
 
-/// `holds_start`: the ground holds a tip where the start puts it.
+/// Adds the fingerprints of chains. `holds_start` is true if the ground holds a tip at its start
+/// placement, which makes start positions fixed.
 void add_prints(Values& values, std::string const& whose, ChainPrints const& prints,
                 bool holds_start) {
     add(values, whose + ", bodies and joints", prints.kind, Role::fixed);
@@ -77,6 +79,7 @@ void add_prints(Values& values, std::string const& whose, ChainPrints const& pri
     add(values, whose + ", start velocities", prints.velocities, Role::start);
 }
 
+/// True if a joint attaches the tip to the ground.
 bool has_held_tip(ChainSpec const& chain) { return chain.tip == Tip::jointed && !chain.is_ring(); }
 
 void add_chains(Values& values, std::span<ChainSpec const> chains) {

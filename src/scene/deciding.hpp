@@ -1,5 +1,5 @@
-// What decides a scene's motion, value by value: a checkpoint keeps it, so that a restart can name
-// what differs.
+// The values that decide a scene's motion, one by one. A checkpoint stores them, so that a restart
+// can name the values that differ.
 #pragma once
 
 #include <map>
@@ -10,25 +10,28 @@
 
 namespace catena::scene {
 
-/// `fixed`: a branch keeps it. `start`: of the scene's first state, in whose place a checkpoint's
-/// stands. `free`: a branch may change it.
+/// Effect of a changed value on a branch. `fixed`: a branch must keep the value. `start`: the value
+/// belongs to the scene's first state, which a checkpoint replaces. `free`: a branch may change the
+/// value.
 enum class Role { free, fixed, start };
 
+/// One value as text, under its key.
 struct DecidingValue {
-    std::string key, value;  // "dynamics.temperature", "300"; of many numbers their fingerprint
+    std::string key, value;  // "dynamics.temperature", "300"; a fingerprint for many numbers
     Role role = Role::free;
 };
 
-/// Of everything that fingerprint() goes by, dynamics first, chains last. Chains beyond the first
-/// thousand share an entry. Throws InputError when a file that the scene names cannot be read any
-/// more.
+/// Returns everything that enters fingerprint(), dynamics first, chains last. Chains beyond the
+/// first thousand share an entry. Throws InputError if a file named by the scene can no longer be
+/// read.
 std::vector<DecidingValue> deciding_values(Scene const& scene);
 
+/// One difference between two scenes.
 struct ChangedValue {
     std::string key, before, now;  // "none" where a scene has no such key
     Role role = Role::free;
 };
-/// In the order of `now`; keys that are gone come last.
+/// Returns the differing values in the order of `now`; keys absent from `now` come last.
 std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before,
                                   std::vector<DecidingValue> const& now);
 

@@ -1,3 +1,4 @@
+// Implements the FASTA reader and the checks of sequences.
 #include "scene/fasta.hpp"
 
 #include <fmt/format.h>
@@ -15,12 +16,14 @@ namespace catena::scene {
 
 namespace {
 
+/// One record of a FASTA file.
 struct Record {
-    std::string header;  // without `>`
+    std::string header;  // the `>` is removed
     std::string sequence;
 
     std::string name() const { return header.substr(0, header.find_first_of(" \t")); }
-    /// The name, or one of its parts between bars: `sp|P37840|SYUA_HUMAN`.
+    /// True if `wanted` is the name, the header, or a part of the name between bars:
+    /// `sp|P37840|SYUA_HUMAN`.
     bool bears(std::string const& wanted) const {
         std::string const whole = name();
         if (wanted.empty() || whole == wanted || header == wanted) return !wanted.empty();
@@ -38,7 +41,7 @@ std::string trimmed(std::string const& text) {
                : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// Lines end in LF, CR LF or CR.
+/// Converts line ends (LF, CR LF or CR) to line feeds and removes a byte order mark.
 std::string with_line_feeds(std::string text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
     std::replace(text.begin(), text.end(), '\r', '\n');
@@ -92,6 +95,7 @@ Record const& the_only(std::vector<Record const*> const& found, Node const& at,
     return *found[0];
 }
 
+/// Finds the record that the key `record` names or numbers.
 Record const& recorded(std::vector<Record> const& records, Node const& record,
                        std::string const& path) {
     std::string const wanted = text(record);
@@ -108,6 +112,7 @@ Record const& recorded(std::vector<Record> const& records, Node const& record,
          fmt::format("give a name, or a number from 1 to {}", records.size()));
 }
 
+/// Applies the precedence of RecordChoice.
 Record const& chosen(std::vector<Record> const& records, Node const& at, RecordChoice const& choice,
                      std::string const& path) {
     if (choice.record) return recorded(records, *choice.record, path);
@@ -136,7 +141,7 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
     fail(source, what, remedy);
 }
 
-/// Whether blanks cut the text into words of three letters each, two or more.
+/// True if blanks separate the text into two or more words of three letters each.
 bool is_cut_into_threes(std::string const& text) {
     std::istringstream stream(text);
     std::size_t words = 0;
@@ -145,7 +150,7 @@ bool is_cut_into_threes(std::string const& text) {
     return words >= 2;
 }
 
-/// `MET ASP VAL` and `METASPVAL` are most likely not meant as one-letter codes.
+/// Notes texts such as `MET ASP VAL` and `METASPVAL`, which are most likely three-letter codes.
 void note_three_letters(std::string const& text, std::string const& letters, Node const& source,
                         Scene& scene) {
     std::size_t const threes = letters.size() / 3;

@@ -1,3 +1,4 @@
+// Implements the strict readers of scalars, vectors and names.
 #include "scene/fields.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ bool among(std::string_view name, Names names) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Levenshtein's distance.
+/// Levenshtein distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -32,11 +33,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row[b.size()];
 }
 
-/// The key, or that of the list that holds the value.
+/// Returns the node's key, or the key of the list that holds it.
 std::string const& name_of(Node const& node) {
     return node.key.empty() && node.parent ? name_of(*node.parent) : node.key;
 }
 
+/// Throws InputError unless the node is an unquoted scalar.
 Node const& scalar(Node const& node, char const* expected, char const* remedy) {
     if (node.kind != Node::Kind::scalar || node.quoted)
         fail(node, describe(node) + " is not " + expected, remedy);

@@ -1,5 +1,5 @@
-// Strict reading of values: the right type, the right length, finite numbers, no key that nobody
-// reads.
+// Strict reading of values. Each value must have the right type and length, numbers must be finite,
+// and unknown keys are refused.
 #pragma once
 
 #include <cstdint>
@@ -19,52 +19,59 @@ namespace catena::scene {
 
 using Names = std::initializer_list<std::string_view>;
 
-/// A map whose keys are all known. Throws InputError for a value that is no map, for an unknown key
-/// (naming the nearest known one, or all of them) and for keys of `later`, which the contract knows
-/// and this version does not.
+/// A map with known keys only. Throws InputError for a value that is not a map. Throws InputError
+/// for an unknown key and names the nearest known key, or all of them. Keys of `later` belong to
+/// the documented format and are refused as not supported by this version.
 class Fields {
   public:
     Fields(Node const& map, Names known, Names later = {});
 
     Node const& node() const { return map_; }
-    /// nullptr when the key is absent. InputError when it is there without a value.
+    /// Returns nullptr if the key is absent. Throws InputError if the key has no value.
     Node const* find(std::string_view key) const;
-    /// InputError when the key is absent; `example`, e.g. "mass: 1.2", is the remedy.
+    /// Throws InputError if the key is absent; `example`, e.g. "mass: 1.2", is the remedy.
     Node const& need(std::string_view key, std::string const& example) const;
 
   private:
     Node const& map_;
 };
 
-/// The strict grammar of a number: an optional sign, decimal digits with at most one point, an
-/// optional exponent, nothing else.
+/// Result of parse_number(). The grammar is strict: an optional sign, decimal digits with at most
+/// one point, an optional exponent, nothing else.
 enum class NumberFault { none, not_a_number, not_finite, out_of_range };
 NumberFault parse_number(std::string_view text, double& value);
 
+/// Reads a finite number.
 double number(Node const&);
 double positive(Node const&);
 double non_negative(Node const&);
-/// Digits, or a number without a fraction such as 1e6, in [least, most].
+/// Reads digits, or a number without a fraction such as 1e6, in [least, most].
 std::int64_t whole(Node const&, std::int64_t least, std::int64_t most = INT64_MAX);
 std::uint64_t seed64(Node const&);
 bool truth(Node const&);
-/// Not empty.
+/// Reads a text that is not empty.
 std::string text(Node const&);
+/// Reads a list of `count` finite numbers.
 std::vector<double> numbers(Node const&, std::size_t count);
 Vec3 vector3(Node const&);
+/// Reads three rows of three numbers.
 Mat3 matrix3(Node const&);
+/// Returns the node itself; throws InputError unless it is a list.
 Node const& list(Node const&);
 
-/// The known name nearest to `name` by edit distance, when it is near enough to be what was meant.
+/// Returns the known name nearest to `name` by edit distance. Returns nothing if none is near
+/// enough to be a misspelling.
 std::optional<std::string> nearest(std::string_view name, std::span<std::string_view const> known);
+/// Names in backquotes, separated by commas, for messages.
 std::string joined(std::span<std::string_view const> names);
 
-/// One of the names of `choices`; InputError otherwise, "not in this version" for those of `later`.
+/// Reads one of the names of `choices`. Throws InputError otherwise, "not in this version" for
+/// names of `later`.
 template <class Value>
 Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices,
              Names later = {});
 
-/// What both templates and plain code say about a name that is not among the choices.
+/// Throws the InputError for a name that is not among the choices; used by the template choice().
 [[noreturn]] void refuse_choice(Node const&, std::vector<std::string_view> const& choices,
                                 Names later);
 

@@ -1,3 +1,4 @@
+// Implements the reading of text files and position tables.
 #include "scene/files.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +23,8 @@ std::string trimmed(std::string const& text) {
                : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Lines with their numbers from 1; text from `comment` on is dropped, blank lines are left out.
+/// Splits the text into lines with their numbers from 1. Text from `comment` on is dropped, blank
+/// lines are left out.
 std::vector<std::pair<int, std::string>> lines_of(std::string const& text, char comment) {
     std::vector<std::pair<int, std::string>> lines;
     std::istringstream stream(text);
@@ -34,6 +36,7 @@ std::vector<std::pair<int, std::string>> lines_of(std::string const& text, char 
     return lines;
 }
 
+/// Splits a line at its commas and trims the cells.
 std::vector<std::string> cells_of(std::string const& line) {
     std::vector<std::string> cells;
     std::istringstream stream(line);
@@ -42,6 +45,7 @@ std::vector<std::string> cells_of(std::string const& line) {
     return cells;
 }
 
+/// True if no cell is a number or starts with a digit.
 bool is_header(std::vector<std::string> const& cells) {
     double value = 0;
     for (std::string const& cell : cells)

@@ -1,4 +1,4 @@
-// Files that a scene names, and tables of positions.
+// Reading of the files that a scene names, and of tables of positions.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 
 namespace catena::scene {
 
-/// Throws InputError for a file that is missing, a folder or unreadable; `at` names the key that
-/// asked for it.
+/// Throws InputError for a file that is missing, unreadable or a folder. `at` names the requesting
+/// key in the message.
 std::string read_text_file(std::string const& path, Node const& at);
 
-/// `path` as the scene means it: relative to the folder of `scene_file`.
+/// Returns `path` relative to the folder of `scene_file`.
 std::string resolved(std::string const& path, std::string const& scene_file);
 
-/// Lines "x,y,z"; blank lines, lines from `#` on and one line of column names are passed over.
+/// Reads lines "x,y,z". Skips blank lines, text from `#` on, and one line of column names at the
+/// top.
 std::vector<Vec3> read_position_table(std::string const& path, Node const& at);
 
 }  // namespace catena::scene

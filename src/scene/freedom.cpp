@@ -1,3 +1,4 @@
+// Implements the counts of degrees of freedom and the choice of the kind of handle.
 #include "scene/freedom.hpp"
 
 #include <algorithm>
@@ -8,15 +9,17 @@ namespace catena::scene {
 
 namespace {
 
+/// Tolerance for numbers printed with seven digits.
 double constexpr printed_digits = 1e-6;
-double constexpr rounding =
-    32 * std::numeric_limits<double>::epsilon();  // of a few products of rotations
+/// Rounding error of a few products of rotations.
+double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();
 
-/// Follows one axis along the chain: in the axes of the body that was added last.
+/// Follows one axis along the chain, in the axes of the body that was added last.
 class ParallelAxes {
   public:
     explicit ParallelAxes(double tolerance) : tolerance_(tolerance) {}
-    /// Whether the joint leaves all axes so far parallel. `rotation`: of J in the inboard body.
+    /// True if the joint keeps all axes so far parallel. `rotation` is that of J in the inboard
+    /// body.
     bool add(JointType type, Vec3 const& axis, Mat3 const& rotation) {
         if (type == JointType::free) return !any_;
         if (type == JointType::weld) {
@@ -30,7 +33,7 @@ class ParallelAxes {
         return parallel;
     }
     bool any() const { return any_; }
-    /// Of the axes, where there are any.
+    /// Direction of the common axis. Precondition: any().
     Vec3 const& direction() const { return axis_; }
 
   private:
@@ -39,7 +42,7 @@ class ParallelAxes {
     bool any_ = false;
 };
 
-/// False at the first joint, the tip left out, that is not parallel.
+/// Returns false at the first joint, the tip excluded, that breaks the parallelism.
 bool add_all(BodyArrays const& bodies, ParallelAxes& axes, std::size_t& first_odd) {
     for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
         if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd]))
@@ -47,19 +50,21 @@ bool add_all(BodyArrays const& bodies, ParallelAxes& axes, std::size_t& first_od
     return true;
 }
 
+/// Implements axes_are_parallel() with a given tolerance on the sine of the angle.
 bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& first_odd) {
     ParallelAxes axes(tolerance);
     if (!add_all(chain.bodies, axes, first_odd)) return false;
-    bool const pinned = chain.tip == Tip::jointed &&
-                        chain.tip_joint.type == JointType::spherical;  // turns about any axis
+    bool const pinned =
+        chain.tip == Tip::jointed &&
+        chain.tip_joint.type == JointType::spherical;  // allows rotation about any axis
     if (chain.tip == Tip::jointed && !pinned &&
         !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation))
         return false;
     return axes.any();
 }
 
-/// Turning about one axis in one plane: a chain of revolute joints from the ground on. To rounding,
-/// for what leaves the plane is then left out of the dynamics.
+/// True for a chain of revolute joints from the ground on that rotates about one axis, in one
+/// plane. The tolerance is rounding, because planar handles omit all motion out of the plane.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
     return chain.base == Base::fixed && parallel_within(rounding, chain, odd);
@@ -69,14 +74,15 @@ bool are_parallel(Vec3 const& a, Vec3 const& b) {
     return norm(cross(a, b)) <= rounding * norm(a) * norm(b);
 }
 
-/// The universal joint's second axis, in J, at its angles.
+/// Second axis of the universal joint, in J, at the angles of its q.
 Vec3 second_axis(TipJoint const& tip) {
     Vec3 const &first = tip.first_axis, &axis = tip.axis;
     double const c = std::cos(tip.q[0]), s = std::sin(tip.q[0]);
     return c * axis + s * cross(first, axis) + (1 - c) * dot(first, axis) * first;
 }
 
-/// Directions of a plane's three that the tip's joint restricts. `normal`: in J of the tip.
+/// Number of a plane's three directions that the tip's joint restricts. `normal` is in J of the
+/// tip.
 int restricted_in_plane(TipJoint const& tip, Vec3 const& normal) {
     switch (tip.type) {
         case JointType::spherical:
@@ -95,8 +101,8 @@ int restricted_in_plane(TipJoint const& tip, Vec3 const& normal) {
     }
 }
 
-/// A chain that its other joints keep in a plane is held across it anyway: its tip restricts what
-/// it does within the plane.
+/// Number of directions that the tip's joint restricts. If the other joints keep the chain in a
+/// plane, only the plane's three directions count.
 std::int64_t restricted_by_tip(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return 0;
     ParallelAxes axes(rounding);

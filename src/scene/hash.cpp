@@ -1,3 +1,4 @@
+// Implements the fingerprints of scenes, chains and files.
 #include "scene/hash.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,8 @@ namespace catena::scene {
 
 namespace {
 
+/// Hash of a sequence of values. Lengths of texts and lists enter too, so that their boundaries
+/// count.
 class Fingerprint {
   public:
     void word(std::uint64_t value) {
@@ -89,7 +92,7 @@ std::string content_of(std::string const& path) {
     return text.str();
 }
 
-/// Numbers of their own: those of the enumeration may move.
+/// Returns stable numbers, because those of the enumeration may change.
 int number_of(Integrator integrator) {
     switch (integrator) {
         case Integrator::rk4:
@@ -114,7 +117,8 @@ int number_of(Integrator integrator) {
     return 3;
 }
 
-/// What scenes need not have is added under its name where they have it.
+/// Adds optional parts of a scene under their name, and only if present. Scenes without them keep
+/// their fingerprint.
 template <class... T>
 void add_named(Fingerprint& print, char const* name, bool there, T const&... values) {
     if (!there) return;
@@ -194,6 +198,7 @@ std::string fingerprint(Scene const& scene) {
 
 namespace {
 
+/// Adds names, ends, masses, joints and links: what a branch must keep.
 void add_kind(Fingerprint& print, ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
     LinkedArrays const& l = chain.linked;

@@ -1,4 +1,4 @@
-// A fingerprint of what decides the motion.
+// A fingerprint of all that decides the motion.
 #pragma once
 
 #include <span>
@@ -8,20 +8,20 @@
 
 namespace catena::scene {
 
-/// 32 hexadecimal digits, the same on every machine: of units, chains (names included), box, forces
-/// (the content of system and topology files, not how and where they are computed) and dynamics but
-/// `steps`. Two 64-bit lanes of multiply-and-rotate over the values' bits: tells scenes apart, no
-/// protection against forgery. Throws InputError when a file that the scene names cannot be read
-/// any more.
+/// Returns 32 hexadecimal digits that are identical on every machine. Input: units, chains (names
+/// included), box, forces and dynamics except `steps`. System and topology files enter by content;
+/// how and where forces are computed does not enter. The hash has two 64-bit lanes of
+/// multiply-and-rotate over the values' bits. It tells scenes apart but does not protect against
+/// forgery. Throws InputError if a file named by the scene can no longer be read.
 std::string fingerprint(Scene const& scene);
 
-/// Fingerprints of what chains are and of how they start, 16 hexadecimal digits each.
+/// Fingerprints of the make-up of chains and of their start, 16 hexadecimal digits each.
 struct ChainPrints {
     std::string kind;  // name, ends, bodies, links and joints
     std::string loads, positions, velocities;
 };
 ChainPrints prints_of(std::span<ChainSpec const> chains);
-/// Of a file's content. Throws as fingerprint().
+/// Returns the fingerprint of a file's content. Throws as fingerprint() does.
 std::string content_print(std::string const& path);
 std::string text_print(std::string const& text);
 

@@ -1,8 +1,9 @@
+// Implements the scene tree on top of yaml-cpp's event parser.
 #include "scene/node.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
-// After yaml.h: these two do not include what they use.
+// The following two headers do not include what they use, so that they must follow yaml.h.
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/parser.h>
 
@@ -20,22 +21,25 @@ std::string at_line(std::string const& file, int line) {
     return line > 0 ? fmt::format("{}: line {}", file, line) : file;
 }
 
+/// Memory of a subtree in bytes, to limit the copies made by aliases.
 std::size_t bytes_of(Node const& node) {
     std::size_t bytes = sizeof(Node) + node.key.size() + node.text.size();
     for (Node const& item : node.items) bytes += bytes_of(item);
     return bytes;
 }
 
+/// Number of levels of a subtree.
 std::size_t depth_of(Node const& node) {
     std::size_t deepest = 0;
     for (Node const& item : node.items) deepest = std::max(deepest, depth_of(item));
     return 1 + deepest;
 }
 
-/// Values within values: yaml-cpp stops there, and everything that walks the tree calls itself as
-/// often.
+/// Largest depth of nested values. yaml-cpp stops there, and every function that walks the tree
+/// recurses as deep.
 std::size_t constexpr deepest = 500;
-/// Of what anchors keep and aliases repeat. Large files may repeat what they hold.
+/// Largest number of bytes copied for anchors and aliases. The limit grows with the file, so that
+/// large files may repeat their content.
 std::size_t allowed_copies(std::size_t file) {
     return std::max(std::size_t{512} << 20, 128 * file);
 }
@@ -100,6 +104,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
 
   private:
+    /// A list or map whose end has not been read yet.
     struct Open {
         Node node;
         YAML::anchor_t anchor;
@@ -113,10 +118,9 @@ class TreeBuilder : public YAML::EventHandler {
         return !open_.empty() && open_.back().node.kind == Node::Kind::map && !open_.back().has_key;
     }
     [[noreturn]] void refuse_key(YAML::Mark const& mark) const {
-        throw InputError(
-            "a key is not plain text", at_line(file_, line(mark)),
-            "write `name: value`, and close every bracket");  // yaml-cpp takes a bracket left open
-                                                              // for a key
+        throw InputError("a key is not plain text", at_line(file_, line(mark)),
+                         "write `name: value`, and close every bracket");  // yaml-cpp reads an open
+                                                                           // bracket as a key
     }
     void refuse_tag(YAML::Mark const& mark, std::string const& tag) const {
         if (tag.empty() || tag == "?" || tag == "!") return;
@@ -151,7 +155,7 @@ class TreeBuilder : public YAML::EventHandler {
         open_.pop_back();
         add(std::move(done.node), done.anchor);
     }
-    /// Before the copy is made.
+    /// Counts a copy before it is made; throws InputError beyond the limit.
     void count_copy(Node const& node, int at) {
         copied_ += bytes_of(node);
         if (copied_ > allowed_)
@@ -160,6 +164,7 @@ class TreeBuilder : public YAML::EventHandler {
                             allowed_ >> 20),
                 at_line(file_, at), "write the values out, or give fewer of them anchors");
     }
+    /// Inserts a finished value into the innermost open list or map.
     void add(Node node, YAML::anchor_t anchor) {
         node.key.clear();
         if (anchor != 0) {

@@ -1,3 +1,4 @@
+// Implements the PDB parser: fixed columns, with the deviations of common programs.
 #include "scene/pdb_file.hpp"
 
 #include <fmt/format.h>
@@ -23,17 +24,17 @@ std::string_view trimmed(std::string_view text) {
                : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Columns from `first` (from 1) on, without blanks at their ends; nothing where the line is
-/// shorter.
+/// Returns `count` columns from `first` (from 1) on, trimmed; empty if the line is shorter.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t count) {
     return line.size() < first ? std::string_view() : trimmed(line.substr(first - 1, count));
 }
 
+/// Character in column `at` (from 1); a blank beyond the line's end.
 char column(std::string_view line, std::size_t at) { return line.size() < at ? ' ' : line[at - 1]; }
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// The next line, without its end: LF, CR LF or CR. False at the end of the text.
+/// Extracts the next line without its end (LF, CR LF or CR). Returns false at the end of the text.
 bool next_line(std::string_view& rest, std::string_view& line) {
     if (rest.empty()) return false;
     std::size_t const end = std::min(rest.find_first_of("\r\n"), rest.size());
@@ -43,12 +44,13 @@ bool next_line(std::string_view& rest, std::string_view& line) {
     return true;
 }
 
+/// Removes a byte order mark.
 std::string_view without_mark(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     return text;
 }
 
-/// Files of other kinds under this one's name.
+/// Refuses files of other formats with an advice for each.
 void refuse_other_formats(std::string_view text, std::string const& path) {
     auto const refuse = [&](char const* what, char const* remedy) {
         throw InputError(what, path, remedy);
@@ -72,8 +74,8 @@ void refuse_other_formats(std::string_view text, std::string const& path) {
         "give x, y and z in angstrom, with a decimal point, in columns 31-38, 39-46 and 47-54");
 }
 
-/// A number in another place than its columns leaves a digit at the field's edge, or no digit
-/// before its point.
+/// True if a coordinate lies within its columns. A displaced number leaves a digit at the field's
+/// edge, or no digit before its point.
 bool stands_apart(std::string_view line, std::string_view field, std::size_t first) {
     std::size_t const point = field.find('.');
     char const next = column(line, first + 8);
@@ -94,8 +96,8 @@ double coordinate(std::string_view line, std::size_t first, std::string const& p
     return value;
 }
 
-/// Columns 18 to 20, with column 21 for the four letters of force fields; else that one belongs to
-/// the chain's name.
+/// Reads names and numbers. The residue is in columns 18 to 20, and in column 21 for the four
+/// letters of force fields. Otherwise column 21 belongs to the chain's name.
 void read_names(std::string_view line, PdbAtom& atom) {
     atom.name = columns(line, 13, 4);
     atom.at_margin = column(line, 13) != ' ' && !is_digit(column(line, 13));
@@ -104,7 +106,7 @@ void read_names(std::string_view line, PdbAtom& atom) {
                            (column(line, 22) == ' ' || meaning_of(four).kind != ResidueKind::other);
     atom.residue = long_name ? four : columns(line, 18, 3);
     atom.chain = long_name || column(line, 21) == ' ' ? columns(line, 22, 1) : columns(line, 21, 2);
-    bool const wide = is_digit(column(line, 27));  // numbers above 9999 of some programs
+    bool const wide = is_digit(column(line, 27));  // numbers above 9999, written by some programs
     atom.number = columns(line, 23, wide ? 5 : 4);
     atom.insertion = wide ? ' ' : column(line, 27);
     atom.alternate = column(line, 17);
@@ -137,7 +139,7 @@ bool is_record(std::string_view line, std::string_view name) {
     return trimmed(line.substr(0, 6)) == name;
 }
 
-/// SEQRES: columns 12 (chain) and 14 to 17 (residues in all).
+/// Reads SEQRES: column 12 (chain) and columns 14 to 17 (number of residues).
 void read_sequence_record(std::string_view line, PdbSummary& summary) {
     double residues = 0;
     if (parse_number(columns(line, 14, 4), residues) == NumberFault::none && residues > 0 &&
@@ -145,7 +147,8 @@ void read_sequence_record(std::string_view line, PdbSummary& summary) {
         summary.sequence[std::string(columns(line, 12, 1))] = static_cast<std::int64_t>(residues);
 }
 
-/// CRYST1: edges in columns 7 to 33, angles to 54. A cube of 1 angstrom stands for no cell.
+/// Reads CRYST1: edges in columns 7 to 33, angles up to column 54. A cube of 1 angstrom means no
+/// cell.
 void read_cell(std::string_view line, PdbSummary& summary) {
     Vec3 edges{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -166,7 +169,7 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
     refuse_other_formats(text, path);
     PdbSummary summary;
     int part = 0, number = 0;
-    bool open = true, begun = false;  // within the first model; atoms of a model have come
+    bool open = true, begun = false;  // inside the first model; atoms of a model have been read
     for (std::string_view line; next_line(text, line);) {
         ++number;
         if (is_record(line, "MODEL") || is_record(line, "ENDMDL") || is_record(line, "END")) {

@@ -1,3 +1,4 @@
+// Implements the selection of sites: gathers atoms into residues, then selects one atom each.
 #include "scene/pdb_sites.hpp"
 
 #include <fmt/format.h>
@@ -32,13 +33,14 @@ Vec3 in_nm(Vec3 const& angstrom) {
 
 std::string label_of(PdbAtom const& atom) {
     auto const number = residue_number(atom.number);
-    std::string label = number && *number < 10000 ? std::to_string(*number)
-                                                  : shown(atom.number);  // beyond: as it is written
+    std::string label = number && *number < 10000
+                            ? std::to_string(*number)
+                            : shown(atom.number);  // larger numbers stay as written
     if (atom.insertion != ' ') label += shown(std::string_view(&atom.insertion, 1));
     return label;
 }
 
-/// "ALA 7 of chain A", as much of it as the file says.
+/// Returns "ALA 7 of chain A", or the parts of it that the file gives.
 std::string name_of(Residue const& residue) {
     PdbAtom const& atom = residue.front();
     std::string text = shown(atom.residue);
@@ -47,8 +49,8 @@ std::string name_of(Residue const& residue) {
     return text;
 }
 
-/// Gathers atoms into residues. Atoms of a residue need not follow each other: alternate locations
-/// may come in blocks of their own.
+/// Gathers atoms into residues. Atoms of a residue need not be consecutive, because alternate
+/// locations may form blocks of their own.
 class Gathering {
   public:
     Gathering(std::string const& path, Node const& at) : path_(path), at_(at) {}
@@ -58,7 +60,8 @@ class Gathering {
         auto const number = residue_number(atom.number);
         if (number) {
             if (!residues.empty() && !atom.same_chain(residues.back().front())) lap_ = 0;
-            if (last_ == 9999 && *number <= 1) ++lap_;  // writers without a fifth digit begin again
+            if (last_ == 9999 && *number <= 1)
+                ++lap_;  // writers without a fifth digit restart at 0 or 1
             auto const key = std::tuple(atom.part, atom.chain, atom.segment, lap_ + realm(atom),
                                         *number, atom.insertion);
             auto const [known, fresh] = known_.try_emplace(key, residues.size());
@@ -71,11 +74,12 @@ class Gathering {
     std::vector<Residue> residues;
 
   private:
-    /// Water and ions are often numbered from 1 again.
+    /// Separates water and ions from other residues, because their numbers often restart at 1.
     static int realm(PdbAtom const& atom) {
         ResidueKind const kind = meaning_of(atom.residue).kind;
         return kind == ResidueKind::water ? 1 << 20 : kind == ResidueKind::ion ? 2 << 20 : 0;
     }
+    /// True if the atom belongs to the residue that was read last.
     bool continues(PdbAtom const& atom) const {
         Residue const& residue = residues.back();
         PdbAtom const& first = residue.front();
@@ -104,10 +108,11 @@ class Gathering {
              std::size_t>
         known_;
     std::int64_t last_ = 0;
+    /// Number of restarts of the residue numbers within the chain.
     int lap_ = 0;
 };
 
-/// What is left out, counted by name.
+/// Counts the residues that are left out, by kind and name.
 class Savings {
   public:
     void add(char const* kind, Residue const& residue) {
@@ -131,6 +136,7 @@ class Savings {
     std::map<std::string, std::map<std::string, std::int64_t>> counts_;
 };
 
+/// Selects one site per residue and records notes on the choices.
 class Selection {
   public:
     Selection(std::vector<Residue> const& residues, std::string const& path, Node const& at)
@@ -173,7 +179,7 @@ class Selection {
                  "keep one chain per file, each with its own entry in `chains`");
     }
 
-    /// SEQRES lists the residues of the whole chain.
+    /// Notes missing residues. SEQRES lists the residues of the whole chain.
     void note_unresolved(PdbSummary const& summary) {
         if (from_.empty()) return;
         auto const listed = summary.sequence.find(std::string(from_[0]->chain));
@@ -197,12 +203,14 @@ class Selection {
         return std::any_of(residues_.begin(), residues_.end(),
                            [](Residue const& r) { return r.is_protein(); });
     }
-    /// Calcium bears the same name, but begins in column 13 and has the element CA.
+    /// True for an alpha carbon. Calcium has the same name, but begins in column 13 and has the
+    /// element CA.
     static bool is_alpha_carbon(Residue const& residue, PdbAtom const& atom) {
         if (atom.name != "CA") return false;
         return residue.is_protein() || !(atom.at_margin && atom.element != "C");
     }
-    /// Names of one letter may be one-letter codes: then the atom must bear it, too.
+    /// True for water and ions. A residue name of one letter may be a one-letter amino acid code;
+    /// then the atom must have that name, too.
     static bool is_solvent(Residue const& residue) {
         PdbAtom const& atom = residue.front();
         if (residue.meaning.kind == ResidueKind::water)
@@ -218,7 +226,7 @@ class Selection {
         return atom.name == "CA" && !atom.at_margin && atom.element == "C";
     }
 
-    /// Why the residue is no bead; nullptr: it is one.
+    /// Returns the kind of a residue that is not a bead, or nullptr for a bead.
     char const* foreign(Residue const& residue) const {
         PdbAtom const& atom = residue.front();
         if (is_solvent(residue))
@@ -234,6 +242,7 @@ class Selection {
         return is_one_atom(residue) && atom.name == atom.residue ? "ion" : "ligand";
     }
 
+    /// Atoms that may be the residue's site: alternate locations of one atom.
     std::vector<PdbAtom const*> candidates(Residue const& residue) const {
         std::vector<PdbAtom const*> found;
         for (PdbAtom const& atom : residue.atoms)
@@ -277,7 +286,7 @@ class Selection {
                               beside(residue, atom, "N")});
         from_.push_back(&atom);
     }
-    /// An alternate location that would be taken, were its site in the file.
+    /// Throws InputError if a preferred alternate location lacks the site's atom.
     void refuse_lost_alternate(Residue const& residue, std::vector<PdbAtom const*> const& all,
                                PdbAtom const& taken) const {
         for (PdbAtom const& atom : residue.atoms) {
@@ -296,7 +305,8 @@ class Selection {
     }
     static Residue residue_of(PdbAtom const& atom) { return {{atom}, {}}; }
 
-    /// Of the same alternate location, or of none.
+    /// Position of the atom `name` of the site's alternate location or of none, nm. Only alpha
+    /// carbons have such neighbours.
     static std::optional<Vec3> beside(Residue const& residue, PdbAtom const& site,
                                       std::string_view name) {
         for (PdbAtom const& atom : residue.atoms)
@@ -317,7 +327,7 @@ class Selection {
     std::vector<Residue> const& residues_;
     Node const& at_;
     bool alpha_carbons_, protein_;
-    std::vector<PdbAtom const*> from_;  // of each site
+    std::vector<PdbAtom const*> from_;  // one per site
     Savings left_out_;
     int alternates_ = 0;
     std::string mixed_;

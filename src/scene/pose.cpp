@@ -1,3 +1,4 @@
+// Implements joint motions and the composition of poses.
 #include "scene/pose.hpp"
 
 namespace catena::scene {

@@ -1,5 +1,4 @@
-// Where the bodies of a chain in joint coordinates stand: the joints' own motions and their
-// composition.
+// Poses of bodies in joint coordinates: the joints' own motions and their composition.
 #pragma once
 
 #include <cmath>
@@ -9,21 +8,23 @@
 
 namespace catena::scene {
 
-/// Orientation and origin of a frame in another one.
+/// Orientation and origin of a frame relative to another frame.
 struct Pose {
     Quat orientation = Quat::identity();
     Vec3 origin = Vec3::zero();
 };
-/// X_AC = X_AB X_BC.
+/// Composition X_AC = X_AB X_BC.
 Pose operator*(Pose const& a, Pose const& b);
 
-/// X(q) of B in J, as BodyArrays defines it; a link and a free joint: their q as it stands.
+/// X(q) of B in J, as BodyArrays defines it. For a free joint q holds the quaternion; the origin is
+/// zero. A weld and a link have the identity.
 Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch,
                   std::array<double, 4> const& q);
 
-/// Pose in W of body k + 1, given that of body k (k = 0: ignored).
+/// Pose in W of body k + 1, given that of body k (ignored if k = 0).
 Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard);
 
+/// Coordinate, rate and acceleration of a prescribed motion at time t.
 CATENA_HD double value_at(PrescribedMotion const& c, double t) {
     return c.offset + c.rate * t +
            c.amplitude * cos_sin(6.283185307179586476925 * c.frequency * t + c.phase).sin;

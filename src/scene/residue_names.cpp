@@ -1,3 +1,4 @@
+// Implements the table of residue names.
 #include "scene/residue_names.hpp"
 
 #include <cctype>
@@ -11,14 +12,15 @@ namespace {
 
 using Meanings = std::unordered_map<std::string, ResidueMeaning>;
 
-/// Names, by blanks, that mean `parent`.
+/// Names, separated by blanks, that mean `parent`.
 struct Family {
     char const* parent;
     char const* names;
 };
 
-/// Protonation states and force fields' names (Amber, CHARMM, GROMACS), the wwPDB's common
-/// modifications without a change of charge, and mirror images, which one bead cannot tell apart.
+/// Residues with the charge of their parent. Protonation states and names of force fields (Amber,
+/// CHARMM, GROMACS); the wwPDB's common modifications without a change of charge. Mirror images are
+/// included, which one bead cannot tell apart.
 Family const renamed[] = {
     {"ALA", "ALA DAL AIB ABA"},
     {"ARG", "ARG DAR ARGN AGM"},
@@ -42,8 +44,8 @@ Family const renamed[] = {
     {"VAL", "VAL DVA NVA"},
 };
 
-/// Phosphates, sulfates, carboxylates, and lysine, arginine and glutamate that have lost their
-/// charge.
+/// Residues with another charge than their parent: phosphates, sulfates, carboxylates. Lysine,
+/// arginine and glutamate that have lost their charge are included.
 Family const recharged[] = {
     {"SER", "SEP S1P"},     {"THR", "TPO T1P"},
     {"TYR", "PTR Y1P TYS"}, {"HIS", "NEP H1D H2D H1E H2E"},

@@ -1,4 +1,4 @@
-// What the residue names of structure files mean to a model of the twenty amino acids.
+// Classification of residue names in structure files for a model of the twenty amino acids.
 #pragma once
 
 #include <string>
@@ -6,23 +6,27 @@
 
 namespace catena::scene {
 
+/// Kind of residue.
 enum class ResidueKind {
-    amino_acid,  // one of the twenty, or another name or a modification that keeps its charge
-    charged,     // a modification with a charge that its parent does not have
+    amino_acid,  // one of the twenty, or another name or a modification with the same charge
+    charged,     // a modification with another charge than its parent
     cap,         // a blocking group at a chain's end
     water,
     ion,
     other,
 };
 
+/// Kind of a residue and the amino acid that it stands for.
 struct ResidueMeaning {
     ResidueKind kind = ResidueKind::other;
-    std::string parent = {};  // three letters, of amino_acid and charged; the name itself where it
-                              // is one of the twenty
+    /// Three-letter name of the amino acid, for amino_acid and charged; the name itself for one of
+    /// the twenty.
+    std::string parent = {};
 };
 
-/// In any case, blanks cut off: "MSE" is an amino_acid with the parent "MET". Names of protonation
-/// states (HIE, ASH, LYN) and Amber's of residues at a chain's ends (NMET, CLYS) are their residue.
+/// Classifies a name; case and blanks are ignored. "MSE" is an amino_acid with the parent "MET".
+/// Names of protonation states (HIE, ASH, LYN) and Amber's names of terminal residues (NMET, CLYS)
+/// map to their residue.
 ResidueMeaning meaning_of(std::string_view name);
 
 }  // namespace catena::scene

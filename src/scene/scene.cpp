@@ -1,3 +1,4 @@
+// Implements the names of enumerators and the small queries of Scene.
 #include "scene/scene.hpp"
 
 #include <algorithm>
@@ -13,8 +14,8 @@ std::int64_t Scene::bodies() const {
 }
 
 void Scene::note(std::string text) {
-    // What is said again follows soon; a search of all would be quadratic where each of many chains
-    // has its own note.
+    // Repetitions of a note follow shortly after it. A search of all notes would be quadratic if
+    // each of many chains has a note of its own.
     std::size_t constexpr looked_at = 1000;
     auto const from = notes.end() - static_cast<std::ptrdiff_t>(std::min(notes.size(), looked_at));
     if (std::find(from, notes.end(), text) == notes.end()) notes.push_back(std::move(text));

@@ -1,6 +1,6 @@
-// What the user describes, validated: plain data, whole on every rank, in the units of the scene.
-// Frames: W ground axes, B body axes, J joint frame (fixed in the inboard body, `rotation` and
-// `translation`).
+// The validated description of a simulation: plain data, held whole by every rank. Quantities are
+// in the scene's units: nm, ps, amu and kJ/mol, or SI units with `units: si`. Frames: W ground
+// axes, B body axes, J joint frame (fixed in the inboard body by `rotation` and `translation`).
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 
 namespace catena {
 
+/// Kind of motion that a joint allows between its inboard and its outboard body.
 enum class JointType : std::uint8_t {
     free,
     link,
@@ -26,102 +27,135 @@ enum class JointType : std::uint8_t {
     prismatic,
     helical
 };
-/// Whether the outboard body moves along the joint's axis.
+/// True if the outboard body moves along the joint's axis.
 CATENA_HD bool slides(JointType type) {
     return type == JointType::prismatic || type == JointType::helical;
 }
+/// Base of a chain: body 1 moves freely, or its inboard joint attaches it to the ground.
 enum class Base { free, fixed };
+/// Tip of a chain: free, or attached by a TipJoint.
 enum class Tip { free, jointed };
+/// Velocities at the start: as written in the scene, zero, or drawn at DynamicsSpec::temperature.
 enum class StartVelocities { given, zero, thermal };
 
-/// A prescribed coordinate: offset + rate t + amplitude sin(2 pi frequency t + phase).
+/// Prescribed coordinate: offset + rate t + amplitude sin(2 pi frequency t + phase). The coordinate
+/// is a length or an angle (rad); `frequency` is in cycles per time unit, `phase` in rad.
 struct PrescribedMotion {
     double offset = 0, rate = 0, amplitude = 0, frequency = 0, phase = 0;
 };
-/// A joint that is driven: revolute, prismatic and helical by the first course, universal by both.
-/// What the joint's q and qd say is overwritten by the course at every time; its torque, stiffness
-/// and damping mean nothing.
+/// Joint with prescribed motion. Revolute, prismatic and helical joints use the first course,
+/// universal joints both. The courses replace the joint's q and qd at all times. Torque, stiffness
+/// and damping of the joint are ignored.
 struct DrivenJoint {
-    std::int64_t body = 0;  // index from 0; ascending in a list
+    /// Index of the body outboard of the joint, from 0; ascending in a list.
+    std::int64_t body = 0;
     std::array<PrescribedMotion, 2> course;
 };
 
-/// Beads (points that OpenMM knows) fixed in bodies. Empty where no body of the chain carries any.
+/// Beads (points known to OpenMM) that are fixed in rigid bodies. All arrays are empty if no body
+/// of the chain carries a bead.
 struct CarriedBeads {
-    std::vector<std::int64_t> offset;  // bodies + 1: body k carries beads [offset[k], offset[k+1])
-    std::vector<Vec3> position;        // from the body's origin, B
-    std::vector<double>
-        mass;  // for the topology and OpenMM; the body's own mass counts in the dynamics
+    /// Range of beads per body, bodies + 1 entries: body k carries beads [offset[k], offset[k+1]).
+    std::vector<std::int64_t> offset;
+    /// Position from the body's origin, B.
+    std::vector<Vec3> position;
+    /// Masses for the topology and OpenMM; the dynamics use only the body's own mass.
+    std::vector<double> mass;
+    /// Three-letter residue names; "UNK" where none is given.
     std::vector<std::string> residue;
 
     std::size_t size() const { return position.size(); }
 };
 
-/// Rigid bodies of one chain; entry k is body k + 1 and its inboard joint. A body's origin is its
-/// inboard joint (prismatic and helical: the point that lies on the joint frame's origin at q = 0).
-/// Between J and B stands the joint's own motion X(q): revolute: turn by q about `axis`; prismatic:
-/// shift by q along `axis`; helical: turn by q and shift by pitch q; universal: turn by q[0] about
-/// `first_axis`, then by q[1] about `axis`; weld: none. The arrays from `first_axis` on may be
-/// empty, which means zero (first_axis: no universal joint; pitch: no helical joint).
+/// Rigid bodies of one chain in joint coordinates. Entry k describes body k + 1 and its inboard
+/// joint. A body's origin is its inboard joint; for prismatic and helical joints it is the point at
+/// the joint frame's origin at q = 0. X(q), the joint's own motion, relates B to J. Revolute:
+/// rotation by q about `axis`. Prismatic: translation by q along `axis`. Helical: rotation by q and
+/// translation by pitch q. Universal: rotation by q[0] about `first_axis`, then by q[1] about
+/// `axis`. Weld: identity. Arrays from `first_axis` on may be empty, which means zero. An empty
+/// `first_axis` means no universal joint, an empty `pitch` no helical joint.
 struct BodyArrays {
     std::vector<double> mass;
-    std::vector<Vec3> com;         // from the origin, B
-    std::vector<Sym3> inertia;     // about com, B
-    std::vector<JointType> joint;  // entry 0 of a free base: JointType::free
-    std::vector<Vec3>
-        axis;  // unit axis, B (and J: the same components); universal: the second axis, B
-    std::vector<Mat3>
-        rotation;  // R of the joint frame in the inboard body's axes (entry 0: ground)
-    std::vector<Vec3> translation;  // origin of the joint frame from the inboard body's origin,
-                                    // inboard body's axes
-    std::vector<std::array<double, 4>>
-        q;  // {angle or shift, 0, 0, 0}; universal {angle 1, angle 2, 0, 0}; spherical and free:
-            // unit quaternion w x y z of B in J (free: in W); weld: zeros
-    std::vector<Vec3>
-        qd;  // rates of q; spherical and free: angular velocity relative to the inboard body, B
-    Vec3 free_position = Vec3::zero();  // free base: origin of body 1, W
-    Vec3 free_velocity = Vec3::zero();  // free base: its velocity, W
-    std::vector<Vec3> first_axis;       // universal: the first axis, J; not parallel to `axis`
-    std::vector<double> pitch;          // helical: shift a radian
-    std::vector<Vec3> torque;           // joint torque (prismatic: force) on body k + 1 along each
-                                        // coordinate; spherical: components in B
-    std::vector<Vec3>
-        stiffness;  // a coordinate; spherical: on the components of the rotation vector from `rest`
-    std::vector<Vec3> damping;                  // on qd, as stiffness
-    std::vector<std::array<double, 4>> rest;    // as q
-    std::vector<std::pair<Vec3, Vec3>> wrench;  // external {torque, force} at com, W
-    std::vector<std::array<double, 2>>
-        drag;  // {linear, angular}: force -linear v at com, torque -angular omega
-    std::vector<DrivenJoint> driven;  // sparse
+    /// Centre of mass from the origin, B.
+    std::vector<Vec3> com;
+    /// Inertia about the centre of mass, B.
+    std::vector<Sym3> inertia;
+    /// Joint types; entry 0 of a free base is JointType::free.
+    std::vector<JointType> joint;
+    /// Unit axis in B; its components in J are equal. Universal joint: the second axis, B.
+    std::vector<Vec3> axis;
+    /// Rotation matrix of J relative to the inboard body's axes (entry 0: to the ground's).
+    std::vector<Mat3> rotation;
+    /// Origin of J from the inboard body's origin, in the inboard body's axes.
+    std::vector<Vec3> translation;
+    /// Joint positions. Sliding and revolute joints: {angle or displacement, 0, 0, 0}. Universal:
+    /// {angle 1, angle 2, 0, 0}. Spherical and free: unit quaternion w x y z of B in J (free: in
+    /// W). Weld: zeros.
+    std::vector<std::array<double, 4>> q;
+    /// Joint rates. Spherical and free: angular velocity relative to the inboard body, B.
+    std::vector<Vec3> qd;
+    /// Position of body 1's origin for a free base, W.
+    Vec3 free_position = Vec3::zero();
+    /// Velocity of body 1's origin for a free base, W.
+    Vec3 free_velocity = Vec3::zero();
+    /// First axis of a universal joint, J; not parallel to `axis`.
+    std::vector<Vec3> first_axis;
+    /// Translation per radian of a helical joint.
+    std::vector<double> pitch;
+    /// Joint torque (prismatic: force) on body k + 1 along each coordinate. Spherical: components
+    /// in B.
+    std::vector<Vec3> torque;
+    /// Spring constant per coordinate. Spherical: acts on the components of the rotation vector
+    /// from `rest`.
+    std::vector<Vec3> stiffness;
+    /// Damping constant on qd, per coordinate as in `stiffness`.
+    std::vector<Vec3> damping;
+    /// Rest positions of the springs, in the format of `q`.
+    std::vector<std::array<double, 4>> rest;
+    /// External {torque, force} at the centre of mass, W.
+    std::vector<std::pair<Vec3, Vec3>> wrench;
+    /// Drag constants {linear, angular}: force -linear v at the centre of mass, torque -angular
+    /// omega.
+    std::vector<std::array<double, 2>> drag;
+    /// Joints with prescribed motion; all others are absent from the list.
+    std::vector<DrivenJoint> driven;
     CarriedBeads carried;
 
     std::size_t size() const { return mass.size(); }
 };
 
-/// Rigid bodies and point beads joined by links of fixed length, in absolute coordinates; entry k
-/// is body k + 1 and the link on its inboard side, which runs from point `outboard` of the body
-/// before to point `inboard` of this one.
+/// Rigid bodies and point beads joined by links of fixed length, in absolute coordinates. Entry k
+/// describes body k + 1 and its inboard link. That link runs from point `outboard` of the preceding
+/// body to point `inboard` of this body.
 struct LinkedArrays {
     std::vector<double> mass;
-    std::vector<Sym3> inertia;                       // about com, B; all zero: a point bead
-    std::vector<Vec3> position, velocity;            // of com, W, unwrapped
-    std::vector<std::array<double, 4>> orientation;  // unit quaternion w x y z of B in W
-    std::vector<Vec3> omega;                         // B
-    std::vector<Vec3> inboard, outboard;  // ends of the links from com, B; a point bead: zero
-    std::vector<double>
-        length;  // of the inboard link; entry 0 counts only for a fixed base (from the anchor)
-    CarriedBeads carried;        // positions from com, B; a point bead carries itself
-    Vec3 anchor = Vec3::zero();  // W, fixed base
+    /// Inertia about the centre of mass, B; all zero for a point bead.
+    std::vector<Sym3> inertia;
+    /// Position and velocity of the centre of mass, W; not wrapped into the box.
+    std::vector<Vec3> position, velocity;
+    /// Unit quaternion w x y z of B in W.
+    std::vector<std::array<double, 4>> orientation;
+    /// Angular velocity, B.
+    std::vector<Vec3> omega;
+    /// Ends of the links from the centre of mass, B; zero for a point bead.
+    std::vector<Vec3> inboard, outboard;
+    /// Length of the inboard link. Entry 0 is used only for a fixed base, where the link starts at
+    /// `anchor`.
+    std::vector<double> length;
+    /// Carried beads, with positions from the centre of mass, B; a point bead carries itself.
+    CarriedBeads carried;
+    /// Ground point of the first link for a fixed base, W.
+    Vec3 anchor = Vec3::zero();
 
     bool is_bead(std::size_t k) const { return inertia[k].data[0] == 0; }
     std::size_t size() const { return mass.size(); }
 };
 
-/// A joint from the last body to the ground, or to the first body, which makes the chain a ring.
-/// Its joint frame J is fixed in the last body as every joint's in its inboard body; on the other
-/// side stands a frame G in the place of an outboard body's. At rest in the ground it is where the
-/// start puts it: G = J X(q). In a ring it is the first body's B, and q means nothing. A link
-/// instead runs from the last bead to the ground point `anchor`, in a ring to the first bead.
+/// Joint between the last body and the ground, or the first body if the chain is a ring. The joint
+/// frame J is fixed in the last body. G is the frame on the other side, in the role of an outboard
+/// body's frame. A tip at the ground keeps G at rest at its start placement, G = J X(q). In a ring
+/// G is the frame B of the first body, and q is ignored. A link instead runs from the last bead to
+/// the ground point `anchor`; in a ring it runs to the first bead.
 struct TipJoint {
     bool ring = false;
     JointType type = JointType::spherical;
@@ -129,33 +163,40 @@ struct TipJoint {
     double pitch = 0;
     Mat3 rotation = Mat3::identity();
     Vec3 translation = Vec3::zero();
-    std::array<double, 4> q{0, 0, 0, 0};  // as BodyArrays::q
-    std::optional<Vec3> anchor;  // W: where G's origin must be (closure error above 1e-9 of the
-                                 // chain's reach: refused); link: needed
-    double length = 0;           // link; 0: the distance at the start
+    /// Joint position at the start, in the format of BodyArrays::q.
+    std::array<double, 4> q{0, 0, 0, 0};
+    /// Required position of G's origin, W. A closure error above 1e-9 of the chain's reach is
+    /// refused. Links to the ground require it.
+    std::optional<Vec3> anchor;
+    /// Length of a link; 0 means the distance at the start.
+    double length = 0;
 };
 
-/// Point beads on rigid links; entry k is bead k + 1 and the link on its inboard side.
+/// Point beads on rigid links. Entry k describes bead k + 1 and its inboard link.
 struct BeadArrays {
     std::vector<double> mass;
-    std::vector<Vec3> position;  // W, unwrapped
+    /// Position in W, not wrapped into the box.
+    std::vector<Vec3> position;
     std::vector<Vec3> velocity;  // W
-    std::vector<double>
-        length;  // of the inboard link; entry 0 counts only for a fixed base (from the anchor)
-    std::vector<std::string>
-        residue;  // three-letter names for topology and force parameters; "UNK" where none is given
-    Vec3 anchor = Vec3::zero();  // W, fixed base
+    /// Length of the inboard link. Entry 0 is used only for a fixed base, where the link starts at
+    /// `anchor`.
+    std::vector<double> length;
+    /// Three-letter names for the topology and force parameters; "UNK" where none is given.
+    std::vector<std::string> residue;
+    /// Ground point of the first link for a fixed base, W.
+    Vec3 anchor = Vec3::zero();
 
     std::size_t size() const { return mass.size(); }
 };
 
-/// One chain. Exactly one of `beads`, `bodies` and `linked` is filled. A scene's `count: N` becomes
+/// One chain. Exactly one of `beads`, `bodies` and `linked` is filled. `count: N` in a scene yields
 /// N such chains.
 struct ChainSpec {
     std::string name;
     Base base = Base::free;
     Tip tip = Tip::free;
-    TipJoint tip_joint;  // of a jointed tip
+    /// Joint of the tip; used only for Tip::jointed.
+    TipJoint tip_joint;
     StartVelocities velocities = StartVelocities::given;
     BeadArrays beads;
     BodyArrays bodies;
@@ -166,45 +207,57 @@ struct ChainSpec {
     bool is_ring() const { return tip == Tip::jointed && tip_joint.ring; }
     std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
     CarriedBeads const& carried() const { return is_linked() ? linked.carried : bodies.carried; }
-    /// Points that OpenMM knows: beads, and those that bodies carry.
+    /// Number of points known to OpenMM: the beads, or the beads carried by the bodies.
     std::size_t bead_count() const { return is_beads() ? beads.size() : carried().size(); }
 };
 
+/// Section `forces.openmm`: the force model and the way OpenMM computes it.
 struct OpenMmSpec {
-    std::string builder;   // "calvados2", or empty when `system` is given
+    std::string builder;   // "calvados2", or empty if `system` is given
     std::string system;    // serialised System XML, path resolved against the scene's folder
-    std::string topology;  // PDB
-    std::vector<std::pair<std::string, std::pair<std::int64_t, std::int64_t>>>
-        map;  // chain name -> first and last particle; empty: the topology's chains in order;
-              // builder: charged ends
+    std::string topology;  // PDB file
+    /// First and last particle of each named chain; an empty map assigns the topology's chains in
+    /// order. With a builder the pair holds flags (0 or 1) for the charged first and last ends.
+    std::vector<std::pair<std::string, std::pair<std::int64_t, std::int64_t>>> map;
     double temperature = 300;      // K
     double ionic_strength = 0.15;  // mol/l
-    std::optional<double> ph;      // charge of histidine: 1 / (1 + 10^(pH - 6)); not given: neutral
-    double switch_width =
-        0;  // nm before each cutoff over which the pair terms are switched off; 0: cut as published
-    std::string platform;   // empty: CUDA with backend cuda where present, else CPU where present,
-                            // else Reference
-    std::string precision;  // GPU platforms
+    /// pH for the charge of histidine, 1 / (1 + 10^(pH - 6)); neutral without a value.
+    std::optional<double> ph;
+    /// Width in nm below each cutoff over which the pair terms are switched off; 0 cuts as
+    /// published.
+    double switch_width = 0;
+    /// Name of the OpenMM platform. Empty selects CUDA with backend cuda if present, else CPU if
+    /// present, else Reference.
+    std::string platform;
+    std::string precision;  // for GPU platforms
     int threads = 0;        // per rank; 0: cores / ranks
+    /// Index of the GPU; -1 if not given.
     int device = -1;
-    std::string path = "auto";  // auto | device (positions and forces stay on the GPU) | host
-                                // (worker thread) | inline
-    bool overlap =
-        true;  // the chains' own work goes on while forces are computed (paths device and host)
-    std::string layers = "auto";  // auto | all | none: forces that reach far and act on few beads
-                                  // in Contexts of their own
-    std::string split = "auto";   // auto | ghosts | pairs: what ranks on GPUs share out
+    /// One of: auto, device (positions and forces stay on the GPU), host (worker thread), inline.
+    std::string path = "auto";
+    /// True if the chains' own work proceeds during the force computation (paths device and host).
+    bool overlap = true;
+    /// One of: auto, all, none. Long-range forces on few beads are placed in Contexts of their own.
+    std::string layers = "auto";
+    /// One of: auto, ghosts, pairs. Selects how ranks on GPUs divide the pair forces.
+    std::string split = "auto";
+    /// True if every rank holds all beads and computes all forces.
     bool replicate = false;
-    bool audit = false;  // compares the ghosts with a search among all beads at every evaluation
+    /// True if every evaluation compares the ghosts with a search among all beads.
+    bool audit = false;
     std::vector<int> force_groups;  // empty: all
 };
 
+/// Section `forces`.
 struct ForceSpec {
-    Vec3 gravity = Vec3::zero();               // W
-    double linear_drag = 0, angular_drag = 0;  // of every body that has none of its own
+    Vec3 gravity = Vec3::zero();  // acceleration, W
+    /// Drag constants of all bodies without drag of their own.
+    double linear_drag = 0, angular_drag = 0;
     std::optional<OpenMmSpec> openmm;
 };
 
+/// Time integrator; src/integrate/README.md describes each. The order separates joint coordinates
+/// (before `rattle`) from absolute coordinates.
 enum class Integrator {
     rk4,
     dormand_prince,
@@ -216,117 +269,149 @@ enum class Integrator {
     g_baoab,
     implicit_g_baoab
 };
-/// Whether the state is in joint coordinates (else: absolute ones).
+/// True if the state is in joint coordinates, false if it is in absolute coordinates.
 inline bool uses_joint_coordinates(Integrator i) { return i < Integrator::rattle; }
-/// Whether springs and dampers of joints are taken implicitly.
+/// True if springs and dampers of joints are integrated implicitly.
 inline bool is_implicit(Integrator i) {
     return i == Integrator::staggered || i == Integrator::implicit_baoab ||
            i == Integrator::implicit_g_baoab;
 }
-/// An implicit integrator's spring K acts within a step h as a rotor of inertia c h^2 K in its
-/// joint: c. 1/4 is the least that is stable where K is constant (src/dca/README.md, "Implicit
-/// joint springs"); 1/2 leaves room for what bending and turning add to K. Under a thermostat a
-/// joint turns by its thermal angle / sqrt(c) per step; anharmonic terms within that shift
-/// equilibrium: 2 has a quarter of it.
+/// Factor c of the rotor inertia c h^2 K that replaces a spring K in its joint within a step h. The
+/// least stable value for constant K is 1/4 (src/dca/README.md, "Implicit joint springs"). The
+/// value 1/2 leaves room for the contribution of bending and rotation to K. Under a thermostat a
+/// joint rotates by its thermal angle / sqrt(c) per step. Anharmonic terms within that angle shift
+/// the equilibrium; c = 2 has a quarter of the shift of c = 1/2.
 inline double rotor_of_spring(Integrator i) { return i == Integrator::staggered ? 0.5 : 2.0; }
-/// Whether it has a thermostat.
+/// True if the integrator has a thermostat.
 inline bool is_langevin(Integrator i) {
     return i == Integrator::baoab || i == Integrator::implicit_baoab || i >= Integrator::g_baoab;
 }
 
+/// Section `dynamics`.
 struct DynamicsSpec {
-    bool given = false;  // the scene has a `dynamics` section
+    /// True if the scene has a `dynamics` section.
+    bool given = false;
     Integrator integrator = Integrator::rattle;
+    /// Time step (ps).
     double step = 0;
     std::int64_t steps = 0;
+    /// Temperature of the thermostat and of thermal starts, K.
     double temperature = 300;
+    /// Friction rate of the Langevin integrators (1/ps).
     double friction = 0.01;
     std::uint64_t seed = 1;
+    /// Largest permitted constraint violation, relative.
     double constraint_tolerance = 1e-10;
-    double tolerance = 0;  // of an adaptive step; 0: steps are as long as `step` says
-    bool fixman = false;   // rigid links sample as stiff springs would
-    bool has_steps =
-        false;  // the scene says how many: 0 of them are one frame, not a key that is missing
+    /// Relative error tolerance of an adaptive step; 0 keeps the steps as long as `step`.
+    double tolerance = 0;
+    /// True if rigid links sample the ensemble of stiff springs.
+    bool fixman = false;
+    /// True if the scene gives the number of steps. It tells `steps: 0`, a single frame, from a
+    /// missing key.
+    bool has_steps = false;
 
-    /// Why a GPU cannot do it; empty where it can.
+    /// Returns the reason that excludes GPUs, or an empty string if a GPU can run these dynamics.
     std::string why_host_alone() const;
 };
 
+/// Implementation of the solver; inputs/keys/solver.md describes each.
 enum class Backend { automatic, serial, segments, openmp, cuda, cuda_levels };
 inline bool uses_gpu(Backend backend) {
     return backend == Backend::cuda || backend == Backend::cuda_levels;
 }
-/// Directions that handles carry: those that joints restrict, or all. articulated: all, of runs
-/// held at their inboard side (dca/articulated.hpp), where nothing cancels.
+/// Directions that handles carry: the restricted directions of the joints (projected), or all
+/// (full). `articulated` carries all directions of runs that are held at their inboard side
+/// (dca/articulated.hpp); it avoids cancellation.
 enum class Handles { projected, full, articulated };
 inline bool carries_all(Handles handles) { return handles != Handles::projected; }
 
-/// Of the backend cuda-levels: how many of the tree's lowest levels of merges the GPU assembles
-/// (`up`) and disassembles (`down`); from 1 on the bodies themselves are the GPU's too. Numbers
-/// beyond the tree's levels mean all of them.
+/// Numbers of the tree's lowest merge levels that the GPU assembles (`up`) and disassembles
+/// (`down`) with cuda-levels. From 1 on the GPU also computes the bodies themselves. Numbers beyond
+/// the tree's levels mean all levels.
 struct GpuLevels {
     static constexpr int all = 1000;
     int up = all, down = all;
 };
 
+/// Section `solver`.
 struct SolverSpec {
     Backend backend = Backend::automatic;
     Handles handles = Handles::projected;
-    int threads = 0;                  // 0: cores / ranks on this host
-    std::string gpu_levels = "auto";  // as GpuLevels: auto, all, "K", "UP,DOWN"
-    int refine = 0;                   // steps of refinement of every solution in joint coordinates
-    std::optional<SimdLevel> simd;    // none: the best that all ranks can run
-    bool balance = false;  // ranks' shares of the bodies by their speeds, which a run measures
+    int threads = 0;  // 0: cores / ranks on this host
+    /// Text form of GpuLevels: auto, all, "K" or "UP,DOWN".
+    std::string gpu_levels = "auto";
+    /// Number of iterative refinement steps of every solution in joint coordinates.
+    int refine = 0;
+    /// Vector instruction set; without a value the best that all ranks support.
+    std::optional<SimdLevel> simd;
+    /// True if ranks receive shares of the bodies by their speeds, which a run measures.
+    bool balance = false;
 
-    /// `auto`, where no planner has chosen: all.
+    /// Parses `gpu_levels`; `auto` that no planner has replaced means all levels.
     GpuLevels levels_on_gpu() const;
-    /// Whether the tree is the chapter's, of pairs from the leaves on.
+    /// True if the tree is the chapter's pairwise tree that starts at single bodies.
     bool pairwise() const { return backend == Backend::serial || backend == Backend::cuda_levels; }
 };
 
+/// Section `output`.
 struct OutputSpec {
-    std::int64_t every = 100;              // steps between frames and observables
-    std::int64_t checkpoint_every = 0;     // 0: none by steps
-    std::vector<std::string> observables;  // columns, in order; empty: the default set
-    bool joint_forces = false;             // constraint forces in the trajectory
-    bool velocities = false;               // velocities in the trajectory
-    bool coordinates =
-        false;  // orientations of bodies, joint coordinates and rates in the trajectory
-    float checkpoint_minutes = 30;  // of wall time between checkpoints; 0: none by time
+    /// Number of steps between frames and lines of observables.
+    std::int64_t every = 100;
+    std::int64_t checkpoint_every = 0;  // steps; 0: none by steps
+    /// Names of the columns, in order; empty selects the default set.
+    std::vector<std::string> observables;
+    /// True if the trajectory holds constraint forces.
+    bool joint_forces = false;
+    /// True if the trajectory holds velocities.
+    bool velocities = false;
+    /// True if the trajectory holds orientations of bodies, joint coordinates and rates.
+    bool coordinates = false;
+    float checkpoint_minutes = 30;  // wall time; 0: none by time
 };
 
-/// How far the reader moved the positions that the user gave: links take their lengths, wrapped
-/// chains are made whole, overlaps relaxed.
+/// Largest changes made by the reader to the given positions. The reader sets links to their
+/// lengths, makes wrapped chains whole and relaxes overlaps.
 struct StartChange {
-    double link = 0;       // largest change of a link's length
-    double position = 0;   // largest displacement of a bead, without whole box edges
-    std::string link_at;   // "chain `a`, beads 19 and 20: 9.31 to 0.38 nm"; empty: no link changed
-    std::string moved_at;  // "chain `a`, bead 20"; empty: no bead moved
+    /// Largest change of a link's length.
+    double link = 0;
+    /// Largest displacement of a bead, without whole box edges.
+    double position = 0;
+    /// Place of that change, e.g. "chain `a`, beads 19 and 20: 9.31 to 0.38 nm"; empty if no link
+    /// changed.
+    std::string link_at;
+    /// Place of that displacement, e.g. "chain `a`, bead 20"; empty if no bead moved.
+    std::string moved_at;
 };
 
+/// A whole simulation: chains, forces, dynamics, solver and output.
 struct Scene {
     std::string title;
-    bool si = false;  // units: si
+    bool si = false;  // `units: si`
     std::vector<ChainSpec> chains;
-    std::optional<Vec3> box;  // edges of the periodic box
+    /// Edges of the periodic box.
+    std::optional<Vec3> box;
     ForceSpec forces;
     DynamicsSpec dynamics;
     SolverSpec solver;
     OutputSpec output;
-    bool relax = false;  // overlaps of the start are relaxed before the first step
+    /// True if overlaps of the start are relaxed before the first step.
+    bool relax = false;
     StartChange start;
-    std::vector<std::string>
-        notes;  // what the reader assumed, changed or left out: a sentence each, in the order met
-    std::string file;  // as the user named it
-    std::string hash;  // of what decides the motion (not of solver, output and dynamics.steps):
-                       // guards restarts
+    /// Sentences on what the reader assumed, changed or left out, in the order of reading.
+    std::vector<std::string> notes;
+    std::string file;  // path as given by the user
+    /// Fingerprint of all that decides the motion, which guards restarts. It excludes solver,
+    /// output and dynamics.steps.
+    std::string hash;
 
+    /// Boltzmann constant in the scene's units: kJ/mol/K or J/K.
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;
-    /// Adds a note unless it is there.
+    /// Appends a note unless it is among the last thousand.
     void note(std::string text);
 };
 
+/// Names as scenes write them.
 char const* name_of(JointType);
 char const* name_of(Integrator);
 char const* name_of(Backend);

@@ -1,3 +1,4 @@
+// Implements the copies of bonded forces, with one overload per kind.
 #include "systems/bonded_forces.hpp"
 
 #include <vector>
@@ -6,9 +7,10 @@ namespace catena {
 
 namespace {
 
-using namespace OpenMM;  // this file handles nothing else
+using namespace OpenMM;  // this file uses no other library
 
 template <class Source>
+/// Copies names and default values of global parameters.
 void copy_globals(Source const& from, Source& to) {
     for (int i = 0; i < from.getNumGlobalParameters(); ++i)
         to.addGlobalParameter(from.getGlobalParameterName(i),
@@ -16,11 +18,12 @@ void copy_globals(Source const& from, Source& to) {
 }
 
 template <class Source>
+/// Copies the flag for periodic boundary conditions.
 void copy_periodicity(Source const& from, Source& to) {
     to.setUsesPeriodicBoundaryConditions(from.usesPeriodicBoundaryConditions());
 }
 
-// One overload a bonded force: its terms, filtered.
+// Overloads of copy_terms(), one per bonded force: copies its terms that pass the filter.
 
 std::unique_ptr<Force> copy_terms(HarmonicBondForce const& from, TermFilter& filter) {
     auto to = std::make_unique<HarmonicBondForce>();
@@ -129,7 +132,7 @@ std::unique_ptr<Force> copy_terms(CustomExternalForce const& from, TermFilter& f
     return to;
 }
 
-/// Tries the bonded kinds one after the other.
+/// Tries the bonded kinds one after the other; nullptr if none matches.
 template <class... Kinds>
 std::unique_ptr<Force> copy_bonded_as(Force const& from, TermFilter& filter) {
     std::unique_ptr<Force> to;

@@ -1,4 +1,4 @@
-// The bonded forces of OpenMM, term by term. For files that see OpenMM's headers.
+// Copies of the bonded forces of OpenMM, filtered term by term. Needs OpenMM's headers.
 #pragma once
 
 #include <OpenMM.h>
@@ -8,15 +8,16 @@
 
 namespace catena {
 
-/// Decides about one bonded term and renumbers its particles.
+/// Decides on one bonded term and renumbers its particles.
 class TermFilter {
   public:
     virtual ~TermFilter() = default;
+    /// Returns true to keep the term; may change the particles' numbers in place.
     virtual bool keep(std::initializer_list<int*> particles) = 0;
 };
 
-/// A copy of a bonded force with the terms that the filter keeps; nullptr for a force that is not
-/// bonded (or not one of the common kinds).
+/// Returns a copy of a bonded force with the terms that the filter keeps. Returns nullptr for a
+/// force that is not bonded or not of a common kind.
 std::unique_ptr<OpenMM::Force> copy_bonded(OpenMM::Force const& from, TermFilter& filter);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the check of boxes against cutoffs.
 #include "systems/box.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +14,12 @@
 namespace catena {
 namespace {
 
-/// Columns of cells a cutoff wide, across the two longest edges; more are allowed for as many
-/// particles. OpenMM's CPU platform takes about a hundred bytes and a microsecond a column and
-/// evaluation.
+/// Largest number of columns of cells of one cutoff width across the two longest edges. More are
+/// allowed for as many particles. OpenMM's CPU platform takes about a hundred bytes and a
+/// microsecond per column and evaluation.
 constexpr double most_columns = 4e6;
 
+/// Cutoff of a pair force, nm; 0 without a cutoff.
 double cutoff_of(OpenMM::Force const& force) {
     if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
         return pairs->getNonbondedMethod() == OpenMM::NonbondedForce::NoCutoff
@@ -27,6 +29,7 @@ double cutoff_of(OpenMM::Force const& force) {
     return std::isfinite(reach) ? reach : 0;
 }
 
+/// Shortest cutoff of all forces, nm; infinite if there is none.
 double shortest_cutoff(OpenMM::System const& system) {
     double shortest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < system.getNumForces(); ++i)

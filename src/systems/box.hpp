@@ -1,4 +1,4 @@
-// Boxes that OpenMM cannot compute in. For files that see OpenMM's headers.
+// Checks of periodic boxes and cutoffs for OpenMM. Needs OpenMM's headers.
 #pragma once
 
 #include <OpenMM.h>
@@ -7,12 +7,13 @@
 
 namespace catena {
 
-/// Throws InputError where two edges of the System's periodic box are so many cutoffs long that the
-/// cells of OpenMM's neighbour lists take gigabytes, or their number runs over: OpenMM throws that
-/// in threads of its own, where nobody can catch it. `where`: for the message.
+/// Throws InputError for a periodic box with far too many cutoffs along two of its edges. The cells
+/// of OpenMM's neighbour lists would take gigabytes, or their number overflow. OpenMM throws that
+/// error in its own threads, where it cannot be caught. `where` is the place in the message.
 void refuse_box_beyond_cutoffs(OpenMM::System const& system, std::string const& where);
 
-/// Pair forces with a cutoff beyond `reach` (nm) end there, switched off from 0.8 of it on.
+/// Shortens the cutoff of pair forces to at most `reach` (nm), switched off from 0.8 `reach` on.
+/// Implemented in force/contacts.cpp.
 void shorten_pair_forces(OpenMM::System&, double reach);
 
 }  // namespace catena

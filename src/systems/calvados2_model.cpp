@@ -1,3 +1,5 @@
+// Implements the CALVADOS 2 force field as an OpenMM System of two CustomNonbondedForces. The
+// model's harmonic bonds are absent, because rigid links replace them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,13 +14,14 @@ namespace catena {
 
 namespace {
 
-/// The chain that bead k belongs to, and its place in it (from 0).
+/// The chain of a bead and the bead's position k in it (from 0).
 struct Place {
     std::string chain;
     std::int64_t k, length;
     calvados2::ChargedTermini termini;
 };
 
+/// Calls visit(bead, place) for every bead of every chain.
 template <class Visit>
 void for_each_bead(OpenMmSpec const& spec, BeadSystem const& beads, Visit visit) {
     calvados2::ChainEnds const ends(spec);
@@ -30,10 +33,12 @@ void for_each_bead(OpenMmSpec const& spec, BeadSystem const& beads, Visit visit)
     }
 }
 
+/// Names a bead's place in the scene for messages.
 std::string chain_key(BeadSystem const& beads, Place const& at) {
     return fmt::format("{}: chain {}, body {}", beads.scene_file, at.chain, at.k + 1);
 }
 
+/// Parameters of a bead's residue; throws InputError for unknown names.
 Calvados2Residue const& residue_of(BeadSystem const& beads, std::int64_t bead, Place const& at) {
     std::string const& name = beads.residue[bead];
     if (auto const* residue = find_calvados2(std::string_view(name))) return *residue;
@@ -42,6 +47,8 @@ Calvados2Residue const& residue_of(BeadSystem const& beads, std::int64_t bead, P
                      "forces as a System (forces.openmm.system)");
 }
 
+/// Throws InputError for parameters outside the model's range and for boxes smaller than twice the
+/// longest cutoff.
 void check(OpenMmSpec const& spec, BeadSystem const& beads) {
     if (!(spec.temperature > 0))
         throw InputError(fmt::format("temperature {} K is not positive", spec.temperature),
@@ -70,8 +77,8 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
                     beads.scene_file + ": box.periodic", "take a larger box or none");
 }
 
-/// Half of sigma and lambda are the particles' parameters, so that a pair's arithmetic means are
-/// sums.
+/// Ashbaugh-Hatch potential. The particles' parameters are half of sigma and lambda, so that a
+/// pair's arithmetic means are sums. The energy is shifted to zero at the cutoff.
 std::unique_ptr<OpenMM::CustomNonbondedForce> ashbaugh_hatch() {
     auto force = std::make_unique<OpenMM::CustomNonbondedForce>(
         "select(step(r-2^(1/6)*s), l*(lj-edge), lj-l*edge+eps*(1-l));"
@@ -85,6 +92,8 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> ashbaugh_hatch() {
     return force;
 }
 
+/// Yukawa potential, shifted to zero at the cutoff. The parameter q of a particle includes the
+/// square root of Yukawa::prefactor.
 std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa const& y) {
     auto force = std::make_unique<OpenMM::CustomNonbondedForce>("q1*q2*(exp(-kappa*r)/r-edge)");
     force->addPerParticleParameter("q");
@@ -96,6 +105,8 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa con
     return force;
 }
 
+/// Excludes linked neighbours and pairs within rigid bodies, and sets cutoff method, switching and
+/// group.
 void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSystem const& beads,
             int group) {
     for (auto const& link : beads.links)
@@ -114,12 +125,14 @@ void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSys
     force.setForceGroup(group);
 }
 
+/// Part of the note on rigid bodies; empty without any.
 std::string rigid_note(BeadSystem const& beads) {
     if (beads.rigid.empty()) return {};
     return fmt::format("no forces within {} rigid {}; ", beads.rigid.size(),
                        beads.rigid.size() == 1 ? "body" : "bodies");
 }
 
+/// Sentences on parameters, cutoffs and links, for the user.
 std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& beads,
                                   calvados2::Yukawa const& y) {
     std::string const histidine = spec.ph
@@ -143,12 +156,13 @@ std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& bead
 OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     check(spec, beads);
     calvados2::Yukawa const y = calvados2::yukawa(spec.temperature, spec.ionic_strength);
+    // Each of the two charges of a pair carries the square root of the prefactor.
     double const unit = std::sqrt(y.prefactor);
     auto contact = ashbaugh_hatch();
     auto charges = yukawa_force(y);
 
     OpenMmModel model;
-    std::vector<double> charge_of;  // e, by bead
+    std::vector<double> charge_of;  // e, per bead
     model.system = std::make_shared<OpenMM::System>();
     if (beads.box)
         model.system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0},

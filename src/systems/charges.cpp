@@ -1,3 +1,4 @@
+// Implements the text on net charges.
 #include "systems/charges.hpp"
 
 #include <fmt/format.h>
@@ -12,16 +13,18 @@ namespace catena {
 
 namespace {
 
-double constexpr same_charge = 5e-4;  // e: three decimals are printed
+double constexpr same_charge = 5e-4;  // e; three decimals are printed
+/// Largest number of groups of chains in the text.
 std::size_t constexpr most_groups = 12;
 
-/// Three decimals, and no "-0.000".
+/// Prints three decimals, without "-0.000".
 std::string charge_in_e(double charge) {
     return fmt::format("{:.3f} e", std::abs(charge) < same_charge ? 0.0 : charge);
 }
 
-/// Consecutive chains of one charge.
+/// Consecutive chains of the same charge.
 struct Group {
+    /// Indices of the first and the last chain.
     std::size_t first, last;
     double charge;
 };

@@ -1,4 +1,4 @@
-// The net charge of chains, for people. No OpenMM here.
+// Text on the net charges of chains. This header does not need OpenMM.
 #pragma once
 
 #include <span>
@@ -8,8 +8,9 @@
 
 namespace catena {
 
-/// "net charge: a -1.000 e, b 2.000 e; together 1.000 e". Chains of one charge after the other
-/// stand together: "a to c -1.000 e each". `of_bead`: in e, in the order of the beads.
+/// Returns, e.g., "net charge: a -1.000 e, b 2.000 e; together 1.000 e". Consecutive chains of the
+/// same charge are merged: "a to c -1.000 e each". `of_bead` holds the charges in e, in the order
+/// of the beads.
 std::string charge_text(std::span<double const> of_bead, BeadSystem const&);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Implements the choice of layers by an estimate of the number of pairs.
 #include "systems/force_layers.hpp"
 
 #include <fmt/format.h>
@@ -16,21 +17,26 @@ namespace {
 
 using OpenMM::CustomNonbondedForce;
 
-/// Forces of one reach that can be taken off, and the particles that act in some of them.
+/// Removable forces of one cutoff, and the particles that act in at least one of them.
 struct Candidate {
+    /// Indices of the forces in the System.
     std::vector<int> forces;
+    /// Flag per particle: 1 if it acts in at least one of the forces.
     std::vector<char> acts;
 
+    /// Number of acting particles.
     double count() const { return static_cast<double>(std::count(acts.begin(), acts.end(), 1)); }
 };
 
+/// True if the force may move into a layer of its own, see take_layers().
 bool can_be_taken(OpenMM::Force const& force, int particles) {
     auto const* const pairs = dynamic_cast<CustomNonbondedForce const*>(&force);
     return pairs && pairs->getNumParticles() == particles && std::isfinite(reach_of(force)) &&
            pairs->getNumInteractionGroups() == 0 && !pairs->getUseLongRangeCorrection();
 }
 
-/// By their reach, the longest first, as far as no other force reaches farther.
+/// Candidates by their cutoff, the longest first. A candidate must have a longer cutoff than all
+/// forces that cannot move.
 std::map<double, Candidate, std::greater<>> candidates(OpenMM::System const& system) {
     std::map<double, Candidate, std::greater<>> found;
     double others = 0;
@@ -53,8 +59,8 @@ std::map<double, Candidate, std::greater<>> candidates(OpenMM::System const& sys
     return found;
 }
 
-/// How many of the candidates to take: where the pairs of all Contexts are fewest, were particles
-/// everywhere as dense.
+/// Returns the number of candidates to move: the one with the fewest pairs in all Contexts, if
+/// particles had a uniform density. Pairs are proportional to n^2 r^3 for n particles and cutoff r.
 std::size_t best(std::map<double, Candidate, std::greater<>> const& found,
                  OpenMM::System const& system, double most_pairs) {
     auto const pairs = [](double count, double reach) {
@@ -80,7 +86,7 @@ std::size_t best(std::map<double, Candidate, std::greater<>> const& found,
     return least_taken;
 }
 
-/// Those beads alone, numbered anew.
+/// Returns the given beads alone, renumbered from 0 in ascending order.
 BeadSystem beads_of(std::vector<std::int64_t> const& bead, BeadSystem const& all) {
     BeadSystem some;
     std::vector<std::int64_t> number(static_cast<std::size_t>(all.size()), -1);
@@ -106,6 +112,7 @@ BeadSystem beads_of(std::vector<std::int64_t> const& bead, BeadSystem const& all
     return some;
 }
 
+/// Makes the layer of a candidate: its System, its beads and the names of its terms.
 ForceLayer layer_of(Candidate const& candidate, OpenMmModel const& model, BeadSystem const& beads) {
     ForceLayer layer;
     Subset subset;

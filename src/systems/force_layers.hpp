@@ -1,9 +1,7 @@
-// Layers of a System: pair forces that reach far and act on few of its particles in a System of
-// their own.
-//
-// A Context looks for pairs among all of its particles as far out as the longest of its forces
-// reaches. Of CALVADOS 2 that is 4 nm for the charges, a quarter of the beads; all others reach 2
-// nm, where an eighth of the pairs are.
+// Layers of a System: long-range pair forces that act on few of its particles, in a System of their
+// own. A Context searches for pairs among all of its particles up to the longest cutoff of its
+// forces. In CALVADOS 2 that is 4 nm for the charges, which a quarter of the beads have. All other
+// forces have a cutoff of 2 nm, within which lie an eighth of the pairs.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +14,30 @@
 
 namespace catena {
 
+/// A System of some forces on some of the beads.
 struct ForceLayer {
-    OpenMmModel model;  // of these forces alone, in the groups they had
-    BeadSystem
-        beads;  // that act in them; of the rest of BeadSystem what ranks' shares are made from
-    std::vector<std::int64_t> bead;  // of the scene, of each of these, ascending
+    /// Model of these forces alone, in their original groups.
+    OpenMmModel model;
+    /// Beads that act in these forces. Other members of BeadSystem are set as far as the division
+    /// among ranks needs them.
+    BeadSystem beads;
+    /// Number in the scene of each of these beads, ascending.
+    std::vector<std::int64_t> bead;
 };
 
-/// Takes forces off `model`, the longest first, as long as all Contexts together have fewer pairs,
-/// and no more than `most_pairs` of those of one: CustomNonbondedForces with a cutoff that ask for
-/// all pairs (no interaction groups) and for nothing beyond it (no correction of the energy). Those
-/// in which no bead acts get no layer. None where a force cannot be split. The same on every rank.
+/// Moves forces from `model` into layers, the longest cutoff first. It does so as long as all
+/// Contexts together have fewer pairs, and at most `most_pairs` times the pairs of a single
+/// Context. Eligible are CustomNonbondedForces with a cutoff, for all pairs (no interaction
+/// groups), without a long-range correction of the energy. Forces in which no bead acts are removed
+/// without a layer. Returns no layers if any force cannot be split. The result is identical on
+/// every rank.
 std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads, double most_pairs);
 
-/// Of each of a rank's own beads in a layer, its place among all of the rank's, in the order of
+/// For each of a rank's beads in a layer: its index among all of the rank's beads, in the order of
 /// BeadSystem::by_rank.
 std::vector<std::int64_t> own_places(ForceLayer const&, BeadSystem const& all, int rank);
 
-/// "yukawa in a Context of its own: 2500 of 10000 beads act in it, up to 4 nm"
+/// Returns, e.g., "yukawa in a Context of its own: 2500 of 10000 beads act in it, up to 4 nm".
 std::string text_of(ForceLayer const&, BeadSystem const& all);
 
 }  // namespace catena

@@ -1,3 +1,6 @@
+// Implements the search for acting particles by symbolic simplification of energies (Lepton). With
+// the parameters of one partner inserted, the energy of a particle that does not act simplifies to
+// 0.
 #include "systems/force_ranges.hpp"
 
 #include <lepton/ExpressionTreeNode.h>
@@ -18,23 +21,28 @@ namespace {
 
 using Parameters = std::vector<double>;
 
+/// True if the expression is the constant 0.
 bool is_zero(Lepton::ParsedExpression const& energy) {
     auto const* constant =
         dynamic_cast<Lepton::Operation::Constant const*>(&energy.getRootNode().getOperation());
     return constant != nullptr && constant->getValue() == 0;
 }
 
-/// Whether a particle acts at all, by its parameters; one of a kind that is not understood does.
+/// Decides from its parameters whether a particle acts. Particles of a force that is not understood
+/// always act.
 class Acting {
   public:
+    /// Parses the force's energy. Tabulated functions and computed values are not understood.
     explicit Acting(OpenMM::CustomNonbondedForce const& force)
         : understood_(force.getNumTabulatedFunctions() == 0 && computed_values_of(force) == 0) {
         if (understood_) energy_ = Lepton::Parser::parse(force.getEnergyFunction());
         for (int i = 0; i < force.getNumPerParticleParameters(); ++i)
             name_.push_back(force.getPerParticleParameterName(i));
     }
+    /// True if a particle with these parameters acts. Results are stored per set of parameters,
+    /// because most particles share them.
     bool operator()(Parameters const& of_particle) {
-        // Lepton never ends with what is not a number.
+        // Lepton does not terminate for parameters that are not finite.
         bool const finite = std::all_of(of_particle.begin(), of_particle.end(),
                                         [](double v) { return std::isfinite(v); });
         if (!understood_ || !finite || known_.size() > most_kinds) return true;
@@ -46,20 +54,25 @@ class Acting {
     }
 
   private:
-    static std::size_t constexpr most_kinds = 4096;  // to look at one takes some 10 us
+    /// Largest number of parameter sets to examine; each takes about 10 us.
+    static std::size_t constexpr most_kinds = 4096;
 
+    /// Values of the particle's parameters as particle "1" or "2" of a pair.
     std::map<std::string, double> as(char const* side, Parameters const& of_particle) const {
         std::map<std::string, double> values;
         for (std::size_t i = 0; i < name_.size(); ++i) values[name_[i] + side] = of_particle[i];
         return values;
     }
 
+    /// True if the energy can be simplified.
     bool understood_;
     Lepton::ParsedExpression energy_;
     std::vector<std::string> name_;
+    /// Results so far.
     std::map<Parameters, bool> known_;
 };
 
+/// Acting particles by the energy expression.
 std::vector<char> acts_in(OpenMM::CustomNonbondedForce const& force) {
     Acting acting(force);
     std::vector<char> acts;
@@ -71,6 +84,7 @@ std::vector<char> acts_in(OpenMM::CustomNonbondedForce const& force) {
     return acts;
 }
 
+/// Acting particles by charge and epsilon.
 std::vector<char> acts_in(OpenMM::NonbondedForce const& force) {
     std::vector<char> acts;
     double charge, sigma, epsilon;
@@ -82,6 +96,7 @@ std::vector<char> acts_in(OpenMM::NonbondedForce const& force) {
     return acts;
 }
 
+/// True if every marked particle of `some` is marked in `others`.
 bool are_among(std::vector<char> const& some, std::vector<char> const& others) {
     return std::equal(some.begin(), some.end(), others.begin(),
                       [](char one, char other) { return one <= other; });
@@ -99,7 +114,7 @@ std::vector<char> acting_particles(OpenMM::Force const& force) {
 
 std::vector<PairRange> pair_ranges(OpenMM::System const& system,
                                    std::vector<std::int64_t> const& bead_of_particle) {
-    std::map<double, std::vector<char>, std::greater<>> acts_to;  // of each particle
+    std::map<double, std::vector<char>, std::greater<>> acts_to;  // per particle, by cutoff
     for (int i = 0; i < system.getNumForces(); ++i) {
         std::vector<char> const acts = acting_particles(system.getForce(i));
         if (acts.empty()) continue;

@@ -1,4 +1,4 @@
-// How far the particles of a System act on each other. For files that see OpenMM's headers.
+// Cutoffs between the particles of a System and the particles that act. Needs OpenMM's headers.
 #pragma once
 
 #include <OpenMM.h>
@@ -10,15 +10,15 @@
 
 namespace catena {
 
-/// Of each of its particles 1 where it acts in the force between pairs, else 0; none of another
-/// force. A particle does not act in a CustomNonbondedForce whose energy is zero for its
-/// parameters, whatever those of the other are (a product of charges), nor in a NonbondedForce
-/// without charge and epsilon.
+/// For each particle: 1 if it acts in the pair force, else 0. The list is empty for other forces. A
+/// particle does not act in a CustomNonbondedForce if its parameters make the energy zero for any
+/// partner (a product of charges). It does not act in a NonbondedForce without charge and epsilon.
 std::vector<char> acting_particles(OpenMM::Force const&);
 
-/// Of its nonbonded forces, the longest first; none whose particles all act in a longer one.
-/// Precondition: every force can be split and has a cutoff. Throws what OpenMM throws where a force
-/// has not one particle for each of the System's.
+/// Cutoffs of the System's nonbonded forces with their acting beads, the longest first. A range is
+/// omitted if all its particles act in a longer one. Precondition: every force can be split and has
+/// a cutoff. Throws OpenMM's exception if the number of a force's particles differs from the
+/// System's.
 std::vector<PairRange> pair_ranges(OpenMM::System const&,
                                    std::vector<std::int64_t> const& bead_of_particle);
 

@@ -1,3 +1,4 @@
+// Implements the import of chains and links from a System.
 #include "systems/import.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace catena {
 
 namespace {
 
-/// Adds the chain's links to `links`.
+/// Imports one chain that begins with particle `first`, and adds its links to `links`.
 ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system,
                            Joinings const& joinings, StiffLinks& links, std::string const& where) {
     ImportedChain chain{from.name, from.residue, {}, from.position, {}};
@@ -32,15 +33,15 @@ ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const
     return chain;
 }
 
-/// Whether the ends of a chain are joined as stiffly as its first link, or as a link may be where
-/// that is a constraint.
+/// True if the ends of a chain are joined at least half as stiffly as its first link. If that link
+/// is a constraint, the bond between the ends must be stiff enough for a link.
 bool closes(Joining const& ends, Joining const& link, double temperature) {
     if (std::isinf(link.stiffness))
         return ends.holds() && ends.spread(temperature) <= StiffLinks::softest;
     return ends.holds() && ends.stiffness >= 0.5 * link.stiffness;
 }
 
-/// Chains whose ends are joined: a sentence, or none.
+/// Notes the chains whose ends are joined, in one sentence.
 std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings,
                                     double temperature) {
     int first = 0, rings = 0;

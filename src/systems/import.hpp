@@ -1,5 +1,5 @@
-// Chains from a serialised OpenMM System and its PDB topology: what a scene is made of that gives
-// `system` and no chains.
+// Chains from a serialised OpenMM System and its PDB topology, for scenes with `system` and without
+// `chains`.
 #pragma once
 
 #include <string>
@@ -11,41 +11,53 @@
 
 namespace catena {
 
-/// Arrays of one entry a bead.
+/// One chain of a topology; arrays have one entry per bead.
 struct ImportedChain {
+    /// Name of the chain in the topology.
     std::string name;
     std::vector<std::string> residue;  // three letters
-    std::vector<double> mass;          // amu, the System's
-    std::vector<Vec3> position;        // nm, as the PDB file rounds them
-    std::vector<double> length;        // nm, of the link to the bead before; entry 0 is 0
+    std::vector<double> mass;          // amu, from the System
+    std::vector<Vec3> position;        // nm, with the rounding of the PDB file
+    /// Length of the link to the preceding bead, nm; entry 0 is 0.
+    std::vector<double> length;
 };
 
+/// All chains of a System with its box.
 struct ImportedSystem {
-    std::vector<ImportedChain> chains;  // the topology's, in its order
-    bool periodic = false;              // some force uses the box
-    Vec3 box = Vec3::zero();            // edges of the System's box
-    std::vector<std::string> notes;     // what was left out or is doubtful, a sentence each
-    double largest_spread =
-        0;  // of the soft springs that links stand for, relative to their length; 0: there are none
+    /// Chains of the topology, in its order.
+    std::vector<ImportedChain> chains;
+    /// True if at least one force uses the box.
+    bool periodic = false;
+    /// Edges of the System's box, nm.
+    Vec3 box = Vec3::zero();
+    /// Sentences on what was left out or is doubtful.
+    std::vector<std::string> notes;
+    /// Largest thermal spread of the soft springs that links replace, relative to their length; 0
+    /// if there are none.
+    double largest_spread = 0;
 };
 
-/// What the System says of chains that the scene writes down.
+/// The links of a System between consecutive particles, for chains that the scene writes itself.
 struct SystemLinks {
-    bool periodic = false;             // some force uses the box
-    std::vector<Joining> to_previous;  // by particle: what joins it to the one before
-    std::vector<std::string> notes;    // what was left out, a sentence each
+    /// True if at least one force uses the box.
+    bool periodic = false;
+    /// For each particle: the bonds and constraints to the preceding one.
+    std::vector<Joining> to_previous;
+    /// Sentences on what was left out.
+    std::vector<std::string> notes;
 };
 
-/// Particle order is topology order. Neighbours in a chain are joined by a link as long as the
-/// harmonic bond or constraint between them. Throws InputError: unreadable files, different counts,
-/// neighbours that nothing joins or a soft spring, and what Catena cannot drive (virtual sites,
-/// barostats, ...). "built without OpenMM" where the build lacks it.
+/// Imports the chains of the topology; particles and atoms have the same order. Neighbours in a
+/// chain are joined by a link with the length of the harmonic bond or constraint between them.
+/// Throws InputError for unreadable files, different counts, and neighbours without a bond or with
+/// a soft spring. Also refused are virtual sites, barostats and other parts that Catena cannot
+/// drive. A build without OpenMM throws "built without OpenMM".
 ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_file);
 
-/// Throws as import_openmm_system does, but not for neighbours.
+/// Reads the links of a System. Throws like import_openmm_system(), but not for neighbours.
 SystemLinks read_system_links(OpenMmSpec const&, std::string const& scene_file);
 
-/// "scene.yaml: forces.openmm.system"
+/// Names a key in messages: "scene.yaml: forces.openmm.system".
 inline std::string openmm_key(std::string const& scene_file, std::string const& key) {
     return scene_file + ": forces.openmm." + key;
 }

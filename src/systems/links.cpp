@@ -1,3 +1,5 @@
+// Implements the collection of bonds and constraints and the messages on missing links. Each pair
+// of particles is stored at the higher one; parallel bonds are merged into one Joining.
 #include "systems/links.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +51,8 @@ Joining Joinings::between(int a, int b) const {
     return found == lower.end() ? Joining{} : found->second;
 }
 
-/// "CustomBondForce (FENE)"; empty where none joins them.
+/// Returns "CustomBondForce (FENE)" or "CustomBondForce" for a custom bond between a and b; empty
+/// if there is none.
 std::string Joinings::custom_bond(int a, int b) const {
     std::vector<double> ignored;
     for (int i = 0; i < system_.getNumForces(); ++i) {

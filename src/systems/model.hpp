@@ -1,5 +1,4 @@
-// The forces of a scene as one OpenMM System, whatever built it. For files that see OpenMM's
-// headers.
+// The forces of a scene as one OpenMM System, for all sources of forces. Needs OpenMM's headers.
 #pragma once
 
 #include <OpenMM.h>
@@ -13,15 +12,18 @@
 
 namespace catena {
 
+/// A System on the beads of a scene.
 struct OpenMmModel {
-    std::shared_ptr<OpenMM::System>
-        system;                      // force i in group i; nothing in it that a rigid link replaces
+    /// System with force i in group i. Bonds and constraints replaced by rigid links are removed.
+    std::shared_ptr<OpenMM::System> system;
     std::vector<std::string> terms;  // names of the forces, all different
+    /// Bead of each particle.
     std::vector<std::int64_t> bead_of_particle;
-    std::vector<std::string> notes;  // for people: what the model is, what was left out
+    /// Sentences for the user on the model and on what was left out.
+    std::vector<std::string> notes;
 };
 
-/// The particle of each bead.
+/// Inverts the map: returns the particle of each bead.
 inline std::vector<int> particles_of_beads(std::vector<std::int64_t> const& bead_of_particle) {
     std::vector<int> particle(bead_of_particle.size());
     for (std::size_t p = 0; p < particle.size(); ++p)
@@ -29,28 +31,31 @@ inline std::vector<int> particles_of_beads(std::vector<std::int64_t> const& bead
     return particle;
 }
 
-/// The CALVADOS 2 model on every chain of beads. Two forces: ashbaugh-hatch and yukawa.
+/// Builds the CALVADOS 2 model on every chain of beads. It has two forces: ashbaugh-hatch and
+/// yukawa.
 OpenMmModel calvados2_model(OpenMmSpec const&, BeadSystem const&);
 
-/// A serialised System, its particles being the beads.
+/// Builds the model from a serialised System whose particles are the beads.
 OpenMmModel system_model(OpenMmSpec const&, BeadSystem const&);
 
-/// "CustomNonbondedForce".
+/// Class name of the force, e.g. "CustomNonbondedForce".
 std::string kind_of(OpenMM::Force const&);
 
-/// Names of these forces of a System, all different and without characters that mean something in
-/// tables, pages or terminals: those they bear; where these are OpenMM's own, yukawa and
-/// ashbaugh-hatch by the expression, else the kind of the force.
+/// Names of the given forces of a System, all different. Characters with a meaning in tables, pages
+/// or terminals are replaced. Names given by the user are kept. Otherwise yukawa and ashbaugh-hatch
+/// are recognised by the expression, and other forces have their class name.
 std::vector<std::string> term_names(OpenMM::System const&, std::vector<int> const& forces);
 
-/// The whole serialised System in `file`. `where`: scene file and key, for messages. Throws
-/// InputError with one line; for a System that this OpenMM cannot read it names both versions.
+/// Reads the whole serialised System in `file`. `where` is the scene file and key in messages.
+/// Throws InputError with one line; for a System that this OpenMM cannot read it names both
+/// versions.
 std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file,
                                                    std::string const& where);
 
-/// Takes what moves particles off a System, and says so in a sentence each: a CMMotionRemover, and
-/// thermostats and barostats in groups that `groups` (empty: all) does not name. Refuses the
-/// others, virtual sites and particles without a mass: throws InputError.
+/// Removes forces that move particles and returns a sentence on each. Removable are
+/// CMMotionRemovers, and thermostats and barostats in groups that `groups` (empty: all) does not
+/// name. Throws InputError for other thermostats and barostats, virtual sites and particles without
+/// a mass.
 std::vector<std::string> leave_movers_out(OpenMM::System&, std::vector<int> const& groups,
                                           std::string const& where);
 

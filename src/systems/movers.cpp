@@ -1,4 +1,4 @@
-// What in a System is no force: it moves particles, or has them placed.
+// Implements the treatment of forces that move particles and of particles without dynamics.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace catena {
 
 namespace {
 
-/// What the force would do in OpenMM; empty for what is no mover. `remedy`: what to do instead.
+/// Describes what the force would do in OpenMM; empty if it does not move particles. `remedy`
+/// receives the advice; it stays empty for a force that may be removed.
 std::string work_of(OpenMM::Force const& force, std::string& remedy) {
     if (auto const* isotropic = dynamic_cast<OpenMM::MonteCarloBarostat const*>(&force)) {
         remedy = "remove it: Catena runs at constant volume, in the System's box";
@@ -33,6 +34,7 @@ std::string work_of(OpenMM::Force const& force, std::string& remedy) {
     return "";
 }
 
+/// Throws InputError for virtual sites and for masses that are not positive and finite.
 void refuse_particles(OpenMM::System const& system, std::string const& where) {
     for (int p = 0; p < system.getNumParticles(); ++p) {
         if (system.isVirtualSite(p))
@@ -54,6 +56,7 @@ std::vector<std::string> leave_movers_out(OpenMM::System& system, std::vector<in
                                           std::string const& where) {
     refuse_particles(system, where);
     std::vector<std::string> notes;
+    // The loop runs backwards, because removals shift later indices.
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         OpenMM::Force const& force = system.getForce(i);
         std::string remedy;

@@ -1,3 +1,4 @@
+// Implements the reader of PDB topologies.
 #include "systems/pdb_topology.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ namespace catena {
 
 namespace {
 
+/// Reads the file; throws InputError if it cannot be opened.
 std::string whole_text(std::string const& file, std::string const& where) {
     std::ifstream in(file, std::ios::binary);
     if (!in)
@@ -25,9 +27,10 @@ std::string whole_text(std::string const& file, std::string const& where) {
     return text.str();
 }
 
-/// Gives names once: the first chain of a name keeps it, the next ones are "A-2", "A-3", ...
+/// Makes names unique: the first chain keeps its name, the next ones are "A-2", "A-3", ...
 class UniqueNames {
   public:
+    /// Returns `name`, or the next free variant of it.
     std::string make(std::string const& name) {
         if (taken_.insert(name).second) return name;
         std::string unique;
@@ -65,6 +68,7 @@ std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string con
     if (notes && summary.models > 1)
         notes->push_back(fmt::format("`{}`: {} models, the first is taken", scene::shown_path(file),
                                      summary.models));
+    // Chains without letter and segment are named by their number.
     UniqueNames names;
     for (std::size_t c = 0; c < chains.size(); ++c)
         chains[c].name =

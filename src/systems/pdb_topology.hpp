@@ -1,4 +1,4 @@
-// What a PDB file says about chains. No OpenMM here.
+// Chains of a PDB topology. This header does not need OpenMM.
 #pragma once
 
 #include <string>
@@ -8,17 +8,19 @@
 
 namespace catena {
 
+/// One chain; arrays have one entry per atom.
 struct PdbChain {
-    std::string name;                  // letter, else segment, else number; unique: A, A-2, ...
-    std::vector<std::string> residue;  // one an atom
+    /// Letter, else segment, else number of the chain; unique: A, A-2, ...
+    std::string name;
+    std::vector<std::string> residue;  // names of the residues
     std::vector<Vec3> position;        // nm
 
     std::size_t size() const { return residue.size(); }
 };
 
-/// The chains of the first model, in the file's order: a new one begins after TER and where letter
-/// or segment changes. Throws InputError; `where`: scene file and key, for messages. `notes`, where
-/// it is given, takes what the file holds beyond that.
+/// Returns the chains of the first model, in the file's order. A new chain begins after TER and at
+/// a change of letter or segment. Throws InputError; `where` is the scene file and key in messages.
+/// `notes`, unless nullptr, receives a sentence on further models.
 std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where,
                                         std::vector<std::string>* notes = nullptr);
 

@@ -1,3 +1,4 @@
+// Implements the search for plugins and their loading.
 #include "systems/plugins.hpp"
 
 #include <OpenMM.h>
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Folders to search, in order of precedence.
 std::vector<fs::path> plugin_folders() {
     std::vector<fs::path> folders;
     if (char const* named = std::getenv("OPENMM_PLUGIN_DIR")) folders.emplace_back(named);
@@ -30,6 +32,7 @@ std::vector<fs::path> plugin_folders() {
     return folders;
 }
 
+/// Loads each plugin from the first folder that has it; returns the errors.
 std::vector<std::string> load_plugins() {
     std::vector<std::string> failures;
     auto const folders = plugin_folders();
@@ -38,6 +41,7 @@ std::vector<std::string> load_plugins() {
             std::error_code ignored;
             return fs::exists(f / name, ignored);
         });
+        // A missing plugin is no error: its platform is optional.
         if (folder == folders.end()) continue;
         try {
             OpenMM::Platform::loadPluginLibrary((*folder / name).string());

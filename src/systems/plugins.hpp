@@ -1,4 +1,4 @@
-// OpenMM's platforms that are libraries of their own.
+// Loading of OpenMM's platforms that are separate libraries.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace catena {
 
-/// Loads the CPU and CUDA plugins at the first call: those in OPENMM_PLUGIN_DIR, else those that
-/// lie beside libOpenMM.so. A wheel's default folder is not where the wheel is, and its other
-/// plugins do not load everywhere, so files are named one by one. Returns what did not load, one
-/// line a file.
+/// Loads the CPU and CUDA plugins at the first call. They are searched in OPENMM_PLUGIN_DIR, then
+/// next to libOpenMM.so, then in OpenMM's default folder. The default folder compiled into a wheel
+/// is not where the wheel is installed. Its other plugins do not load everywhere, so that files are
+/// named one by one. Returns the errors, one line per file.
 std::vector<std::string> const& load_openmm_plugins();
 
 }  // namespace catena

@@ -1,4 +1,5 @@
-// Serialised Systems: reading.
+// Implements the reading of serialised Systems. The text is checked before and the result after
+// OpenMM's own reader, which accepts damaged files silently.
 #include <cxxabi.h>
 #include <fmt/format.h>
 #include <openmm/serialization/XmlSerializer.h>
@@ -21,10 +22,11 @@ namespace catena {
 
 namespace {
 
-/// OpenMM's reader takes 4.6 bytes for one of the text (14.7 MB of particles, bonds and
-/// exclusions), and there are two copies of it.
+/// Memory per character of the text. OpenMM's reader takes 4.6 bytes per byte (14.7 MB of
+/// particles, bonds and exclusions), and there are two copies of the text.
 double constexpr bytes_a_character = 8;
 
+/// Reads a file; throws InputError before it if the memory does not suffice.
 std::string read_text(std::string const& file, std::string const& where) {
     std::ifstream in(file, std::ios::binary | std::ios::ate);
     std::streamoff const size = in ? static_cast<std::streamoff>(in.tellg()) : -1;
@@ -46,7 +48,8 @@ std::string read_text(std::string const& file, std::string const& where) {
     return text;
 }
 
-/// Of a force in a file and in the System that OpenMM read there; empty where they are the same.
+/// Describes the first difference between the forces in the file and in the System that OpenMM
+/// read; empty if there is none.
 std::string difference(std::vector<std::string> const& written, OpenMM::System const& read) {
     if (std::ssize(written) != read.getNumForces())
         return fmt::format("{} forces where the file has {}", read.getNumForces(), written.size());

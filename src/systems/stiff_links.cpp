@@ -1,3 +1,4 @@
+// Implements joinings and the judgement of soft springs.
 #include "systems/stiff_links.hpp"
 
 #include <fmt/format.h>
@@ -11,9 +12,9 @@ namespace catena {
 namespace {
 
 double constexpr boltzmann = 0.00831446261815324;  // kJ/mol/K
-double constexpr same_length = 1e-6;               // nm: lengths that were written in decimals
+double constexpr same_length = 1e-6;               // nm; covers lengths written in decimals
 
-/// "1 link of fixed length stands for", "2 links of fixed length stand for".
+/// Returns "1 link stands for" or "2 links stand for", with `kind` after the noun.
 std::string links_stand_for(std::int64_t count, char const* kind = "") {
     return count == 1 ? fmt::format("1 link{} stands for", kind)
                       : fmt::format("{} links{} stand for", count, kind);

@@ -1,4 +1,4 @@
-// Which springs rigid links can stand for. No OpenMM here.
+// Springs that rigid links can replace. This header does not need OpenMM.
 #pragma once
 
 #include <cstdint>
@@ -8,46 +8,50 @@
 
 namespace catena {
 
-/// What holds two particles of a System together: harmonic bonds that have a stiffness, and
-/// constraints.
+/// The stiff harmonic bonds and constraints between two particles of a System.
 struct Joining {
-    double length = std::numeric_limits<double>::quiet_NaN();  // nm, at which all of it rests; NaN:
-                                                               // nothing holds them
-    double stiffness = 0;  // kJ/mol/nm2, of all; infinite: a constraint
+    /// Common rest length, nm; NaN if nothing joins the particles.
+    double length = std::numeric_limits<double>::quiet_NaN();
+    /// Sum of all stiffnesses, kJ/mol/nm2; infinite for a constraint.
+    double stiffness = 0;
+    /// Number of harmonic bonds.
     int springs = 0;
-    bool differ = false;  // the springs alone would rest at different lengths
+    /// True if the springs alone have different rest lengths.
+    bool differ = false;
 
+    /// True if anything joins the particles.
     bool holds() const { return stiffness > 0; }
-    /// Together springs rest at the mean of their lengths, weighted by stiffness. No constraint may
-    /// have been added before.
+    /// Adds a spring. Parallel springs rest at the mean of their lengths, weighted by stiffness.
+    /// Precondition: no constraint has been added.
     void add_spring(double rest, double k);
-    /// A constraint holds exactly, so it has the last word.
+    /// Adds a constraint, which fixes the length exactly and overrides all springs.
     void add_constraint(double rest);
-    /// sqrt(kT/k) relative to the length; temperature in K.
+    /// Thermal spread sqrt(kT/k) relative to the length; temperature in K.
     double spread(double temperature) const;
 };
 
 /// Collects the links of a System's chains and judges the springs that they replace.
 class StiffLinks {
   public:
-    static double constexpr stiff = 0.05, softest = 0.20;  // largest spreads of bonds that become
-                                                           // links: without a note, and with one
+    /// Largest relative thermal spreads of bonds that become links: without a note, and with one.
+    static double constexpr stiff = 0.05, softest = 0.20;
 
-    /// Temperature in K. `where`: scene file and key, for messages.
+    /// Temperature in K. `where` is the scene file and key in messages.
     StiffLinks(double temperature, std::string where)
         : temperature_(temperature), where_(std::move(where)) {}
-    /// The link between particles a and b (from 0). Throws InputError where no rigid link has a
-    /// meaning: a spread above `softest`, a length of 0.
+    /// Adds the link between particles a and b (from 0). Throws InputError if a rigid link is
+    /// meaningless: a spread above `softest`, or a length of 0.
     void add(std::int64_t a, std::int64_t b, Joining const&);
-    /// Of links that replace soft springs, and several springs of different lengths; a sentence for
-    /// each kind.
+    /// Sentences on links that replace soft springs, and on links that replace several springs of
+    /// different lengths.
     std::vector<std::string> notes() const;
-    /// The largest spread of a link that stands for a soft spring; 0 of none.
+    /// Largest relative spread of a link that replaces a soft spring; 0 if there is none.
     double largest_spread() const { return soft_.count > 0 ? soft_.worst.spread(temperature_) : 0; }
 
   private:
+    /// Links of one kind of note.
     struct Some {
-        std::int64_t count = 0, a = 0, b = 0;  // how many, and the particles of the worst
+        std::int64_t count = 0, a = 0, b = 0;  // number of links, and the particles of the worst
         Joining worst;
     };
     double temperature_;

@@ -1,3 +1,6 @@
+// Implements the Systems of subsets: copies of forces with renumbered particles. Pair forces are
+// copied for all particles of the subset. Bonded terms are copied if they involve an own particle,
+// so that each rank computes all forces on its own particles.
 #include "systems/subset.hpp"
 
 #include <algorithm>
@@ -13,11 +16,12 @@ namespace catena {
 
 namespace {
 
-using namespace OpenMM;  // this file handles nothing else
+using namespace OpenMM;  // this file uses no other library
 
-/// Notes the partners of own particles; keeps no term.
+/// Collects the partners of own particles; keeps no term.
 class PartnerCollector : public TermFilter {
   public:
+    /// Collector for the particles `own` among `particle_count`.
     PartnerCollector(int particle_count, std::vector<int> const& own)
         : own_(particle_count, false) {
         for (int p : own) own_[p] = true;
@@ -30,6 +34,7 @@ class PartnerCollector : public TermFilter {
                 if (!own_[*p]) partners_.insert(*p);
         return false;
     }
+    /// Partners in ascending order.
     std::vector<int> partners() const { return {partners_.begin(), partners_.end()}; }
 
   private:
@@ -37,7 +42,7 @@ class PartnerCollector : public TermFilter {
     std::set<int> partners_;
 };
 
-/// Marks the particles of terms that join ranks; keeps none.
+/// Marks the particles of terms that join different ranks; keeps no term.
 class JoinedAcrossRanks : public TermFilter {
   public:
     explicit JoinedAcrossRanks(std::vector<int> const& rank_of_particle)
@@ -49,6 +54,7 @@ class JoinedAcrossRanks : public TermFilter {
             for (int const* p : particles) joined_[*p] = 1;
         return false;
     }
+    /// Flag per particle: 1 if a term joins it to another rank.
     std::vector<char> const& joined() const { return joined_; }
 
   private:
@@ -56,15 +62,17 @@ class JoinedAcrossRanks : public TermFilter {
     std::vector<char> joined_;
 };
 
+/// Keeps no term; used to recognise bonded forces.
 class NoTerm : public TermFilter {
   public:
     bool keep(std::initializer_list<int*>) override { return false; }
 };
 
-/// Keeps the terms that touch an own particle, with the subset's numbers. Exchangeable particles
-/// have no terms.
+/// Keeps the terms that involve an own particle, and renumbers them for the subset. Exchangeable
+/// particles have no terms.
 class Renumbering : public TermFilter {
   public:
+    /// Numbers of the fixed particles; all others have the number -1.
     Renumbering(int particle_count, Subset const& subset)
         : particles_(subset.particles),
           after_(subset.after),
@@ -78,7 +86,8 @@ class Renumbering : public TermFilter {
         });
         return touches && keep_pair(particles);
     }
-    /// Whether all are in the subset for good.
+    /// Renumbers the particles in place; returns false if one of them is not permanently in the
+    /// subset.
     bool keep_pair(std::initializer_list<int*> particles) const {
         if (std::any_of(particles.begin(), particles.end(),
                         [&](int const* p) { return index_[*p] < 0; }))
@@ -92,7 +101,7 @@ class Renumbering : public TermFilter {
   private:
     std::vector<int> const &particles_, &after_;
     int own_count_;
-    std::vector<int> index_;  // in the subset; -1: not in it for good
+    std::vector<int> index_;  // index in the subset; -1: not permanently in it
 };
 
 template <class Source>
@@ -102,7 +111,8 @@ void copy_globals(Source const& from, Source& to) {
                               from.getGlobalParameterDefaultValue(i));
 }
 
-/// The exceptions of a NonbondedForce act at any distance: they are bonded terms.
+/// Passes the exceptions of a NonbondedForce to the filter. They act at any distance, like bonded
+/// terms.
 void collect_exceptions(NonbondedForce const& from, TermFilter& filter) {
     for (int i = 0; i < from.getNumExceptions(); ++i) {
         int a, b;
@@ -112,6 +122,7 @@ void collect_exceptions(NonbondedForce const& from, TermFilter& filter) {
     }
 }
 
+/// Passes the exclusions to the filter.
 void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
     for (int i = 0; i < from.getNumExclusions(); ++i) {
         int a, b;
@@ -120,6 +131,7 @@ void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
     }
 }
 
+/// Passes all terms, exceptions and exclusions of a System to the filter.
 void collect_terms(System const& system, TermFilter& filter) {
     for (int i = 0; i < system.getNumForces(); ++i) {
         if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i)))
@@ -141,6 +153,7 @@ void copy_computed_values(Source const& from, Source& to) {
     }
 }
 
+/// Copies the interaction groups with the particles that are permanently in the subset.
 void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const& subset,
                              CustomNonbondedForce& to) {
     auto const renumbered = [&](std::set<int> const& all) {
@@ -156,6 +169,7 @@ void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const
     }
 }
 
+/// Copies a CustomNonbondedForce for the subset's particles.
 std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering const& subset) {
     auto to = std::make_unique<CustomNonbondedForce>(from.getEnergyFunction());
     to->setNonbondedMethod(from.getNonbondedMethod());
@@ -184,7 +198,8 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
     return to;
 }
 
-/// Exceptions with their offsets. One between two ghosts must stay an exclusion but need not act.
+/// Copies exceptions with their offsets. An exception between two ghosts must stay an exclusion,
+/// but its energy is not needed.
 void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, NonbondedForce& to) {
     std::vector<int> index(from.getNumExceptions(), -1);
     for (int i = 0; i < from.getNumExceptions(); ++i) {
@@ -204,6 +219,7 @@ void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, Nonb
     }
 }
 
+/// Copies a NonbondedForce for the subset's particles.
 std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const& subset) {
     auto to = std::make_unique<NonbondedForce>();
     to->setNonbondedMethod(from.getNonbondedMethod());
@@ -213,7 +229,7 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     to->setReactionFieldDielectric(from.getReactionFieldDielectric());
     to->setExceptionsUsePeriodicBoundaryConditions(
         from.getExceptionsUsePeriodicBoundaryConditions());
-    to->setUseDispersionCorrection(false);  // it adds no force
+    to->setUseDispersionCorrection(false);  // the correction adds no force
     copy_globals(from, *to);
     double charge, sigma, epsilon;
     for (int p : subset.particles()) {
@@ -231,6 +247,7 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     return to;
 }
 
+/// Copies any force that can be split.
 std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
     if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&from))
         return copy_pairs(*pairs, subset);
@@ -239,6 +256,7 @@ std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
     return copy_bonded(from, subset);
 }
 
+/// Sets the parameters of the exchangeable particles in the force and in the Context.
 void exchange_parameters(Subset const& subset, CustomNonbondedForce const& from,
                          CustomNonbondedForce& to, Context& context) {
     std::vector<double> parameters;

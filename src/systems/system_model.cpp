@@ -1,4 +1,6 @@
-// A serialised System on the beads of a scene.
+// Implements the use of a serialised System on the beads of a scene. Rigid links replace its
+// constraints and bonds along chains. Forces that move particles and groups that the scene does not
+// use are removed. The remaining forces are renamed, and each gets its own force group.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,11 +24,12 @@ namespace {
 using OpenMM::HarmonicBondForce;
 using OpenMM::System;
 
-double constexpr same_length = 1e-6;  // nm: lengths that were written in decimals
-double constexpr same_mass = 1e-6;    // relative: masses likewise
+double constexpr same_length = 1e-6;  // nm; covers lengths written in decimals
+double constexpr same_mass = 1e-6;    // relative; covers masses written in decimals
+/// Number of force groups that OpenMM distinguishes.
 std::size_t constexpr force_groups_of_openmm = 32;
 
-/// The links of the scene by the particles that they join.
+/// Lengths of the scene's links by the particles that they join.
 class LinkTable {
   public:
     LinkTable(BeadSystem const& beads, std::vector<int> const& particle_of_bead) {
@@ -34,7 +37,7 @@ class LinkTable {
             lengths_[ordered(particle_of_bead[link.inboard], particle_of_bead[link.outboard])] =
                 link.length;
     }
-    /// nullptr where no link joins them.
+    /// Returns the link's length, or nullptr if no link joins the particles.
     double const* length(int a, int b) const {
         auto const found = lengths_.find(ordered(a, b));
         return found == lengths_.end() ? nullptr : &found->second;
@@ -45,7 +48,10 @@ class LinkTable {
     std::map<std::pair<int, int>, double> lengths_;
 };
 
+/// Statistics of the terms that rigid links replace.
 struct Savings {
+    /// Number of terms, their range of lengths, and the largest difference from a link's length,
+    /// nm.
     int count = 0;
     double shortest = INFINITY, longest = 0, largest_difference = 0;
 
@@ -55,6 +61,7 @@ struct Savings {
         longest = std::max(longest, length);
         largest_difference = std::max(largest_difference, std::abs(length - link));
     }
+    /// Sentence on the terms; `what` is their plural noun.
     std::string note(std::string const& what) const {
         std::string text =
             longest - shortest < same_length
@@ -69,6 +76,7 @@ struct Savings {
     }
 };
 
+/// Throws InputError unless the System has one particle per bead.
 void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const& beads) {
     if (system.getNumParticles() != beads.size())
         throw InputError(
@@ -78,7 +86,8 @@ void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const
             fmt::format("let every particle of {} be a bead of the scene", spec.system));
 }
 
-/// One chain after the other, without a map: the topology's chains must be the scene's.
+/// Checks the topology against the scene. Without a map its chains must be the scene's, in the same
+/// order and of the same sizes.
 void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
     if (spec.topology.empty()) return;
     std::string const where = openmm_key(beads.scene_file, "topology");
@@ -107,8 +116,8 @@ void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
     }
 }
 
-/// `map` names the first and last particle of each chain, counted from 0 as OpenMM does; without it
-/// particles and beads have the same order.
+/// Returns the bead of each particle. `map` names the first and last particle of each chain, from 0
+/// as in OpenMM. Without it particles and beads have the same order.
 std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::vector<std::int64_t> bead(static_cast<std::size_t>(beads.size()),
                                    spec.map.empty() ? 0 : -1);
@@ -118,8 +127,8 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
     }
     std::string const where = openmm_key(beads.scene_file, "map");
     std::vector<bool> used(spec.map.size(), false);
-    std::unordered_map<std::string_view, std::vector<std::size_t>>
-        unused;  // entries by the chain's name, the first one last
+    /// Unused entries by the chain's name, the first one at the back.
+    std::unordered_map<std::string_view, std::vector<std::size_t>> unused;
     for (std::size_t i = spec.map.size(); i-- > 0;) unused[spec.map[i].first].push_back(i);
     for (std::size_t c = 0; c < beads.chain_name.size(); ++c) {
         std::string const& name = beads.chain_name[c];
@@ -155,6 +164,7 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
     return bead;
 }
 
+/// Throws InputError if a mass in the System differs from that in the scene.
 void check_masses(System const& system, BeadSystem const& beads,
                   std::vector<std::int64_t> const& bead_of_particle) {
     for (int p = 0; p < system.getNumParticles(); ++p) {
@@ -169,10 +179,12 @@ void check_masses(System const& system, BeadSystem const& beads,
     }
 }
 
-/// Constraints must be links; then the links take their place.
+/// Removes the constraints, which the scene's links replace. Throws InputError for a constraint
+/// that is not a link of the same length.
 std::vector<std::string> remove_constraints(System& system, LinkTable const& links,
                                             std::string const& where) {
     Savings left_out;
+    // The loop runs backwards, because removals shift later indices.
     for (int i = system.getNumConstraints() - 1; i >= 0; --i) {
         int a, b;
         double length;
@@ -196,6 +208,7 @@ std::vector<std::string> remove_constraints(System& system, LinkTable const& lin
                               : std::vector<std::string>{};
 }
 
+/// Copies the bonds that are not along links, and counts the others in `left_out`.
 std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
                                                  LinkTable const& links, Savings& left_out) {
     auto kept = std::make_unique<HarmonicBondForce>();
@@ -214,8 +227,9 @@ std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
     return kept;
 }
 
-/// Forces get the names of their terms in the System's order, before those that lose bonds move to
-/// its end; `links` take others whole. Refuses more forces than OpenMM has groups.
+/// Names the forces after their terms, in the System's order. This must precede the removal of
+/// bonds, which moves forces to the end. Forces that lose all bonds to `links` get no name. Throws
+/// InputError for more forces than OpenMM has groups.
 void name_in_order(System& system, LinkTable const& links, std::string const& where) {
     auto const vanishes = [&](OpenMM::Force const& force) {
         auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&force);
@@ -233,7 +247,7 @@ void name_in_order(System& system, LinkTable const& links, std::string const& wh
     for (std::size_t n = 0; n < names.size(); ++n) system.getForce(remaining[n]).setName(names[n]);
 }
 
-/// Takes the bonds along links out, and forces that are left without a term with them.
+/// Removes the bonds along links, and forces that have no other term.
 std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links,
                                              std::string const& where) {
     Savings left_out;
@@ -249,8 +263,8 @@ std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& li
                               : std::vector<std::string>{};
 }
 
-/// Beads of one rigid body do not act on each other: what nonbonded terms add there has no effect
-/// but rounding.
+/// Excludes nonbonded interactions between beads of one rigid body. They have no effect on the
+/// motion but add rounding.
 std::vector<std::string> exclude_within_bodies(System& system, BeadSystem const& beads,
                                                std::vector<int> const& particle_of_bead) {
     if (beads.rigid.empty()) return {};
@@ -276,7 +290,7 @@ std::vector<std::string> exclude_within_bodies(System& system, BeadSystem const&
                         beads.rigid.size() == 1 ? "body" : "bodies")};
 }
 
-/// Keeps the groups that the scene asks for.
+/// Removes the forces outside of the groups that the scene names.
 std::vector<std::string> remove_other_groups(System& system, std::vector<int> const& groups) {
     std::vector<std::string> notes;
     if (groups.empty()) return notes;
@@ -292,7 +306,7 @@ std::vector<std::string> remove_other_groups(System& system, std::vector<int> co
     return notes;
 }
 
-/// Every force its own group; it has its own name.
+/// Puts every force into its own group and returns the names.
 std::vector<std::string> name_terms(System& system) {
     std::vector<std::string> names;
     for (int i = 0; i < system.getNumForces(); ++i) {
@@ -300,13 +314,13 @@ std::vector<std::string> name_terms(System& system) {
         names.push_back(force.getName());
         force.setForceGroup(i);
         if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&force))
-            charges->setReciprocalSpaceForceGroup(-1);  // with the rest
+            charges->setReciprocalSpaceForceGroup(-1);  // same group as the direct space
     }
     return names;
 }
 
-/// The particles' charges where the force has any: those of a NonbondedForce, or a parameter that
-/// is called so.
+/// Returns the particles' charges if the force has any: those of a NonbondedForce, or a parameter
+/// named q, Q or charge.
 std::vector<double> charges_of(OpenMM::Force const& force) {
     std::vector<double> charges, parameters;
     if (auto const* nonbonded = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
@@ -328,7 +342,7 @@ std::vector<double> charges_of(OpenMM::Force const& force) {
     return charges;
 }
 
-/// What the first force with charges says of the chains' net charges; none where no particle is
+/// Notes the chains' net charges by the first force with charges; no note if no particle is
 /// charged.
 std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const& beads) {
     for (int i = 0; i < model.system->getNumForces(); ++i) {
@@ -344,7 +358,7 @@ std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const
     return {};
 }
 
-/// A periodic System takes the scene's box, which must be its own.
+/// Checks the boxes: a periodic System must have the scene's box. Notes a box that no force uses.
 void settle_box(System& system, BeadSystem const& beads, std::vector<std::string>& notes) {
     bool const periodic = system.usesPeriodicBoundaryConditions();
     if (!periodic) {

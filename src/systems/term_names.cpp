@@ -1,4 +1,4 @@
-// What the terms of a System are called.
+// Implements the names of a System's terms.
 #include <algorithm>
 #include <string_view>
 
@@ -9,7 +9,8 @@ namespace catena {
 
 namespace {
 
-/// In printable ASCII without characters that mean something in tables, pages and terminals.
+/// Returns the name in printable ASCII. Characters with a meaning in tables, pages and terminals
+/// become `_`.
 std::string harmless(std::string const& name) {
     std::string text = scene::shown(name);
     for (char& c : text)
@@ -21,11 +22,12 @@ std::string harmless(std::string const& name) {
                                       : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+/// True if the text contains the part.
 bool has(std::string const& text, std::string_view part) {
     return text.find(part) != std::string::npos;
 }
 
-/// exp(-kappa*r)/r, whatever kappa is written as.
+/// True if the expression contains exp(-kappa*r)/r, for any spelling of kappa.
 bool is_screened(std::string const& energy) {
     for (auto at = energy.find("exp(-"); at != std::string::npos;
          at = energy.find("exp(-", at + 1)) {
@@ -39,13 +41,14 @@ bool is_screened(std::string const& energy) {
     return false;
 }
 
-/// Lennard-Jones, split at its minimum and scaled by a stickiness beyond it.
+/// True for a Lennard-Jones potential that is split at its minimum and scaled by a stickiness
+/// beyond it.
 bool is_ashbaugh_hatch(std::string const& energy) {
     return has(energy, "2^(1/6)*") && has(energy, "^12") && has(energy, "^6") &&
            has(energy, "step(") && has(energy, "(1-l");
 }
 
-/// A name that somebody gave, else what the expression says, else the kind of the force.
+/// Returns the name given by the user, else the name of the expression, else the kind of the force.
 std::string own_name(OpenMM::Force const& force) {
     std::string const kind = kind_of(force), given = harmless(force.getName());
     if (!given.empty() && given != kind) return given;
@@ -61,8 +64,8 @@ std::string own_name(OpenMM::Force const& force) {
 
 std::vector<std::string> term_names(OpenMM::System const& system, std::vector<int> const& forces) {
     std::vector<std::string> names;
-    std::vector<std::string> taken{"potential", "kinetic", "total",
-                                   "gravity",   "springs", "fixman"};  // columns of the run's own
+    std::vector<std::string> taken{"potential", "kinetic", "total", "gravity",
+                                   "springs",   "fixman"};  // columns that the run itself writes
     for (int const i : forces) {
         std::string const name = own_name(system.getForce(i));
         std::string unique = name;

@@ -1,3 +1,6 @@
+// Implements the check of a System's text by a small XML scanner without copies of the text.
+// OpenMM's own reader ignores many faults silently. The scanner therefore reports them
+// first, with the line.
 #include "systems/xml_scan.hpp"
 
 #include <fmt/format.h>
@@ -18,8 +21,9 @@ namespace {
 
 using std::string_view;
 
-std::size_t constexpr deepest =
-    64;  // OpenMM writes ten, and a few more for each force within a CustomCVForce
+/// Largest depth of elements. OpenMM writes ten levels, and a few more for each force within a
+/// CustomCVForce.
+std::size_t constexpr deepest = 64;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_name(char c) {
@@ -27,7 +31,7 @@ bool is_name(char c) {
            c == ':';
 }
 
-/// Whether the whole text is a number as OpenMM writes it.
+/// True if the whole text is a number as OpenMM writes it.
 bool is_number(string_view text) {
     std::string const copy(text);
     char* end = nullptr;
@@ -35,6 +39,7 @@ bool is_number(string_view text) {
     return !copy.empty() && !is_blank(copy[0]) && *end == '\0' && end == copy.c_str() + copy.size();
 }
 
+/// True if the text begins with a sign, point or digit of a number.
 bool begins_as_number(string_view text) {
     if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
     if (text.starts_with('.')) text.remove_prefix(1);
@@ -50,16 +55,18 @@ bool is_one_of(string_view name, std::array<string_view, N> const& names) {
 constexpr std::array<string_view, 9> words{"name",     "type",          "types",
                                            "energy",   "expression",    "formula",
                                            "function", "openmmVersion", "typeName"};
-/// Elements that have nothing but numbers beside these.
+/// Elements whose other attributes are all numbers.
 constexpr std::array<string_view, 11> records{"A",         "B",         "C",         "Bond",
                                               "Angle",     "Torsion",   "Particle",  "Value",
                                               "Exclusion", "Exception", "Constraint"};
 
+/// Scanner of the text with a stack of open elements.
 class Scanner {
   public:
     Scanner(string_view text, std::string const& file, std::string const& where)
         : text_(text), file_(file), where_(where) {}
 
+    /// Checks the whole text and returns its outline.
     XmlOutline scan() {
         if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
         while (at_ < text_.size()) {
@@ -77,28 +84,32 @@ class Scanner {
     }
 
   private:
+    /// An element whose end tag has not been read.
     struct Element {
         string_view name;
-        std::size_t at;  // of its tag
+        std::size_t at;  // position of its tag in the text
         bool has_type = false;
-        std::set<string_view> has = {};  // names of its children, of the System and of forces
+        /// Names of its children; recorded for the System and for forces.
+        std::set<string_view> has = {};
     };
     using Attributes = std::vector<std::pair<string_view, string_view>>;
 
     static std::string shown(string_view text) { return scene::shown(text); }
 
+    /// Number of line feeds between two positions.
     std::ptrdiff_t lines(std::size_t from, std::size_t to) const {
         string_view const part = text_.substr(from, to - from);
         return std::count(part.begin(), part.end(), '\n');
     }
 
+    /// Throws InputError with the line of position `at`.
     [[noreturn]] void fail(std::size_t at, std::string const& what) const {
         throw InputError(
             fmt::format("{} is not well-formed: {} (line {})", file_, what, 1 + lines(0, at)),
             where_, "write the System again with OpenMM's XmlSerializer");
     }
 
-    /// Blanks alone.
+    /// Skips blanks between elements; throws InputError for other characters.
     void between() {
         for (; at_ < text_.size() && text_[at_] != '<'; ++at_)
             if (!is_blank(text_[at_]))
@@ -106,6 +117,7 @@ class Scanner {
                      fmt::format("`{}` stands between elements", shown(text_.substr(at_, 20))));
     }
 
+    /// Reads a comment, declaration or tag.
     void markup() {
         string_view const rest = text_.substr(at_);
         if (rest.starts_with("<!--")) return skip(4, "-->", "a comment that is not closed");
@@ -115,12 +127,14 @@ class Scanner {
         start_tag();
     }
 
+    /// Skips to the end of the token `closing`; throws InputError with `fault` if it is missing.
     void skip(std::size_t opening, string_view closing, char const* fault) {
         std::size_t const end = text_.find(closing, at_ + opening);
         if (end == string_view::npos) fail(at_, fault);
         at_ = end + closing.size();
     }
 
+    /// Reads a name of a tag or attribute.
     string_view name() {
         std::size_t const begin = at_;
         while (at_ < text_.size() && is_name(text_[at_])) ++at_;
@@ -128,17 +142,20 @@ class Scanner {
             fail(begin, "a tag or attribute without a name");
         return text_.substr(begin, at_ - begin);
     }
+    /// Skips blanks; returns true if there were any.
     bool blanks() {
         std::size_t const begin = at_;
         while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
         return at_ > begin;
     }
+    /// Skips the token if the text continues with it; returns true if so.
     bool take(string_view token) {
         if (!text_.substr(at_).starts_with(token)) return false;
         at_ += token.size();
         return true;
     }
 
+    /// Reads an end tag and closes the innermost element, which must have that name.
     void end_tag() {
         std::size_t const begin = at_;
         at_ += 2;
@@ -151,6 +168,7 @@ class Scanner {
         open_.pop_back();
     }
 
+    /// Reads a start tag or an empty element with its attributes and opens it.
     void start_tag() {
         std::size_t const begin = at_++;
         if (open_.empty() && rooted_) fail(begin, "a second element beside the System");
@@ -170,8 +188,8 @@ class Scanner {
         if (!empty) open_.push_back(std::move(element));
     }
 
-    /// In one pass over sorted names: an element may have as many attributes as the file has room
-    /// for.
+    /// Throws InputError for an attribute given twice. Sorting keeps the cost low, because an
+    /// element may have as many attributes as the file has room for.
     void refuse_twice(std::size_t at, Attributes const& attributes) const {
         std::vector<string_view> keys;
         for (auto const& [key, value] : attributes) keys.push_back(key);
@@ -181,6 +199,7 @@ class Scanner {
             fail(at, fmt::format("attribute {} is given twice", shown(*twice)));
     }
 
+    /// Reads one attribute with its quoted value.
     std::pair<string_view, string_view> attribute() {
         std::size_t const begin = at_;
         string_view const key = name();
@@ -201,7 +220,8 @@ class Scanner {
         return {key, value};
     }
 
-    /// OpenMM takes what stands before the first letter, or 0.
+    /// Throws InputError for numbers with other characters in them. OpenMM would use the part
+    /// before the first letter, or 0.
     void check_numbers(Element const& element, Attributes const& attributes) const {
         bool const all = is_one_of(element.name, records);
         for (auto const& [key, value] : attributes)
@@ -209,12 +229,14 @@ class Scanner {
                 fail(element.at, fmt::format("`{}` of {} is no number", shown(value), shown(key)));
     }
 
+    /// Value of an attribute; empty if the attribute is absent.
     static string_view value_of(Attributes const& attributes, string_view key) {
         for (auto const& [other, value] : attributes)
             if (other == key) return value;
         return {};
     }
 
+    /// Records an element in the outline and checks its place in the parent.
     void enter(Element const& element, Attributes const& attributes) {
         if (open_.empty()) {
             outline_.type = element.name == "System" ? value_of(attributes, "type") : string_view{};
@@ -225,7 +247,7 @@ class Scanner {
         bool const in_forces = open_.size() == 2 && parent.name == "Forces";
         if (in_forces) outline_.forces.emplace_back(value_of(attributes, "type"));
         if (parent.name == "Force" && parent.has_type &&
-            element.name == "Force")  // an ATMForce has its forces in <Force> without a type
+            element.name == "Force")  // the forces of an ATMForce are in <Force> without a type
             fail(parent.at,
                  fmt::format("a <Force> is not closed before the next begins ({} lines below)",
                              lines(parent.at, element.at)));
@@ -238,8 +260,10 @@ class Scanner {
     string_view text_;
     std::string const& file_;
     std::string const& where_;
+    /// Position in the text.
     std::size_t at_ = 0;
     bool rooted_ = false;
+    /// Open elements, the outermost first.
     std::vector<Element> open_;
     XmlOutline outline_;
 };

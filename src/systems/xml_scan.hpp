@@ -1,5 +1,5 @@
-// A look at the text of a serialised System before OpenMM's reader, which trusts it, does. No
-// OpenMM here.
+// Check of the text of a serialised System before OpenMM's reader, which does not check it. This
+// header does not need OpenMM.
 #pragma once
 
 #include <string>
@@ -8,17 +8,19 @@
 
 namespace catena {
 
-/// What the text of a System says of itself.
+/// Types and version named in the text of a System.
 struct XmlOutline {
-    std::string type, version;        // of the root element: `type` and `openmmVersion`
-    std::vector<std::string> forces;  // types of the elements in its <Forces>, in order
+    /// Attributes `type` and `openmmVersion` of the root element.
+    std::string type, version;
+    /// Types of the elements in its <Forces>, in order.
+    std::vector<std::string> forces;
 };
 
-/// Reads the whole text. Throws InputError with the line where it is not well-formed XML (tags that
-/// do not match, open comments, a second root, attributes without quotes, ...), and for what OpenMM
-/// would pass over in silence: text between elements, an element given twice in the System or in a
-/// force, a number with letters in it. Elements nest at most 64 deep. `file`: for messages;
-/// `where`: scene file and key.
+/// Reads the whole text. Throws InputError with the line if it is not well-formed XML: tags that do
+/// not match, open comments, a second root, attributes without quotes, ... Also refused is what
+/// OpenMM would ignore silently. Examples are text between elements, an element given twice in the
+/// System or in a force, and a number with letters in it. Elements may be nested at most 64 deep.
+/// `file` is the name in messages; `where` is the scene file and key.
 XmlOutline scan_system_xml(std::string_view text, std::string const& file,
                            std::string const& where);
 
