@@ -71,7 +71,7 @@ class ForceContext {
     /// True if particles are too far from where they were when `place_` was computed.
     bool have_strayed(std::span<Vec3 const> positions, std::size_t centred) const;
 
-    // edges of the periodic box, nm
+    /// Edges of the periodic box, nm.
     std::optional<Vec3> box_;
     Placement placement_;
     std::shared_ptr<OpenMM::System const> system_;

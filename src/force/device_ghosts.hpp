@@ -108,7 +108,7 @@ class HaloForces final : public RankForces, public Halo {
     Lists lists_;
     std::shared_ptr<OpenMM::System> system_;
     std::unique_ptr<ForceContext> context_;
-    // largest Context so far, particles; number of Contexts made
+    /// Particles of the largest Context so far, and number of Contexts made.
     std::int64_t largest_ = 0, contexts_ = 0;
 };
 

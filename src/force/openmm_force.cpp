@@ -86,8 +86,8 @@ class OpenMmForces final : public OpenMmForce {
     double begun_ = 0;
     Interval gathering_, interval_;
     std::exception_ptr error_;
-    std::unique_ptr<Worker>
-        worker_;  // declared last: its thread must end before the members it uses
+    // Declared last: its thread must end before the members it uses.
+    std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace

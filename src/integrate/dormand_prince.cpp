@@ -14,8 +14,8 @@ namespace catena {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr std::int64_t most_inner_steps =
-    100000;  // inner steps of one time step, rejected ones included
+// Inner steps of one time step, rejected ones included.
+constexpr std::int64_t most_inner_steps = 100000;
 constexpr char const* name_of_state = "inner_step";
 
 /// JointIntegrator of the Dormand-Prince pair.

@@ -52,7 +52,7 @@ inline bool is_refined(Integrator i) { return i <= Integrator::velocity_verlet; 
 inline bool keeps_matrices(Scene const& scene) {
     return scene.forces.openmm || scene.solver.refine > 0 || !is_refined(scene.dynamics.integrator);
 }
-/// True if a chain of the scene has a jointed tip or is a ring of bodies on joints.
+/// True if a chain of the scene has a jointed tip; rings have one as well.
 bool has_jointed_tips(Scene const&);
 /// Returns the sweeps per time step, with an adaptive step per inner step. `tips`: true if the
 /// scene has jointed tips.

@@ -18,8 +18,8 @@ namespace {
 /// Limits of the sample: chains of one kind are alike, and so are the bodies of a long chain.
 constexpr std::size_t most_chains = 4, most_bodies = 400;
 constexpr int most_iterations = 400, least_iterations = 50;
-constexpr double settled =
-    1e-4;  // relative change of the squared frequency between iterations at convergence
+// Relative change of the squared frequency between iterations at convergence.
+constexpr double settled = 1e-4;
 /// Fraction of the limit above which a note is given. At 0.71 of it, where four steps are a period
 /// of the stiffest mode, energy grows by resonance.
 constexpr double near = 0.65;
@@ -70,9 +70,8 @@ Scene sprung_part(Scene const& scene) {
     part.dynamics.given = true;
     part.solver.backend = Backend::segments;
     part.solver.threads = 1;
-    part.solver.handles =
-        scene.solver
-            .handles;  // the scene's handles: those with fewer digits may fail or be far off
+    // The scene's handles: those with fewer digits may fail or be far off.
+    part.solver.handles = scene.solver.handles;
     for (ChainSpec const& chain : scene.chains) {
         if (!has_springs(chain) || part.chains.size() == most_chains) continue;
         part.chains.push_back(chain);

@@ -137,8 +137,8 @@ class JointStepper final : public Stepper {
     double h_, tolerance_, origin_ = 0;
     SweepsAStep sweeps_;
     Sum sum_;
-    int corrections_ =
-        JointDynamics::usual_corrections;  // corrections of tips' positions after a step
+    // Corrections of tips' positions after a step.
+    int corrections_ = JointDynamics::usual_corrections;
     std::unique_ptr<JointIntegrator> integrator_;
 };
 

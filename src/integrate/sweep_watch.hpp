@@ -31,8 +31,8 @@ class SweepWatch {
     }
 
   private:
-    static constexpr double rounding_of_joints =
-        1e-13;  // violation due to rounding near the origin
+    // Violation due to rounding near the origin.
+    static constexpr double rounding_of_joints = 1e-13;
     // violations at which a sweep was added last (0: none since), and in vain
     double added_at_ = 0, in_vain_at_ = 0;
 };
