@@ -62,8 +62,8 @@ class ForceContext {
     void find_energies(std::span<double> of_group, int groups = -1);
 
   private:
-    /// Number of evaluations for which shifts are kept. OpenMM's own integrators keep the order of
-    /// particles for as long.
+    /// Number of evaluations for which shifts are kept, on platform Reference `on_reference`.
+    /// OpenMM's own integrators keep the order of particles for as many steps.
     static constexpr int evaluations_of_a_place = 250, on_reference = 1;
 
     /// Computes `place_` from these positions.

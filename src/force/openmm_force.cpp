@@ -239,8 +239,7 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
         if (communicator_.rank() != 0) throw;
         failure = e.what();
     }
-    if (device_)
-        device_->make_current();  // restores the chains' GPU context, whatever OpenMM left current
+    if (device_) device_->make_current();  // OpenMM may have left its own GPU context current
     char failed = failure.empty() ? 0 : 1;
     communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
     if (failed != 0)

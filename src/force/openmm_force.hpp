@@ -79,8 +79,8 @@ class OpenMmForce {
 };
 
 /// Makes the forces that the scene asks for. Throws InputError if they cannot be had: unknown
-/// residue, missing platform, unreadable XML, a force that cannot be split over ranks, ... Throws
-/// "built without OpenMM" in a build without it. Collective.
+/// residue, missing platform, unreadable XML, a force that cannot be split over ranks, and others.
+/// Throws "built without OpenMM" in a build without it. Collective.
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const&,
                                                Communicator const&,
                                                ChainsOnDevice const& = {no_gpu_asked_for, -1});

@@ -16,8 +16,8 @@ namespace catena {
 /// Forces on one rank's own beads, from a Context of all beads on every rank.
 /// With domain decomposition, a million beads on four GPUs have as many ghosts as own beads, and
 /// pairs among ghosts are computed in vain. With every bead as a ghost, lists of ghosts are never
-/// rebuilt and no pair is computed twice. In return, every position goes to every rank and forces
-/// come back: 12 bytes each, from GPU to GPU, in single precision.
+/// rebuilt and no pair is computed twice. In return, every position is sent to every rank and
+/// forces are sent back. These are 12 bytes each, from GPU to GPU, in single precision.
 class PairForces final : public RankForces, public Halo {
   public:
     /// Ranks other than 0 remove long-range energy corrections from the plan's System.

@@ -98,7 +98,7 @@ class ChainSystem {
     }
     /// Motion of this rank's bodies at the time of own_bodies().
     struct OwnBodies {
-        /// Columns of a row beside position and velocity: orientation and angular velocity, joint
+        /// Columns of a row besides position and velocity: orientation and angular velocity, joint
         /// force, joint coordinates and rates.
         bool turning = false, joint_forces = false, joint_states = false;
         /// Rows of each group, width() numbers per body.
@@ -113,8 +113,8 @@ class ChainSystem {
     /// Passes bodies as pass_bodies() above does, from a copy. Collective.
     void pass_bodies(OwnBodies const&, std::function<void(Bodies const&)> const& take) const;
     /// Passes this rank's bodies to `take`, in scene order, without exchange between ranks. Each
-    /// round is of bounded size and holds consecutive bodies; all ranks have the same number of
-    /// rounds. Collective.
+    /// round is of bounded size and consists of runs of consecutive bodies. All ranks have the same
+    /// number of rounds. Collective.
     void pass_own_bodies(OwnBodies const&,
                          std::function<void(std::vector<Bodies> const&)> const& take) const;
     /// Returns the runs of consecutive bodies of the scene that this rank owns.
@@ -164,8 +164,8 @@ class ChainSystem {
     /// them `solver.refine` times. OpenMM computes while matrices are assembled. Collective.
     void solve_joint_groups();
     /// Computes the accelerations again with the present velocities, but with the coordinates,
-    /// OpenMM's forces and matrices of the last solve_joint_groups(). Precondition: keep_matrices()
-    /// was called. Collective.
+    /// OpenMM's forces and matrices of the last solve_joint_groups(). Precondition: solves_once()
+    /// is false. Collective.
     void solve_joint_groups_again();
     /// Calls JointDynamics::close_tips() of every group in joint coordinates. Collective.
     void close_tips(int corrections = JointDynamics::usual_corrections);

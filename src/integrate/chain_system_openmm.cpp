@@ -120,7 +120,7 @@ void ChainSystem::go_on_openmm() {
 
 DevicePath::Clock ChainSystem::read_device_clock() {
     clock_is_due_ = false;
-    // This evaluation stands for those since the clock was read last.
+    // This evaluation represents those since the clock was read last.
     double const weight = static_cast<double>(std::exchange(evaluations_since_clock_, 0));
     DevicePath::Clock const clock = openmm_->device_path()->clock();
     auto const length = [weight](double begin, double end) {

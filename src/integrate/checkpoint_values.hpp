@@ -1,5 +1,5 @@
 // Checked reading of a checkpoint's values other than the bodies' arrays. Only values that a run
-// can have written are accepted, whatever the file holds.
+// can have written are accepted.
 #pragma once
 
 #include <cmath>

@@ -16,19 +16,25 @@ enum class BondMeasure { flexible, rigid };
 /// Sizes of a chain, and two sums for the configurational temperature, T = <virial> / (kB
 /// <divergence>).
 ///
-/// Bond b_j (j = 0 .. n - 2) points from bead j to bead j + 1, e_j = b_j / |b_j|, c_j = e_j-1 .
-/// e_j. For j > 0 all beads beyond bond j are displaced along
-/// w_j = e_j-1 - c_j e_j,
-/// across bond j. No bond changes its length, so the bonds' own forces do no work. For a density mu
-/// exp(-U / kT) of the b_j, the mean of the derivative of (density w_j) is zero:
-/// <F_j . w_j> = kT <2 c_j / |b_j| - d ln mu / dw_j>.
+/// Bond b_j (j = 0 .. n - 2) points from bead j to bead j + 1. Let e_j = b_j / |b_j| and
+/// c_j = e_j-1 . e_j. For j > 0 all beads beyond bond j are displaced across bond j, along
+///
+///     w_j = e_j-1 - c_j e_j.
+///
+/// No bond changes its length, so the bonds' own forces do no work. For a density
+/// mu exp(-U / kT) of the b_j, the mean of the derivative of (density w_j) is zero:
+///
+///     <F_j . w_j> = kT <2 c_j / |b_j| - d ln mu / dw_j>.
+///
 /// F_j is the sum of all forces except the bonds' on the beads beyond bond j, and 2 c_j / |b_j| is
 /// -div w_j.
 ///
-/// For springs, mu depends on lengths alone: d ln mu / dw_j = 0. For rigid links mu = (det T)^1/2
-/// with T_jj = 1/m_j + 1/m_j+1, T_j-1,j = -c_j / m_j. Then g_j = d ln mu / dc_j = -(T^-1)_j-1,j /
-/// m_j, and for a rotation of bond j
-/// d ln mu / dw_j = (g_j (1 - c_j^2) + g_j+1 w_j . e_j+1) / |b_j|.
+/// For springs, mu depends on lengths alone: d ln mu / dw_j = 0. For rigid links
+/// mu = (det T)^1/2 with T_jj = 1/m_j + 1/m_j+1, T_j-1,j = -c_j / m_j. Then
+/// g_j = d ln mu / dc_j = -(T^-1)_j-1,j / m_j, and for a rotation of bond j
+///
+///     d ln mu / dw_j = (g_j (1 - c_j^2) + g_j+1 w_j . e_j+1) / |b_j|.
+///
 /// Both sides are summed over j.
 ///
 /// Bond j is rotated towards e_j-1, because the force between second neighbours, the stiffest after

@@ -28,7 +28,6 @@ struct ForcePoint {
 /// GPUs add forces in steps of 2^-32 kJ/mol/nm: 64 of these, divided by the forces' root mean
 /// square `rms_force`. They also store the parameters of custom pair forces in single precision on
 /// any platform (OpenMM 8, CommonCalcCustomNonbondedForceKernel): 64 times 2^-24.
-/// times 2^-24.
 double force_error_bound(std::string const& platform, std::string const& precision,
                          double rms_force);
 

@@ -35,7 +35,7 @@ struct IntegratorCurve {
     std::string name;
     int order = 0;  // nominal order; 0: adaptive
     std::vector<IntegratorPoint> points;
-    /// Order found from the two finest steps whose errors stand well above rounding and the
+    /// Order found from the two finest steps whose errors are well above rounding and the
     /// reference's own error. Absent if there are no such steps.
     std::optional<double> slope;
     /// True if all errors are rounding, and so is the reference's: no order can be found.
@@ -107,9 +107,7 @@ struct DriftStudy {
     double scatter = 0;                 // standard deviation of the energy about its mean
     double slope = 0, slope_error = 0;  // per unit of time
     /// True if the slope is within four standard errors of zero.
-    bool valid() const {
-        return slope * slope <= 16 * slope_error * slope_error;
-    }  // four standard errors
+    bool valid() const { return slope * slope <= 16 * slope_error * slope_error; }
 };
 /// Runs the scene for `steps` time steps and fits the drift. Collective.
 DriftStudy study_drift(Scene const&, Communicator const&, Integrator, double step,

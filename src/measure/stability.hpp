@@ -8,7 +8,6 @@
 // Articulated bodies in double precision and other programs ("peers") solve the same chains.
 // Refinement recovers the digits that the growth costs. Afterwards the error may be 4 times the
 // smallest of theirs, or that of the residual's bound alone.
-// bound alone.
 #pragma once
 
 #include <functional>

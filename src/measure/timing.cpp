@@ -80,7 +80,7 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
     for (int i = 0; i < warm_up; ++i) system.evaluate();
 
     repeat = std::max(repeat, 1);
-    // Whole evaluations come first: measuring their sweeps separately would delay a GPU.
+    // Whole evaluations are measured first: measuring their sweeps separately would delay a GPU.
     Samples const whole = sample(system, repeat, false);
     system.measure(true);
     Samples const apart = sample(system, repeat, true);
