@@ -20,7 +20,7 @@ struct IntegratorPoint {
     /// Largest |E - E(0)| of the samples, divided by the largest kinetic energy of the run.
     std::optional<double> energy_error;
     Spread seconds;  // time of the run, s
-    /// Reason why there is no error: "unstable", "came to no end"; empty if there is one.
+    /// Reason why no error could be computed: "unstable" or "came to no end"; empty if one could.
     std::string no_error;
     // Members of adaptive runs.
     double tolerance = 0;
@@ -42,7 +42,7 @@ struct IntegratorCurve {
     bool exact = false;
     Scheme scheme = Scheme::explicit_steps;
     /// Order of an implicit integrator at large steps: the slope of a line through errors below a
-    /// hundredth, at all steps at which its explicit counterpart has no error.
+    /// hundredth, at all steps at which its explicit counterpart is unstable.
     std::optional<double> slope_beyond;
     /// True if slope_beyond must be the nominal order, too.
     bool slow = false;
@@ -51,7 +51,8 @@ struct IntegratorCurve {
 
     /// True if the order, or each error of an adaptive integrator, is as promised.
     bool as_promised() const;
-    /// Returns the shortest step without an error; 0 if all steps have one.
+    /// Returns the shortest step at which the integrator was unstable or failed; 0 if there is
+    /// none.
     double unstable_from() const;
 };
 /// Result of study_integrator_errors().
