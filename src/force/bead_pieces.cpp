@@ -1,3 +1,4 @@
+// Division of chains into pieces of consecutive beads.
 #include "force/bead_pieces.hpp"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace catena {
 namespace {
 
-/// Of each chain, whether it lies on one rank, bead after bead.
+/// Returns 1 for each chain whose beads all lie on one rank, in consecutive order.
 std::vector<char> are_together(BeadSystem const& beads) {
     auto const chains = beads.chain_offset.size() - 1;
     std::vector<char> together(chains, 0);
@@ -25,7 +26,7 @@ std::vector<char> are_together(BeadSystem const& beads) {
                           next = i;
              i < end; i = next) {
             for (next = i + 1; next < end && bead_at(next) == bead_at(next - 1) + 1;) ++next;
-            // A run of beads, of several chains perhaps.
+            // Beads i .. next - 1 are a run of consecutive numbers, possibly of several chains.
             for (std::size_t c = chain_of(bead_at(i));
                  c < chains && beads.chain_offset[c + 1] <= bead_at(next - 1) + 1; ++c)
                 together[c] = beads.chain_offset[c] >= bead_at(i) ? 1 : 0;

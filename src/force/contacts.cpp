@@ -1,3 +1,4 @@
+// Shortening of pair forces to a given reach.
 #include "force/contacts.hpp"
 
 #include "systems/box.hpp"
@@ -6,8 +7,9 @@ namespace catena {
 
 namespace {
 
-double constexpr switched = 0.8;  // of a reach: from there on forces are switched off
+double constexpr switched = 0.8;  // fraction of the reach at which switching off begins
 
+/// Limits a pair force to `reach`, nm, with OpenMM's switching function.
 template <class Force>
 void shorten(Force& force, double reach) {
     if (force.getCutoffDistance() <= reach) return;

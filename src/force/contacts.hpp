@@ -1,5 +1,4 @@
-// OpenMM's forces between near beads alone: cheap to compute, and all that matters where beads
-// overlap.
+// OpenMM's short-range forces alone: they cost little and are all that matters where beads overlap.
 #pragma once
 
 #include <memory>
@@ -8,9 +7,10 @@
 
 namespace catena {
 
-/// make_openmm_force() with pair forces that have a cutoff switched off between 0.8 `reach` and
-/// `reach` (nm), where they reach farther. Bonded forces, and pair forces without a cutoff or with
-/// a mesh, stay as they are.
+/// Makes the forces of make_openmm_force() with shortened pair forces. Pair forces whose cutoff
+/// exceeds `reach` (nm) are switched off between 0.8 `reach` and `reach`. Bonded forces, and pair
+/// forces without a cutoff or with a mesh, are unchanged. Throws what make_openmm_force() throws.
+/// Collective.
 std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const&, BeadSystem const&,
                                                   Communicator const&, double reach);
 

@@ -1,3 +1,4 @@
+// Placement of particles and evaluation of forces and energies in one OpenMM Context.
 #include "force/context.hpp"
 
 #include <cmath>
@@ -9,6 +10,7 @@
 namespace catena {
 namespace {
 
+/// Returns the mean of the positions.
 Vec3 middle_of(std::span<Vec3 const> positions) {
     Vec3 sum = Vec3::zero();
     for (Vec3 const& x : positions) sum = sum + x;
@@ -55,11 +57,10 @@ void ForceContext::find_places(std::span<Vec3 const> positions, std::size_t cent
             place_[i][c] = (*box_)[c] * std::floor(positions[i][c] / (*box_)[c]);
 }
 
-/// Between two steps beads move far less: they are elsewhere where a state has been set, or another
-/// copy's frame.
+/// Beads move far less than these limits in a time step. They exceed them if a state has been set,
+/// or the frame of another copy.
 bool ForceContext::have_strayed(std::span<Vec3 const> positions, std::size_t centred) const {
-    // Single precision tells places apart that are 1e-6 nm from each other up to 16 nm from the
-    // origin; 1000 nm away only 6e-5.
+    // Single precision resolves 1e-6 nm up to 16 nm from the origin, but only 6e-5 nm at 1000 nm.
     double constexpr farthest = 10;
     if (placement_ == Placement::shifted)
         return centred > 0 && norm(middle_of(positions.first(centred)) - place_.front()) > farthest;
@@ -67,7 +68,7 @@ bool ForceContext::have_strayed(std::span<Vec3 const> positions, std::size_t cen
     for (std::size_t i = 0; i < positions.size(); ++i)
         for (int c = 0; c < 3; ++c)
             if (std::abs(positions[i][c] - place_[i][c] - (*box_)[c] / 2) > (*box_)[c])
-                return true;  // half an edge out of the box
+                return true;  // half an edge outside the box
     return false;
 }
 

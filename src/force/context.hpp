@@ -1,4 +1,5 @@
-// One OpenMM Context for some beads of a scene. For files that see OpenMM's headers.
+// ForceContext: one OpenMM Context for some beads of a scene. Only files that see OpenMM's headers
+// include this one.
 #pragma once
 
 #include <OpenMM.h>
@@ -14,59 +15,74 @@
 
 namespace catena {
 
-/// How coordinates may be changed before OpenMM, which computes in single precision on most
-/// platforms, gets them.
+/// Changes of coordinates that are allowed before OpenMM gets them. OpenMM computes in single
+/// precision on most platforms.
 enum class Placement {
-    as_given,  // a force may depend on where in space things are
-    shifted,   // all by one vector: forces depend on differences alone
-    wrapped    // each bead into the box: and on their nearest images
+    /// Coordinates are passed unchanged: a force may depend on the position in space.
+    as_given,
+    /// All coordinates may be shifted by one vector: forces depend on differences alone.
+    shifted,
+    /// Each bead may be wrapped into the box: forces depend on differences of nearest images.
+    wrapped
 };
 
-/// What the System's forces allow.
+/// Returns the placement that all of the System's forces allow.
 Placement placement_for(OpenMM::System const&);
 
+/// An OpenMM Context with its System and a cache of the shifts applied to its particles.
 class ForceContext {
   public:
-    /// `home`: another one, which outlives it, in whose GPU context it is to be made; none: in one
-    /// of its own. Throws what OpenMM throws if it refuses the forces.
+    /// `home` is another ForceContext, whose GPU context the new one shares and which must outlive
+    /// it. If it is null, the new one makes its own. `box`: edges of the periodic box, nm. Throws
+    /// what OpenMM throws if it refuses the forces.
     ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform,
                  std::optional<Vec3> const& box, ForceContext* home = nullptr);
 
+    /// Number of particles, those of ghosts and spares included.
     std::int64_t size() const { return std::ssize(positions_); }
 
-    /// Of its particles, nm, W. Where all may be shifted, the middle of the first `centred` goes to
-    /// the origin. Shifts and the cells that particles are taken from stay for a while, unless
-    /// particles are found far from where they were: OpenMM takes a particle for one that has moved
-    /// far where they change, and looks for all pairs anew. Platform Reference does so anyway:
-    /// there they depend on these positions alone.
+    /// Sets the positions of all particles, nm, W. With Placement::shifted the mean of the first
+    /// `centred` positions is moved to the origin.
+    ///
+    /// Shifts and box images are kept for `evaluations_` calls, unless particles have moved far. A
+    /// new shift looks to OpenMM like a large displacement, so OpenMM would rebuild its neighbour
+    /// list. Platform Reference rebuilds the list anyway: there, shifts depend on these positions
+    /// alone.
     void set_positions(std::span<Vec3 const> positions, std::size_t centred);
-    /// Shifts and cells are found anew at the next positions: as in a Context that has just been
-    /// made.
+    /// Makes the next set_positions() compute new shifts and images, as in a Context that has just
+    /// been made.
     void place_anew() { placed_for_ = 0; }
-    /// Of these groups on particle i = 0 .. size - 1, kJ/mol/nm, W.
+    /// Returns the forces of the groups in bit mask `groups` on particles 0 .. size() - 1,
+    /// kJ/mol/nm, W.
     std::vector<OpenMM::Vec3> forces(int groups = -1);
     Placement placement() const { return placement_; }
     OpenMM::Context& context() { return *context_; }
-    /// Those of its System's forces in these groups, kJ/mol, each in the place of its group.
-    /// Precondition: no two have one group.
+    /// Stores the energy of each force in the groups `groups` at the index of its group, kJ/mol.
+    /// Precondition: no two forces share a group.
     void find_energies(std::span<double> of_group, int groups = -1);
 
   private:
-    /// As long as OpenMM's own integrators leave particles in one order.
+    /// Number of evaluations for which shifts are kept, on platform Reference `on_reference`.
+    /// OpenMM's own integrators keep the order of particles for as many steps.
     static constexpr int evaluations_of_a_place = 250, on_reference = 1;
 
+    /// Computes `place_` from these positions.
     void find_places(std::span<Vec3 const> positions, std::size_t centred);
-    /// Whether particles are too far from where they were when places were found.
+    /// True if particles are too far from where they were when `place_` was computed.
     bool have_strayed(std::span<Vec3 const> positions, std::size_t centred) const;
 
+    /// Edges of the periodic box, nm.
     std::optional<Vec3> box_;
     Placement placement_;
     std::shared_ptr<OpenMM::System const> system_;
-    OpenMM::VerletIntegrator integrator_{0.001};  // a Context wants one; it never steps
+    OpenMM::VerletIntegrator integrator_{0.001};  // required by OpenMM::Context; never steps
     std::unique_ptr<OpenMM::Context> context_;
     std::vector<OpenMM::Vec3> positions_;
-    std::vector<Vec3> place_;           // what is taken off each particle's coordinates
-    int evaluations_, placed_for_ = 0;  // of a place, and since it was found
+    /// Vector subtracted from each particle's coordinates, nm.
+    std::vector<Vec3> place_;
+    /// Number of set_positions() calls that `place_` serves, and number of calls since it was
+    /// computed.
+    int evaluations_, placed_for_ = 0;
 };
 
 }  // namespace catena

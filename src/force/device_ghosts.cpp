@@ -1,4 +1,4 @@
-// A rank's share where positions and forces stay on a GPU.
+// Domain decomposition of OpenMM's forces with positions and forces on a GPU.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -21,8 +21,8 @@ HaloForces::HaloForces(RankPlan const& plan)
       slots_(pieces_) {
     if (own().empty()) return;
     count_kinds_elsewhere();
-    // A small one, so that a platform that refuses the forces is found out before the first step,
-    // and for its GPU context.
+    // A small Context makes a platform that refuses the forces fail before the first time step. It
+    // also supplies the GPU context.
     Subset const one{share_.particles_of(std::span(own()).first(1)), 1, 1};
     home_ = share_.context_of(
         system_of(share_.exchanges() ? one : share_.subset_of(share_.partners()), share_.system()));
@@ -34,7 +34,7 @@ std::vector<std::int64_t> HaloForces::every_number(std::int64_t count) {
     return all;
 }
 
-/// Where particles cannot be exchanged they have their own numbers in forces: no piece is like
+/// If particles cannot be exchanged, forces refer to them by their own numbers, so no piece is like
 /// another one.
 BeadPieces HaloForces::pieces(RankPlan const& plan) const {
     std::vector<int> const kind_of_particle = kinds_of_particles(share_.system()),
@@ -72,8 +72,8 @@ DevicePathPlan HaloForces::plan(bool overlap) {
     DevicePathPlan plan;
     for (int k = 0; k < static_cast<int>(own().size()); ++k) plan.particle.push_back(k);
     plan.bead = share_.own_numbers();
-    Placement const placement =
-        placement_for(share_.system());  // of all forces: a small part may allow more
+    // The placement must suit all forces: those of a small part may allow more.
+    Placement const placement = placement_for(share_.system());
     if (placement == Placement::wrapped) plan.box = share_.box();
     plan.shifted = placement == Placement::shifted;
     plan.overlap = overlap;
@@ -121,9 +121,10 @@ void HaloForces::make_lists(std::span<Vec3 const> positions) {
     list_particles();
 }
 
-/// Where each position received goes, and who stands aside.
+/// Finds the particle of each position received, and the places of idle particles.
 void HaloForces::list_particles() {
-    std::vector<int> particle(ghosts_.beads().size());  // of each ghost
+    // Particle of each ghost.
+    std::vector<int> particle(ghosts_.beads().size());
     std::size_t next = share_.partners().size();
     std::iota(particle.begin(), particle.begin() + static_cast<std::ptrdiff_t>(next),
               static_cast<int>(own().size()));
@@ -138,7 +139,7 @@ void HaloForces::list_particles() {
     for (std::int64_t i = 0; i < idle; ++i) lists_.aside.push_back(ghosts_.aside(i, idle));
 }
 
-/// Own beads, partners, and whom slots are like.
+/// The subset holds own beads, partners, and beads with the slots' parameters.
 Subset HaloForces::subset_of_slots() const {
     std::vector<std::int64_t> ghosts = share_.partners();
     std::vector<std::int64_t> const like = slots_.like();
@@ -149,9 +150,9 @@ Subset HaloForces::subset_of_slots() const {
     return subset;
 }
 
-/// Kind by kind, the longest first, because OpenMM sorts molecules in space among those of their
-/// kind alone: neighbours in its arrays then are neighbours in space. With some spares, but no more
-/// than there are pieces: where every bead is a ghost there is no place aside.
+/// Slots are made kind by kind, longest pieces first. OpenMM sorts molecules in space among those
+/// of their kind alone, so neighbours in its arrays are then neighbours in space. Spares never
+/// exceed the pieces that exist elsewhere: if every bead is a ghost, there is no place for spares.
 void HaloForces::make_context() {
     std::vector<std::vector<std::int64_t>> of_kind(of_kind_elsewhere_.size());
     for (std::int64_t const piece : ghosts_.pieces())
@@ -171,7 +172,7 @@ void HaloForces::make_context() {
                     static_cast<std::size_t>(std::min(here / spare_part + least_spares, most)),
                     of_one.front());
     }
-    context_.reset();  // before the next takes its memory
+    context_.reset();  // frees memory for the next Context
     is_aligned_ = !like.empty() && pieces_.of(like.front()) > 1 && !everyone_is_a_ghost();
     slots_.make(std::move(like), is_aligned_ ? (block - first_slot() % block) % block : 0);
     slots_.take(ghosts_.pieces());

@@ -1,3 +1,4 @@
+// Energies of all beads, computed by rank 0.
 #include "force/energies.hpp"
 
 namespace catena {
@@ -26,7 +27,8 @@ void WholeEnergies::find(std::span<Vec3 const> own, ForceContext* home,
     std::vector<Vec3> of_particles(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         of_particles[static_cast<std::size_t>(particle_[i])] = all[i];
-    context_->place_anew();  // outputs are far between: no list of pairs is left that could be kept
+    // Outputs are far apart in time, so there is no neighbour list that could be kept.
+    context_->place_anew();
     context_->set_positions(of_particles, of_particles.size());
     context_->find_energies(of_group);
 }

@@ -1,5 +1,5 @@
-// Energies of all beads where ranks compute the forces on theirs. For files that see OpenMM's
-// headers.
+// Energies of all beads if each rank computes the forces on its own beads only. Only files that see
+// OpenMM's headers include this one.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,13 @@
 
 namespace catena {
 
+/// Computes energies in a Context of all beads, which rank 0 makes at the first call.
 class WholeEnergies {
   public:
-    /// Keeps what `plan` refers to.
+    /// Keeps references to what `plan` refers to.
     explicit WholeEnergies(RankPlan const& plan);
-    /// RankForces::find_energies at these positions of own beads, from a Context of all beads on
-    /// rank 0; `home` as in ForceContext.
+    /// Implements RankForces::find_energies() at the positions `own` of this rank's beads, nm, W.
+    /// `home` has the meaning it has in ForceContext. Collective.
     void find(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group);
 
   private:
@@ -25,7 +26,8 @@ class WholeEnergies {
     OpenMmPlatform const& platform_;
     Communicator const& communicator_;
     std::optional<Vec3> box_;
-    std::vector<std::int64_t> particle_, bytes_of_rank_;  // of beads, one rank's after the other's
+    /// Particle of each bead, rank after rank, and bytes of each rank's positions.
+    std::vector<std::int64_t> particle_, bytes_of_rank_;
     std::unique_ptr<ForceContext> context_;
 };
 

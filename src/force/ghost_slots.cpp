@@ -1,3 +1,4 @@
+// Assignment of ghost pieces to particles of a Context.
 #include "force/ghost_slots.hpp"
 
 #include <algorithm>
@@ -54,8 +55,8 @@ bool GhostSlots::take(std::span<std::int64_t const> pieces, bool of_any_kind) {
     return true;
 }
 
-/// Gives those that have none free slots of their length, which take their kinds; all of them or
-/// none.
+/// Gives pieces without a slot a free slot of their length, which takes on their kind. Either all
+/// of them get one, or none.
 bool GhostSlots::give_others(std::span<std::int64_t const> pieces,
                              std::vector<std::vector<int>>& free, std::vector<int>& slot_of_piece) {
     std::vector<std::vector<int>> of_length(BeadPieces::longest + 1);

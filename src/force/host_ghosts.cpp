@@ -1,4 +1,4 @@
-// A rank's share through the host.
+// Domain decomposition of OpenMM's forces with positions and forces passing through the host.
 #include <algorithm>
 #include <utility>
 
@@ -9,9 +9,10 @@ namespace catena {
 
 namespace {
 
-/// Particles of the Context: own beads, partners, other ghosts, and spares for more ghosts, which
-/// stand aside. Where ghosts change, the parameters of particles do: a Context is made anew only
-/// where spares run out, or particles cannot be exchanged.
+/// Forces on one rank's own beads, from a Context with its beads and their ghosts.
+/// The Context's particles are own beads, partners, other ghosts, and spares, which are placed
+/// where they act on nothing. If ghosts change, particles get other parameters. A new Context is
+/// made only if spares run out or are too many, or particles cannot be exchanged.
 class SplitForces final : public RankForces {
   public:
     explicit SplitForces(RankPlan const& plan)
@@ -19,9 +20,9 @@ class SplitForces final : public RankForces {
           audit_(plan.audit),
           beads_(plan.beads.size()),
           ghosts_(plan.communicator, share_.lists()) {
-        make_context(
-            share_.partners(),
-            0);  // so that a platform that refuses the forces is found out before the first step
+        // The Context is made now, so that a platform that refuses the forces fails before the
+        // first time step.
+        make_context(share_.partners(), 0);
     }
 
     void gather(std::span<Vec3 const> own) override {
@@ -59,7 +60,7 @@ class SplitForces final : public RankForces {
   private:
     std::vector<std::int64_t> const& own() const { return share_.own(); }
 
-    /// With spares that stand for whatever.
+    /// Returns the subset with `spares` spare particles, which have particle 0's parameters.
     Subset subset_of(std::vector<std::int64_t> const& ghosts, std::int64_t spares) const {
         Subset subset = share_.subset_of(ghosts);
         subset.particles.resize(subset.particles.size() + static_cast<std::size_t>(spares), 0);
@@ -68,14 +69,14 @@ class SplitForces final : public RankForces {
 
     void make_context(std::vector<std::int64_t> const& ghosts, std::int64_t spares) {
         if (own().empty()) return;
-        context_.reset();  // before the next takes its memory
+        context_.reset();  // frees memory for the next Context
         system_ = system_of(subset_of(ghosts, spares), share_.system());
         context_ = share_.context_of(system_);
         largest_ = std::max(largest_, context_->size());
         ++contexts_;
     }
 
-    /// Gives the Context the ghosts of the new lists.
+    /// Adapts the Context to the ghosts of the new lists.
     void take_ghosts() {
         std::int64_t const needed = std::ssize(own()) + std::ssize(ghosts_.beads());
         std::int64_t const enough = std::min(beads_, needed + needed / spare_part + least_spares);
@@ -89,16 +90,17 @@ class SplitForces final : public RankForces {
         }
     }
 
-    /// One particle in so many is a spare when a Context is made, and so many besides.
+    /// Spare particles of a new Context: one for every `spare_part` particles, plus `least_spares`.
     static std::int64_t constexpr spare_part = 16, least_spares = 16;
 
     SplitShare share_;
     bool audit_;
-    std::int64_t beads_;  // of all ranks
+    std::int64_t beads_;  // number of beads of all ranks
     GhostExchange ghosts_;
     std::shared_ptr<OpenMM::System> system_;
     std::unique_ptr<ForceContext> context_;
-    std::vector<Vec3> positions_;  // of the Context's particles
+    std::vector<Vec3> positions_;  // positions of the Context's particles, nm, W
+    // rebuilds of the lists that the Context has; largest Context, particles; number of Contexts
     std::int64_t listed_ = 0, largest_ = 0, contexts_ = 0;
 };
 

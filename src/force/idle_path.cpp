@@ -1,10 +1,11 @@
-// A rank without beads, where others have theirs on GPUs.
+// Path `device` on a rank without beads.
 #include "neighbours/device_path.hpp"
 #include "neighbours/halo.hpp"
 
 namespace catena {
 namespace {
 
+/// Takes part in the collective operations of the other ranks' paths, which have beads on GPUs.
 class IdlePath final : public DevicePath {
   public:
     IdlePath(Halo& halo, bool overlap) : halo_(halo), overlap_(overlap) {}
@@ -21,6 +22,7 @@ class IdlePath final : public DevicePath {
     std::vector<Vec3> positions() override { return {}; }
 
   private:
+    /// Joins the collective calls of one evaluation, with empty arrays.
     void take_part() {
         if (halo_.are_used_up(false, -1)) halo_.make_lists({});
         halo_.carry({}, {});

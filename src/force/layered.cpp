@@ -1,4 +1,4 @@
-// A rank's share of a System layer by layer.
+// Forces of a System whose layers have Contexts of their own.
 #include <algorithm>
 #include <exception>
 #include <utility>
@@ -10,6 +10,7 @@
 namespace catena {
 namespace {
 
+/// Sum of the forces of all layers and of the remaining forces.
 class LayeredForces final : public RankForces {
   public:
     LayeredForces(RankPlan plan, std::vector<ForceLayer> const& layers, MakeRankForces make) {
@@ -47,7 +48,8 @@ class LayeredForces final : public RankForces {
         }
     }
     void find_energies(DevicePath* device, std::span<double> of_group) override {
-        std::exception_ptr error;  // of rank 0, which the others do not know of yet
+        // Error of rank 0, which the other ranks do not know of yet.
+        std::exception_ptr error;
         each([&](RankForces& forces) {
             try {
                 forces.find_energies(device, of_group);
@@ -66,8 +68,9 @@ class LayeredForces final : public RankForces {
         each([&](RankForces const& forces) { due = due || forces.ghosts_are_due(); });
         return due;
     }
-    /// Of all layers together: a bead counts in each in which it is a ghost. Each makes its lists
-    /// anew when its own beads have moved far: `rebuilds` is the most of one.
+    /// Sums over all layers: a bead counts once in each layer in which it is a ghost. Each layer
+    /// rebuilds its lists when its own beads have moved far, so `rebuilds` is the largest count of
+    /// a layer.
     GhostTraffic traffic() const override {
         GhostTraffic all;
         each([&](RankForces const& forces) {
@@ -112,18 +115,22 @@ class LayeredForces final : public RankForces {
     }
 
   private:
+    /// Forces of one layer, with a buffer.
     struct Layer {
         std::unique_ptr<RankForces> forces;
-        std::vector<std::int64_t> place;  // of its own beads among the rank's
-        std::vector<Vec3> own;            // their positions, then the forces on them
+        /// Index of each of the layer's own beads among the rank's own beads.
+        std::vector<std::int64_t> place;
+        /// Positions of the layer's own beads, nm, then the forces on them, kJ/mol/nm.
+        std::vector<Vec3> own;
     };
+    /// Applies `action` to the remaining forces, then to each layer.
     template <class Action>
     void each(Action const& action) const {
         action(*rest_);
         for (Layer const& layer : layers_) action(*layer.forces);
     }
 
-    std::unique_ptr<RankForces> rest_;  // what is in no layer, on all beads
+    std::unique_ptr<RankForces> rest_;  // forces that are in no layer, on all beads
     std::vector<Layer> layers_;
 };
 

@@ -1,4 +1,4 @@
-// A build without OpenMM: every way to it says so.
+// Stubs for a build without OpenMM: every function that needs it throws "built without OpenMM".
 #include "error.hpp"
 #include "force/contacts.hpp"
 #include "force/openmm_force.hpp"

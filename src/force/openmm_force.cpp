@@ -1,3 +1,4 @@
+// OpenMmForce: choice of model, platform, path and decomposition, and one evaluation of the forces.
 #include "force/openmm_force.hpp"
 
 #include <fmt/format.h>
@@ -26,15 +27,17 @@ namespace catena {
 
 namespace {
 
-std::size_t constexpr longest_message = 300;  // of OpenMM's
+// Largest number of characters quoted from a message of OpenMM.
+std::size_t constexpr longest_message = 300;
 
 std::string join(std::vector<std::string> const& words) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// OpenMmForce on any path; the decomposition is a RankForces.
 class OpenMmForces final : public OpenMmForce {
   public:
-    /// `why_no_device`, `by_pairs`: the same on every rank.
+    /// `why_no_device` and `by_pairs` must be the same on every rank.
     OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
                  OpenMmModel model, OpenMmPlatform platform, std::string const& why_no_device,
                  bool by_pairs);
@@ -59,10 +62,13 @@ class OpenMmForces final : public OpenMmForce {
   private:
     std::int64_t first() const { return first_of_rank_[communicator_.rank()]; }
     std::int64_t own_count() const { return first_of_rank_[communicator_.rank() + 1] - first(); }
+    /// Moves forces out of the model into layers, if that pays on this platform.
     std::vector<ForceLayer> layers(OpenMmSpec const& spec, BeadSystem const& beads);
     std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec,
                                                  BeadSystem const& beads) const;
+    /// Computes the forces and keeps the exception, if any, in `error_`.
     void evaluate() noexcept;
+    /// Waits for the worker, if there is one.
     void wait();
 
     Communicator const& communicator_;
@@ -71,15 +77,17 @@ class OpenMmForces final : public OpenMmForce {
     OpenMmModel model_;
     OpenMmPlatform platform_;
     PathChoice path_;
-    std::vector<ForceLayer> layers_;  // taken off the model
+    std::vector<ForceLayer> layers_;  // layers whose forces were removed from model_
     std::unique_ptr<RankForces> rank_;
     std::unique_ptr<DevicePath> device_;
+    // own positions, nm, and forces on them, kJ/mol/nm
     std::vector<Vec3> own_, forces_;
     bool under_way_ = false, evaluated_ = false;
     double begun_ = 0;
     Interval gathering_, interval_;
     std::exception_ptr error_;
-    std::unique_ptr<Worker> worker_;  // last: its thread ends before what it uses
+    // Declared last: its thread must end before the members it uses.
+    std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace
@@ -93,10 +101,12 @@ std::vector<std::int64_t> BeadSystem::beads_of(int rank) const {
 
 namespace {
 
+/// Returns the edges of the box if the forces are periodic.
 std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
     return model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
 }
 
+/// Describes the decomposition in a line, for people.
 std::string split_text(RankForces const& rank) {
     if (rank.shares_pairs())
         return "split: every bead on each rank, which computes a share of the pairs";
@@ -111,7 +121,7 @@ std::string split_text(RankForces const& rank) {
     return text;
 }
 
-/// Why positions and forces cannot stay on a GPU; empty where they can.
+/// Returns why positions and forces cannot stay on a GPU; empty if they can.
 std::string cannot_stay_on_device(OpenMmSpec const& spec, OpenMmPlatform const& platform,
                                   Communicator const& communicator, ChainsOnDevice const& chains) {
     if (!chains.why_not.empty()) return chains.why_not;
@@ -143,8 +153,8 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads,
     if (path_.on_device()) device_ = rank_->device_path(spec.overlap);
 }
 
-/// On a GPU two Contexts take longer: lists of a shorter reach hold half of the pairs, not an
-/// eighth, and there are twice as many kernels.
+/// GPUs get no layers by default: two Contexts take longer than one. Neighbour lists of a shorter
+/// reach hold half of the pairs, not an eighth, and there are twice as many kernels.
 std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem const& beads) {
     bool const pays = spec.layers == "all" || (spec.layers == "auto" && platform_.on_cpu());
     if (spec.replicate || path_.on_device() || !pays) return {};
@@ -229,7 +239,7 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
         if (communicator_.rank() != 0) throw;
         failure = e.what();
     }
-    if (device_) device_->make_current();  // whatever OpenMM has left
+    if (device_) device_->make_current();  // OpenMM may have left its own GPU context current
     char failed = failure.empty() ? 0 : 1;
     communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
     if (failed != 0)
@@ -273,7 +283,7 @@ std::vector<std::string> OpenMmForces::description() const {
     return lines;
 }
 
-/// "NonbondedForce (PME)"
+/// Returns the force's kind for messages, such as "NonbondedForce (PME)".
 std::string name_for_refusal(OpenMM::Force const& force) {
     std::string const kind = kind_of(force);
     auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force);
@@ -285,6 +295,7 @@ std::string name_for_refusal(OpenMM::Force const& force) {
                                                                : "LJPME");
 }
 
+/// Throws InputError that names the first force of the model that cannot be split.
 void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& where, int ranks) {
     for (int i = 0; i < model.system->getNumForces(); ++i) {
         auto const& force = model.system->getForce(i);
@@ -297,8 +308,7 @@ void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& wh
     }
 }
 
-/// What some ranks have to say, in the words of the first of them; empty where none has.
-/// Collective.
+/// Returns the text of the first rank whose text is not empty; empty if there is none. Collective.
 std::string first_words(Communicator const& communicator, std::string const& own) {
     std::int64_t const own_length = std::ssize(own);
     std::vector<std::int64_t> lengths(static_cast<std::size_t>(communicator.size()));
@@ -320,8 +330,8 @@ std::string first_words(Communicator const& communicator, std::string const& own
     return all.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(lengths[first]));
 }
 
-/// Throws the first rank's InputError on every rank: Contexts are made on those with beads alone.
-/// Collective.
+/// Runs `action` and throws the first rank's InputError on every rank. Errors can differ between
+/// ranks, because only ranks with beads make Contexts. Collective.
 template <class Action>
 void on_all(Communicator const& communicator, Action const& action) {
     std::string error;
@@ -334,6 +344,7 @@ void on_all(Communicator const& communicator, Action const& action) {
         throw InputError(words);
 }
 
+/// Builds the model that the scene asks for. Throws InputError.
 OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
                      Communicator const& communicator, std::string const& where) {
     if (beads.size() == 0)
@@ -349,11 +360,11 @@ OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
     return model;
 }
 
-/// OpenMM takes about a kilobyte a bead, and the chains' part of the GPU's memory is their own.
+/// OpenMM takes about a kilobyte per bead; the chains need GPU memory of their own as well.
 constexpr std::int64_t most_beads_of_a_gpu = 20'000'000;
 
-/// Why ranks cannot share out the pairs of beads that all of them know; empty where they can.
-/// `why_no_device`: the same on every rank.
+/// Returns why ranks cannot share out the pairs of all beads; empty if they can. `why_no_device`
+/// must be the same on every rank.
 std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& system,
                                BeadSystem const& beads, std::string const& why_no_device) {
     if (!why_no_device.empty()) return why_no_device;
@@ -366,7 +377,8 @@ std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& sys
     return cuda::why_pairs_cannot_be_shared();
 }
 
-/// Whether they do. The same on every rank. Collective.
+/// True if ranks share out the pairs; the same on every rank. Throws InputError if the scene
+/// demands it in vain. Collective.
 bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads,
                    Communicator const& communicator, std::string const& why_no_device) {
     if (spec.replicate && spec.split != "auto")
@@ -386,7 +398,7 @@ bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSys
            (spec.split == "pairs" || cuda::gpus_may_write_to_each_other(communicator));
 }
 
-/// What `action` makes; what OpenMM throws becomes an InputError.
+/// Returns what `action` makes. Exceptions of OpenMM become InputErrors.
 template <class Action>
 auto accepted(std::string const& where, Action const& action) {
     try {
@@ -395,13 +407,14 @@ auto accepted(std::string const& where, Action const& action) {
         throw;
     } catch (std::bad_alloc const&) {
         throw;
-    } catch (std::exception const& e) {  // OpenMM's exceptions have no common base below this
+    } catch (std::exception const& e) {  // OpenMM's exceptions have no more specific common base
         throw InputError(
             fmt::format("OpenMM refuses these forces: {}", scene::shown(e.what(), longest_message)),
             where, "mend the System, or take another platform");
     }
 }
 
+/// Makes the forces; `reach`: limit of pair forces, nm, if given. Collective.
 std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const& beads,
                                         Communicator const& communicator,
                                         ChainsOnDevice const& chains, std::optional<double> reach) {

@@ -1,6 +1,8 @@
-// Forces on beads from OpenMM. A Context a rank, or one a layer (systems/force_layers.hpp), driven
-// by a worker thread or by the caller: begin() hands over positions, finish() takes forces. Not for
-// several threads of a process at once: OpenMM's set-up of expressions is not safe there.
+// OpenMmForce: forces on beads from OpenMM.
+//
+// Each rank has one Context, or one per layer (systems/force_layers.hpp). A worker thread or the
+// caller drives it. begin() passes positions on, finish() adds the forces. Several threads of a
+// process must not use it at once: OpenMM is not thread-safe while it sets up expressions.
 #pragma once
 
 #include <cstdint>
@@ -19,67 +21,73 @@
 
 namespace catena {
 
-/// Why chains are not on a GPU where the scene does not ask for one: that needs no words.
+/// Reason for chains not being on a GPU if the scene does not ask for one. It is not reported.
 inline constexpr char const* no_gpu_asked_for = "the backend is not cuda";
 
-/// Whether the chains' positions and forces are on a GPU.
+/// Tells if the chains' positions and forces are on a GPU.
 struct ChainsOnDevice {
-    std::string why_not;  // empty: they are
-    int device = -1;      // which the chains use; -1: none
+    std::string why_not;  // reason; empty if they are
+    int device = -1;      // GPU that the chains use; -1 if none
 };
 
+/// OpenMM's forces on this rank's beads, on any path and with any decomposition.
 class OpenMmForce {
   public:
     virtual ~OpenMmForce() = default;
-    /// Starts the computation of the forces at `positions` (own beads in the order of
-    /// BeadSystem::by_rank, nm, W, unwrapped). Collective. Returns at once on path `host`.
+    /// Starts to compute the forces at `positions` (own beads in the order of BeadSystem::by_rank,
+    /// nm, W, unwrapped). Returns at once on path `host`. Collective.
     virtual void begin(ConstView<3> positions) = 0;
-    /// The path on which positions and forces stay on the GPU: begun, gone on with and finished
-    /// there, with all beads in the order of BeadSystem::by_rank. nullptr: it is another path.
+    /// Returns path `device`, on which positions and forces stay on the GPU; null on other paths.
+    /// Its own begin(), go_on() and finish() then replace those of this class. They get all own
+    /// beads in the order of BeadSystem::by_rank.
     virtual DevicePath* device_path() = 0;
-    /// Path `device`: computes the forces at the positions given last once more, for the host.
+    /// Path `device`: computes the forces at the last positions again and stores them on the host,
+    /// kJ/mol/nm, W.
     virtual void forces_again(View<3> forces) = 0;
-    /// Waits for it and adds the forces (kJ/mol/nm) to `forces` (own beads). Throws
-    /// ComputationError if OpenMM failed, perhaps on this rank alone.
+    /// Waits for the forces and adds them (kJ/mol/nm, W) to `forces` (own beads). Throws
+    /// ComputationError if OpenMM failed, possibly on this rank alone.
     virtual void finish(View<3> forces) = 0;
-    /// Potential energy of all beads, term by term in a fixed order, at the positions given last;
-    /// the same on every rank. Collective, after finish().
+    /// Returns the potential energy of all beads, term by term in a fixed order, at the last
+    /// positions. It is the same on every rank. Precondition: finish() has returned. Collective.
     virtual std::vector<EnergyTerm> energies() = 0;
-    /// When the last evaluation was under way: from when it was asked for, that a worker wakes up
-    /// is a part of it.
+    /// Interval of the last evaluation. It starts with the request, so it includes the time in
+    /// which a worker wakes up.
     virtual Interval last_evaluation() const = 0;
-    /// Whether the caller has a core to go on with meanwhile: this rank has a second one, or the
-    /// forces need none.
+    /// True if the caller has a core to compute on meanwhile: this rank has a second one, or OpenMM
+    /// computes on a GPU.
     virtual bool leaves_a_core() const = 0;
-    /// Lines for `check`, `plan` and the summary: platform and version, terms, threads, path, bonds
-    /// left out because links replace them (with the number of them).
+    /// Returns lines for `check`, `plan` and the summary. They tell platform and version, terms,
+    /// threads, path, and how many bonds were left out because links replace them.
     virtual std::vector<std::string> description() const = 0;
+    /// Name of OpenMM's platform, such as "CPU".
     virtual std::string platform() const = 0;
-    /// The path that runs: "device", "host" or "inline".
+    /// The path of the next evaluation: "device", "host" or "inline".
     virtual std::string path() const = 0;
-    /// Lists of ghosts are made anew at the next evaluation. On every rank or none.
+    /// Makes the next evaluation rebuild the lists of ghosts. Must be called on every rank or on
+    /// none.
     virtual void renew_ghosts() = 0;
+    /// True if the next evaluation rebuilds the lists of ghosts.
     virtual bool ghosts_are_due() const = 0;
-    /// What this rank sent and holds where the forces are split over ranks; nothing elsewhere.
+    /// Messages and ghosts of this rank if the forces are split over ranks; zeros otherwise.
     virtual GhostTraffic traffic() const = 0;
-    /// When positions were brought to this rank for the last evaluation.
+    /// Interval in which positions were exchanged between ranks for the last evaluation.
     virtual Interval last_gathering() const = 0;
-    /// Largest number of particles that a Context of this rank has held, ghosts and spares
-    /// included, and how many Contexts it made.
+    /// Largest number of particles of a Context of this rank so far, ghosts and spares included.
     virtual std::int64_t largest_context() const = 0;
+    /// Number of Contexts that this rank has made.
     virtual std::int64_t contexts() const = 0;
 };
 
-/// Throws InputError when the scene's terms cannot be had (unknown residue, missing platform,
-/// unreadable XML, a force that cannot be split over ranks, ...) and "built without OpenMM" where
-/// the build lacks it.
+/// Makes the forces that the scene asks for. Throws InputError if they cannot be had: unknown
+/// residue, missing platform, unreadable XML, a force that cannot be split over ranks, and others.
+/// Throws "built without OpenMM" in a build without it. Collective.
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const&,
                                                Communicator const&,
                                                ChainsOnDevice const& = {no_gpu_asked_for, -1});
 
-/// "OpenMM 8.6.1" or "none".
+/// Returns OpenMM's version, such as "OpenMM 8.6.1", or "none".
 std::string openmm_version();
-/// Platforms that are present ("Reference", "CPU", ...); none without OpenMM.
+/// Returns the available platforms ("Reference", "CPU", ...); none without OpenMM.
 std::vector<std::string> openmm_platforms();
 
 }  // namespace catena

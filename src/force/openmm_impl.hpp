@@ -1,4 +1,5 @@
-// What is behind a Context. For files that see OpenMM's headers.
+// Access to the implementation behind an OpenMM Context. Only files that see OpenMM's headers
+// include this one.
 #pragma once
 
 #include <OpenMM.h>
@@ -6,8 +7,10 @@
 
 namespace catena {
 
+/// Returns the ContextImpl of `context`, which OpenMM does not make public.
 inline OpenMM::ContextImpl& impl_of(OpenMM::Context& context) {
-    /// Every force may look into its Context; this one does nothing else.
+    /// OpenMM gives every Force access to its Context's implementation; this Force does nothing
+    /// else.
     struct Key : OpenMM::Force {
         OpenMM::ContextImpl& open(OpenMM::Context& c) const { return getContextImpl(c); }
         OpenMM::ForceImpl* createImpl() const override { return nullptr; }

@@ -1,3 +1,4 @@
+// OpenMM's LangevinMiddleIntegrator on the beads of a scene.
 #include "force/openmm_integrator.hpp"
 
 #include <OpenMM.h>
@@ -9,8 +10,9 @@
 namespace catena {
 namespace {
 
-int constexpr no_force = 1 << 30;  // a group that holds none
+int constexpr no_force = 1 << 30;  // mask of a group without forces
 
+/// OpenMmIntegrator for the CALVADOS 2 model.
 class Own final : public OpenMmIntegrator {
   public:
     Own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
@@ -20,7 +22,7 @@ class Own final : public OpenMmIntegrator {
           platform_(choose_platform(spec, beads, communicator, run.device)),
           integrator_(run.temperature, run.friction, run.step) {
         hold(links);
-        platform_.properties.erase("DeterministicForces");  // OpenMM as people run it
+        platform_.properties.erase("DeterministicForces");  // OpenMM with its default settings
         integrator_.setRandomNumberSeed(static_cast<int>(run.seed));
         context_ = std::make_unique<OpenMM::Context>(*model_.system, integrator_,
                                                      *platform_.platform, platform_.properties);
@@ -31,8 +33,8 @@ class Own final : public OpenMmIntegrator {
     }
     void step(int steps) override {
         integrator_.step(steps);
-        context_->getState(OpenMM::State::Energy, false,
-                           no_force);  // its kinetic energy comes after the last step
+        // Waits: the kinetic energy is available only after the last step.
+        context_->getState(OpenMM::State::Energy, false, no_force);
     }
     double energy() override {
         return context_->getState(OpenMM::State::Energy).getPotentialEnergy();
@@ -52,6 +54,7 @@ class Own final : public OpenMmIntegrator {
     std::string platform() const override { return platform_.name(); }
 
   private:
+    /// Adds the links to the System, as bonds or constraints.
     void hold(OwnLinks links) {
         auto bonds = std::make_unique<OpenMM::HarmonicBondForce>();
         for (auto const& link : links_) {

@@ -1,3 +1,4 @@
+// Force decomposition: every rank has all beads and computes a share of the pairs.
 #include "force/pair_decomposition.hpp"
 
 #include <algorithm>
@@ -13,11 +14,13 @@ namespace catena {
 
 namespace {
 
+/// True for the nonbonded forces, whose pairs can be shared out.
 bool is_of_pairs(OpenMM::Force const& force) {
     return dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force) != nullptr ||
            dynamic_cast<OpenMM::NonbondedForce const*>(&force) != nullptr;
 }
 
+/// True if an exception has a charge or an epsilon, so that it adds forces.
 bool has_exceptions(OpenMM::NonbondedForce const& force) {
     if (force.getNumExceptionParameterOffsets() > 0) return true;
     for (int i = 0; i < force.getNumExceptions(); ++i) {
@@ -29,7 +32,8 @@ bool has_exceptions(OpenMM::NonbondedForce const& force) {
     return false;
 }
 
-/// Bits: rank 0 computes all, every rank those between pairs. Force i is in group i.
+/// Returns the bit mask of a rank's force groups: rank 0 computes all forces, every rank the pair
+/// forces. Force i is in group i.
 int groups_of(OpenMM::System const& system, int rank) {
     int groups = 0;
     for (int i = 0; i < system.getNumForces(); ++i)
@@ -38,8 +42,8 @@ int groups_of(OpenMM::System const& system, int rank) {
     return groups;
 }
 
-/// What energies have for what lies beyond the cutoff is no pair's, and adds no force: rank 0 alone
-/// has it.
+/// Removes long-range corrections on ranks other than 0. The correction of the energy beyond the
+/// cutoff belongs to no pair and adds no force, so rank 0 alone must compute it.
 std::shared_ptr<OpenMM::System> of_rank(std::shared_ptr<OpenMM::System> system, int rank) {
     for (int i = 0; rank > 0 && i < system->getNumForces(); ++i) {
         if (auto* pairs = dynamic_cast<OpenMM::CustomNonbondedForce*>(&system->getForce(i)))
@@ -50,7 +54,8 @@ std::shared_ptr<OpenMM::System> of_rank(std::shared_ptr<OpenMM::System> system, 
     return system;
 }
 
-/// Where forces on pairs are found in single precision, they and positions go so from GPU to GPU.
+/// True if pair forces are computed in single precision: then they and positions travel in single
+/// precision from GPU to GPU.
 bool is_in_single(OpenMmPlatform const& platform) {
     auto const precision = platform.properties.find("Precision");
     return precision != platform.properties.end() && precision->second != "double";
@@ -150,7 +155,9 @@ std::unique_ptr<DevicePath> PairForces::device_path(bool overlap) {
 }
 
 bool PairForces::are_used_up(bool far, std::int64_t bead) {
-    double constexpr good = 0, far_away = 1, used_up = 2, trouble = 3;  // and the bead's number
+    // States are ordered, so that one maximum finds the worst. `trouble` is increased by the bead's
+    // number.
+    double constexpr good = 0, far_away = 1, used_up = 2, trouble = 3;
     bool const renew = std::exchange(renew_, false);
     double const state = communicator_.max(bead >= 0 ? trouble + static_cast<double>(bead)
                                            : renew   ? used_up
@@ -184,9 +191,10 @@ void PairForces::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     note(false);
 }
 
-/// Positions go to every rank and forces come back: so many bytes, zeros that stay away among them,
-/// but the eight more a coordinate of positions that go in double precision to GPUs that compute in
-/// single (audited, or into a new order).
+/// Counts the bytes of positions sent to every rank and of forces sent back. Forces that are zero
+/// and therefore not sent are included. Excluded are the eight more bytes per coordinate of
+/// positions sent in double precision to GPUs that compute in single precision. That happens in
+/// audits and after a new order of particles.
 void PairForces::note(bool direct) {
     traffic_.direct = direct;
     ++traffic_.updates;

@@ -1,6 +1,6 @@
-// What a rank among several computes where all of them know every bead and share out the pairs:
-// positions and forces stay on GPUs that reach each other's memory. For files that see OpenMM's
-// headers.
+// Force decomposition of OpenMM's forces on GPUs (`split: pairs`): every rank has all beads and
+// computes a share of the pairs. Positions and forces stay on GPUs that reach each other's memory.
+// Only files that see OpenMM's headers include this one.
 #pragma once
 
 #include <memory>
@@ -13,20 +13,22 @@
 
 namespace catena {
 
-/// A million beads on four GPUs have as many ghosts as beads of their own, and pairs among ghosts
-/// are computed in vain: with every bead as a ghost no list of them is ever made again, and no pair
-/// is computed twice. What it takes is that every position and every force goes to every rank, or
-/// comes from there: 12 bytes each from GPU to GPU in single precision.
+/// Forces on one rank's own beads, from a Context of all beads on every rank.
+/// With domain decomposition, a million beads on four GPUs have as many ghosts as own beads, and
+/// pairs among ghosts are computed in vain. With every bead as a ghost, lists of ghosts are never
+/// rebuilt and no pair is computed twice. In return, every position is sent to every rank and
+/// forces are sent back. These are 12 bytes each, from GPU to GPU, in single precision.
 class PairForces final : public RankForces, public Halo {
   public:
-    /// Ranks but the first take what energies have beyond cutoffs off the plan's System.
+    /// Ranks other than 0 remove long-range energy corrections from the plan's System.
     explicit PairForces(RankPlan const& plan);
 
-    // RankForces
+    // Implementation of RankForces.
     void gather(std::span<Vec3 const> own) override;
     void evaluate(std::span<Vec3> own_forces) override;
-    /// Those of each rank's share, added up on all.
+    /// Returns the sum of all ranks' energies on every rank.
     void find_energies(DevicePath*, std::span<double> of_group) override;
+    /// Returns what make_device_path() needs to know about the own beads.
     DevicePathPlan plan(bool overlap);
     std::unique_ptr<DevicePath> device_path(bool overlap) override;
     std::vector<Vec3> forces_again() override;
@@ -37,7 +39,7 @@ class PairForces final : public RankForces, public Halo {
     std::int64_t contexts() const override { return 1; }
     bool shares_pairs() const override { return true; }
 
-    // Halo
+    // Implementation of Halo.
     bool are_used_up(bool far, std::int64_t bead) override;
     void refuse_trouble(std::int64_t bead) const override;
     void make_lists(std::span<Vec3 const> own) override;
@@ -53,7 +55,7 @@ class PairForces final : public RankForces, public Halo {
     void send_in(std::span<std::int64_t const> sequence) override;
     bool some_are_far() const override { return some_are_far_; }
 
-    /// For those who stand for the GPU.
+    /// Returns the Context in use, for tests that act as the GPU.
     ForceContext* computing() const { return context_.get(); }
 
   private:
@@ -62,22 +64,31 @@ class PairForces final : public RankForces, public Halo {
         return first_of_rank_[static_cast<std::size_t>(rank) + 1] -
                first_of_rank_[static_cast<std::size_t>(rank)];
     }
-    /// In which each rank sends its beads.
+    /// Sets the order in which each rank sends its beads: their local indices, rank after rank.
     void take_sequences(std::span<std::int64_t const> of_ranks);
+    /// Returns the bytes of each rank's beads at `of_bead` bytes per bead.
     std::vector<std::int64_t> bytes_of_ranks(std::size_t of_bead) const;
+    /// Counts one exchange of positions and forces; `direct`: from GPU to GPU.
     void note(bool direct);
 
     Communicator const& communicator_;
     std::optional<Vec3> box_;
     bool audit_, in_single_;
+    // size ranks + 1: rank r owns entries first_of_rank_[r] .. first_of_rank_[r + 1] - 1
     std::vector<std::int64_t> first_of_rank_;
-    std::vector<std::int64_t> number_;    // of own beads in the scene, for messages
-    std::vector<int> particle_;           // of own beads
-    std::vector<int> particle_of_all_;    // of every rank's, one rank after the other
-    std::vector<std::int64_t> received_;  // which of all comes with each position received
+    /// Number of each own bead in the scene, for messages.
+    std::vector<std::int64_t> number_;
+    /// Particle of each own bead.
+    std::vector<int> particle_;
+    /// Particle of each bead, rank after rank.
+    std::vector<int> particle_of_all_;
+    /// Index among all beads, rank after rank, of each position received.
+    std::vector<std::int64_t> received_;
+    // bit mask of the force groups that this rank computes
     int groups_;
     std::unique_ptr<ForceContext> context_;
-    Lists lists_;  // every other rank's beads as they are sent there
+    /// Messages with every other rank: all of its beads, in the order in which it sends them.
+    Lists lists_;
     bool renew_ = true, some_are_far_ = false;
     GhostTraffic traffic_;
 };

@@ -1,3 +1,4 @@
+// Choice between the paths of OpenMM's forces.
 #include "force/path.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@ namespace catena {
 
 namespace {
 
-/// Of all but the first.
+/// Returns the median of all times but the first.
 double median(std::vector<double> seconds) {
     auto const begin = seconds.begin() + 1, middle = begin + (seconds.end() - begin) / 2;
     std::nth_element(begin, middle, seconds.end());

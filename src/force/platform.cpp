@@ -1,3 +1,4 @@
+// Choice of OpenMM's platform and its properties.
 #include "force/platform.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@ namespace catena {
 
 namespace {
 
+// A thread of platform CPU pays for this many beads.
 std::int64_t constexpr beads_per_thread = 500;
 
 std::vector<std::string> platforms_present() {

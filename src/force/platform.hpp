@@ -1,4 +1,5 @@
-// Which platform OpenMM computes on, and with what. For files that see OpenMM's headers.
+// Choice of OpenMM's platform and its properties. Only files that see OpenMM's headers include this
+// one.
 #pragma once
 
 #include <OpenMM.h>
@@ -11,20 +12,23 @@
 
 namespace catena {
 
+/// An OpenMM platform with the properties to make a Context with.
 struct OpenMmPlatform {
     OpenMM::Platform* platform = nullptr;
     std::map<std::string, std::string> properties;
+    // threads of platform CPU
     int threads = 1;
 
     std::string const& name() const { return platform->getName(); }
     bool on_cpu() const { return name() == "CPU" || name() == "Reference"; }
 };
 
-/// The platform that the scene names, else CUDA where it is present and the rank has its chains on
-/// GPU `device` (-1: it has not), else CPU where there is one, else Reference. CUDA takes the
-/// chains' GPU unless the scene names another. CPU threads, where the scene gives no number: the
-/// rank's cores, but one for every 500 beads at most (on two cores, a second thread slows 280 beads
-/// down by a fifth). Throws InputError listing those present.
+/// Returns the platform that the scene names. Otherwise it is CUDA if present and if the rank's
+/// chains are on GPU `device` (-1: none), else CPU if present, else Reference. CUDA uses the
+/// chains' GPU unless the scene names another.
+/// If the scene gives no number of threads, CPU gets the rank's cores, at most one per 500 beads.
+/// On two cores a second thread slows 280 beads down by a fifth.
+/// Throws InputError that lists the available platforms.
 OpenMmPlatform choose_platform(OpenMmSpec const&, BeadSystem const&, Communicator const&,
                                int device);
 

@@ -1,3 +1,4 @@
+// One rank's share of a split System.
 #include "force/rank_share.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace catena {
 
 namespace {
 
-/// All beads but those, ascending.
+/// Returns all of 0 .. count - 1 except `beads`, ascending.
 std::vector<std::int64_t> all_but(std::vector<std::int64_t> beads, std::int64_t count) {
     std::sort(beads.begin(), beads.end());
     std::vector<std::int64_t> all(static_cast<std::size_t>(count)), rest;

@@ -1,3 +1,4 @@
+// Forces of the whole System on each rank: for one rank, or for `replicate`.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@ namespace catena {
 
 namespace {
 
+/// Forces on one rank's own beads, from a Context of all beads.
 class WholeForces final : public RankForces {
   public:
     explicit WholeForces(RankPlan const& plan)
@@ -52,8 +54,8 @@ class WholeForces final : public RankForces {
     void find_energies(DevicePath*, std::span<double> of_group) override {
         if (communicator_.rank() != 0) return;
         if (!context_) make_context();
-        if (!positions_.empty() && !are_set_)
-            set_positions();  // where there are none they are on a GPU
+        // No positions were gathered if they are on a GPU.
+        if (!positions_.empty() && !are_set_) set_positions();
         context_->find_energies(of_group);
     }
     std::unique_ptr<DevicePath> device_path(bool overlap) override {
@@ -81,8 +83,8 @@ class WholeForces final : public RankForces {
     void make_context() {
         context_ = std::make_unique<ForceContext>(model_.system, platform_, box_);
     }
-    /// Once for those gathered: places last for so many, and a run must not depend on when its
-    /// energies are asked for.
+    /// Sets the gathered positions once. Shifts last for a number of calls, and a run must not
+    /// depend on when its energies are asked for.
     void set_positions() {
         context_->set_positions(positions_, positions_.size());
         are_set_ = true;
@@ -92,12 +94,15 @@ class WholeForces final : public RankForces {
     OpenMmPlatform const& platform_;
     Communicator const& communicator_;
     std::optional<Vec3> box_;
-    std::vector<std::int64_t> number_of_particle_;        // in the scene, for messages
-    std::vector<std::int64_t> particle_, bytes_of_rank_;  // of beads in the order of by_rank
+    /// Number of each particle's bead in the scene, for messages.
+    std::vector<std::int64_t> number_of_particle_;
+    /// Particle of each bead in the order of by_rank, and bytes of each rank's positions.
+    std::vector<std::int64_t> particle_, bytes_of_rank_;
+    // index of the rank's first own bead in the order of by_rank
     std::int64_t first_ = 0;
     std::unique_ptr<ForceContext> context_;
-    std::vector<Vec3> positions_;  // of particles
-    bool are_set_ = false;         // the Context has them
+    std::vector<Vec3> positions_;  // positions of all particles, nm, W
+    bool are_set_ = false;         // true if the Context has positions_
 };
 
 }  // namespace

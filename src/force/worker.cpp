@@ -1,3 +1,4 @@
+// One thread that runs one task at a time.
 #include "force/worker.hpp"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// One thread that runs one task at a time.
+// Worker: one thread that runs one task at a time.
 #pragma once
 
 #include <condition_variable>
@@ -8,24 +8,27 @@
 
 namespace catena {
 
+/// Thread on which OpenMM computes while the caller continues.
 class Worker {
   public:
     Worker() : thread_([this] { serve(); }) {}
+    /// Waits for the task in progress and joins the thread.
     ~Worker();
     Worker(Worker const&) = delete;
     Worker& operator=(Worker const&) = delete;
 
-    /// Hands over a task, which must not throw. Precondition: no task is under way.
+    /// Starts `task`, which must not throw. Precondition: no task is in progress.
     void post(std::function<void()> task);
-    /// Returns when no task is under way.
+    /// Blocks until no task is in progress.
     void wait();
 
   private:
+    /// Runs posted tasks until the destructor asks it to stop.
     void serve();
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::function<void()> task_;  // empty: nothing to do
+    std::function<void()> task_;  // task in progress; empty if there is none
     bool leave_ = false;
     std::thread thread_;
 };

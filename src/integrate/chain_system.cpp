@@ -1,3 +1,4 @@
+// Construction of a ChainSystem and evaluation of forces, matrices and accelerations.
 #include "integrate/chain_system.hpp"
 
 #include <algorithm>
@@ -14,16 +15,17 @@
 namespace catena {
 namespace {
 
-/// What kernels, graphs and streams take by themselves.
+/// GPU memory that kernels, graphs and streams use, bytes.
 constexpr std::int64_t gpu_reserve = std::int64_t{128} << 20;
-/// Of a thread of their sweeps' kernels, bytes (ptxas: 15,512 at most on sm_90).
+/// Stack per thread of the sweeps' kernels with articulated handles, bytes (ptxas: 15,512 at most
+/// on sm_90).
 constexpr std::int64_t stack_of_articulated_handles = 16 << 10;
 constexpr char const* without_gpu =
     "use auto, another backend, or a build with CUDA on a machine with a GPU";
 constexpr char const* without_memory =
     "use more GPUs (ranks on several hosts), another backend, or fewer bodies";
 
-/// Ends all ranks together, with the words of the first that has a reason. Collective.
+/// Throws an Error with the text of the first rank that has a `reason`, on all ranks. Collective.
 template <class Error = InputError>
 void refuse_cuda(Communicator const& communicator, std::string const& backend,
                  std::string const& reason, char const* remedy) {
@@ -40,11 +42,13 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend,
     throw Error(text, "solver.backend: " + backend, remedy);
 }
 
+/// Updates the configuration of a group, for solve_once() or for other solutions.
 void update(JointDynamics& group, bool to_solve_once) {
     to_solve_once ? group.update_to_solve_once() : group.update_configuration();
 }
 
-/// Whose chains have links or closed tips the scene's validation has refused.
+/// Throws InputError if articulated handles do not support this group. Validation has already
+/// refused chains with links or closed tips.
 void refuse_articulated(ChainGroup const& group, bool implicit) {
     if (!group.beads && !group.linked && !group.has_tips() && group.axes == Axes::joint &&
         !implicit)
@@ -66,7 +70,7 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
                          "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
-    // Threads pay once each has some thousand bodies' work (tests/bench/README.md).
+    // Threads pay if each has the work of some thousand bodies (tests/bench/README.md).
     std::int64_t constexpr worth_threads = 4096;
     return openmp_is_built() && choose_threads(scene, communicator) > 1 &&
                    scene.bodies() / communicator.size() >= worth_threads
@@ -121,14 +125,15 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     if (openmm_) find_bead_hosts();
 }
 
-ChainSystem::~ChainSystem() { is_current(); }  // what it holds on the GPU is given back there
+// GPU memory is freed in the context in which it was allocated.
+ChainSystem::~ChainSystem() { is_current(); }
 
 bool ChainSystem::is_current() noexcept {
     DevicePath* const path = openmm_ ? openmm_->device_path() : nullptr;
     return path == nullptr || path->make_current();
 }
 
-/// Before anything is there.
+/// Must be called before anything is allocated on the GPU.
 void ChainSystem::require_gpu_memory() const {
     std::int64_t needed = gpu_reserve;
     if (scene_.solver.handles == Handles::articulated)
@@ -170,7 +175,7 @@ std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) c
 void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     double const start = seconds_now();
     auto const note = [&](char const* name, char const* lane, double begin, double end) {
-        // Of several groups of chains the last may be done before the first.
+        // If there are several groups of chains, the last may finish before the first.
         if (timeline)
             timeline->phases.push_back({name, lane, begin - start, std::max(begin, end) - start});
     };
@@ -181,7 +186,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     if (on_device())
         go_on_openmm();
     else if (openmm_ || timeline)
-        wait();  // so that the clock sees the sweep; the forces are waited for anyway
+        wait();  // lets the clock include the whole sweep; the forces are waited for anyway
     double const assembled = seconds_now();
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
@@ -192,7 +197,8 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     note("simple forces", "catena", assembled, simple);
     seconds_["kinematics and loads"] += simple - assembled;
     if (on_device()) {
-        if (!timeline) return;  // the next evaluation asks: the GPU need not be waited for
+        if (!timeline)
+            return;  // the next evaluation reads the clock: no need to wait for the GPU now
         DevicePath::Clock const clock = read_device_clock();
         if (clock.openmm.end == 0) return;  // this rank has no beads
         note("matrix sweep", "catena", clock.chains.begin, clock.chains.end);
@@ -205,8 +211,8 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     note_overlap(start, begun, assembled, simple, finished);
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
-    // On path inline the forces are computed before begin_openmm() returns: what comes before them
-    // is the handing over.
+    // Path inline computes the forces before begin_openmm() returns. The time before them is that
+    // of passing on positions.
     note("hand over positions", "catena", start,
          ran.end <= begun ? std::clamp(ran.begin, start, begun) : begun);
     if (communicator_.size() > 1)
@@ -263,8 +269,8 @@ void ChainSystem::close_tips(int corrections) {
     for (auto const& group : joint_) group->close_tips(corrections);
 }
 
-/// Positions are handed over from `start` to `begun`, matrices assembled until `assembled`, forces
-/// waited for from `waits` to `finished`.
+/// Positions are passed on from `start` to `begun`, matrices are assembled until `assembled`, and
+/// forces are waited for from `waits` to `finished`.
 void ChainSystem::note_overlap(double start, double begun, double assembled, double waits,
                                double finished) {
     matrix_seconds_ += assembled - begun;
@@ -272,8 +278,8 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
     double const exchange = communicator_.size() > 1 ? brought.end - brought.begin : 0.0;
-    bool const beside = openmm_->leaves_a_core() ||
-                        uses_gpu(backend_);  // what shares the forces' core makes them wait
+    // Work that shares the forces' core delays them, so that nothing is hidden.
+    bool const beside = openmm_->leaves_a_core() || uses_gpu(backend_);
     if (beside)
         hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
     seconds_["forces"] += ran.end - ran.begin;
@@ -283,8 +289,8 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
 
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
-    bool const at_once =
-        !project && solves_once() && !scene_.dynamics.fixman;  // whose forces need the matrices
+    // Forces of the Fixman potential need the matrices.
+    bool const at_once = !project && solves_once() && !scene_.dynamics.fixman;
     for (auto const& group : joint_) update(*group, at_once);
     if (at_once)
         for (auto const& group : absolute_) group->set_simple_forces();

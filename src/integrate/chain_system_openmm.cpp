@@ -1,4 +1,4 @@
-// A scene's beads as OpenMM knows them, and an evaluation of its forces.
+// ChainSystem's part that deals with OpenMM: the scene's beads and an evaluation of their forces.
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +11,7 @@ namespace catena {
 
 void ChainSystem::describe_beads() { bead_system_ = bead_system_of(scene_); }
 
-/// A rank owns the beads of its bodies, group after group.
+/// A rank owns the beads of its bodies, group by group.
 void ChainSystem::order_beads_by_rank() {
     std::vector<std::int64_t> first_of_chain;
     std::int64_t beads = 0;
@@ -19,15 +19,13 @@ void ChainSystem::order_beads_by_rank() {
         first_of_chain.push_back(beads);
         beads += static_cast<std::int64_t>(chain.bead_count());
     }
-    auto const bead_of =
-        [&](int chain,
-            std::int64_t body) {  // first of a body's; body = size: one past the chain's last
-            ChainSpec const& spec = scene_.chains[chain];
-            if (spec.is_beads()) return first_of_chain[chain] + body;
-            return first_of_chain[chain] +
-                   (spec.bead_count() == 0 ? 0
-                                           : spec.carried().offset[static_cast<std::size_t>(body)]);
-        };
+    // Returns the first bead of a body; for body = size, one past the chain's last bead.
+    auto const bead_of = [&](int chain, std::int64_t body) {
+        ChainSpec const& spec = scene_.chains[chain];
+        if (spec.is_beads()) return first_of_chain[chain] + body;
+        return first_of_chain[chain] +
+               (spec.bead_count() == 0 ? 0 : spec.carried().offset[static_cast<std::size_t>(body)]);
+    };
     std::vector<std::int64_t> order;
     bead_system_.first_of_rank = {0};
     for (int rank = 0; rank < communicator_.size(); ++rank) {
@@ -43,7 +41,7 @@ void ChainSystem::order_beads_by_rank() {
     if (!std::is_sorted(order.begin(), order.end())) bead_system_.by_rank = std::move(order);
 }
 
-/// Groups in absolute coordinates come first.
+/// Groups in absolute coordinates are first.
 void ChainSystem::find_bead_groups() {
     for (bool const absolute : {true, false})
         for (auto const& group : groups_)
@@ -51,8 +49,8 @@ void ChainSystem::find_bead_groups() {
                 bead_groups_.push_back(group.get());
 }
 
-/// Before anything of the chains is on a GPU: where OpenMM computes there, they live in its
-/// context.
+/// Must be called before anything of the chains is on a GPU: if OpenMM computes there, they live in
+/// its context.
 void ChainSystem::make_openmm() {
     find_bead_groups();
     if (bead_groups_.empty())
@@ -122,16 +120,16 @@ void ChainSystem::go_on_openmm() {
 
 DevicePath::Clock ChainSystem::read_device_clock() {
     clock_is_due_ = false;
-    double const weight = static_cast<double>(
-        std::exchange(evaluations_since_clock_, 0));  // it stands for those before it
+    // This evaluation represents those since the clock was read last.
+    double const weight = static_cast<double>(std::exchange(evaluations_since_clock_, 0));
     DevicePath::Clock const clock = openmm_->device_path()->clock();
     auto const length = [weight](double begin, double end) {
         return weight * std::max(0.0, end - begin);
     };
     double const matrices = length(clock.chains.begin, clock.chains.end);
     bool const exchanges = communicator_.size() > 1;
-    // Ghosts come, or the host asks how far beads are, then OpenMM computes: the sweep runs beside
-    // both.
+    // First ghosts arrive, or the host asks how far beads have moved; then OpenMM computes. The
+    // sweep runs concurrently with both.
     double const begin = clock.exchange.end > 0 ? clock.exchange.begin : clock.openmm.begin;
     matrix_seconds_ += matrices;
     hidden_seconds_ +=

@@ -1,3 +1,4 @@
+// State, results and energies of a ChainSystem: collection, exchange between ranks and restoring.
 #include "integrate/chain_system.hpp"
 
 #include <algorithm>
@@ -12,12 +13,14 @@
 namespace catena {
 namespace {
 
+/// Returns the components of all vectors, one vector after the other.
 std::vector<double> flat(std::vector<Vec3> const& values) {
     std::vector<double> out;
     out.reserve(3 * values.size());
     for (Vec3 const& v : values) out.insert(out.end(), v.data, v.data + 3);
     return out;
 }
+/// Inverse of flat().
 std::vector<Vec3> triples(std::vector<double> const& values) {
     std::vector<Vec3> out(values.size() / 3);
     for (std::size_t i = 0; i < out.size(); ++i)
@@ -25,7 +28,7 @@ std::vector<Vec3> triples(std::vector<double> const& values) {
     return out;
 }
 
-/// What counts where a piece starts, as one entry a body, and back.
+/// Stores a quantity of pieces' first bodies as one entry per body; zeros elsewhere.
 std::vector<double> at_starts(ChainGroup const& group, Field<3> const& of_piece) {
     std::vector<Vec3> of_body(static_cast<std::size_t>(group.size), Vec3::zero());
     for (std::size_t p = 0; p < group.pieces.size(); ++p)
@@ -34,6 +37,7 @@ std::vector<double> at_starts(ChainGroup const& group, Field<3> const& of_piece)
                 of_piece[static_cast<std::int64_t>(p)];
     return flat(of_body);
 }
+/// Inverse of at_starts().
 Field<3> of_starts(ChainGroup const& group, std::vector<Vec3> const& of_body) {
     Field<3> of_piece(std::ssize(group.pieces));
     for (std::size_t p = 0; p < group.pieces.size(); ++p)
@@ -50,8 +54,8 @@ std::size_t ChainSystem::index_of(ChainGroup const& group) const {
     return static_cast<std::size_t>(found - groups_.begin());
 }
 
-/// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega,
-/// joint force, joint position and rate.
+/// Each row belongs to a body. It holds position and velocity; orientation and angular velocity if
+/// bodies can rotate; then joint force, joint coordinates and joint rates if asked for.
 ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_states) {
     bool const turning = std::any_of(groups_.begin(), groups_.end(),
                                      [](auto const& group) { return !group->beads; });
@@ -114,6 +118,7 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_sta
 
 namespace {
 
+/// Converts rows of own_bodies() into motions; the first row is body `first` of the scene.
 ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first,
                               std::span<double const> values, Executor const& executor) {
     ChainSystem::Bodies bodies;
@@ -187,7 +192,6 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
     return all;
 }
 
-/// Nothing but OpenMM's forces acts on the beads, and no Fixman potential.
 bool ChainSystem::is_free_of_potentials() const {
     return norm(scene_.forces.gravity) == 0 && !scene_.dynamics.fixman &&
            std::all_of(groups_.begin(), groups_.end(),
@@ -207,8 +211,9 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
     };
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
     if (scene_.dynamics.fixman) terms.push_back({"fixman", 0.0});
-    if (on_device() || !is_free_of_potentials()) {  // there it settles the forces, whose place
-                                                    // OpenMM's energies take
+    // Path `device`: potential() also waits for the forces, whose arrays OpenMM's energies
+    // overwrite.
+    if (on_device() || !is_free_of_potentials()) {
         for (auto const& group : absolute_) add(group->group(), group->potential());
         for (auto const& group : joint_) add(group->group(), group->potential());
         SceneWindows(communicator_, groups_)
@@ -413,7 +418,8 @@ std::vector<JointRates> ChainSystem::own_rates(
     return all;
 }
 
-/// Array by array, which then goes: a rank may have little room beside the whole checkpoint.
+/// Arrays are distributed and freed one by one, because a rank may have little memory left besides
+/// the whole checkpoint.
 void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& arrays) {
     std::map<std::string, int> absolute_widths;
     std::vector<std::vector<StateArray>> absolute;

@@ -1,5 +1,5 @@
-// What a run takes from a checkpoint beside its bodies' arrays: whatever the file holds, only what
-// a run can have written goes on.
+// Checked reading of a checkpoint's values other than the bodies' arrays. Only values that a run
+// can have written are accepted.
 #pragma once
 
 #include <cmath>
@@ -12,13 +12,13 @@
 
 namespace catena {
 
+/// Throws the InputError about a damaged checkpoint; `what`: "step is missing".
 [[noreturn]] inline void refuse_checkpoint(std::string const& what) {
     throw InputError("the checkpoint is damaged, " + what, "--restart",
                      "use checkpoint.previous.h5, or start anew");
 }
 
-/// The counter of this name; InputError where it is missing or not between these two, both
-/// included.
+/// Returns the counter of this name. Throws InputError if it is missing or outside least .. most.
 inline int counter_of(Checkpoint const& c, std::string const& name, int least, int most) {
     auto const found = c.integers.find(name);
     if (found == c.integers.end()) refuse_checkpoint(name + " is missing");
@@ -27,8 +27,8 @@ inline int counter_of(Checkpoint const& c, std::string const& name, int least, i
     return static_cast<int>(found->second);
 }
 
-/// The step of this name, `otherwise` where it is missing; InputError where it is not one of the
-/// run so far.
+/// Returns the time step number of this name, or `otherwise` if it is missing. Throws InputError if
+/// it is negative or beyond the checkpoint's step.
 inline std::int64_t step_of(Checkpoint const& c, std::string const& name, std::int64_t otherwise) {
     auto const found = c.integers.find(name);
     if (found == c.integers.end()) return otherwise;
@@ -37,8 +37,8 @@ inline std::int64_t step_of(Checkpoint const& c, std::string const& name, std::i
     return found->second;
 }
 
-/// The array of this name, none where it is missing; InputError where it is not of so many finite
-/// numbers from 0 on.
+/// Returns the array of this name; empty if it is missing. Throws InputError unless it has `count`
+/// finite numbers that are not negative.
 inline std::vector<double> few_numbers_of(Checkpoint const& c, std::string const& name,
                                           std::size_t count) {
     auto const found = c.arrays.find(name);

@@ -1,3 +1,4 @@
+// Repetition of time steps that left joints open.
 #include "integrate/closed_steps.hpp"
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 namespace catena {
 namespace {
 
-/// Where sweeps alone do not close a step's joints its drifts are taken in up to so many times as
-/// many parts, each with its own matrices.
+/// If sweeps alone do not close a step's joints, its drifts are split into up to this many times as
+/// many parts. Each part has its own matrices.
 constexpr int most_times = 64;
 
 }  // namespace
@@ -81,7 +82,7 @@ void ClosedSteps::repeat(std::int64_t n, std::function<void()> const& prepare) {
     integrator_.put_back(kept_->state);
     for (std::int64_t m = kept_->step; m <= n; ++m) {
         try {
-            // A checkpoint there may be the next to come: as after a restart from it.
+            // A checkpoint may follow here: ghost lists must be those after a restart from it.
             if (m == n && system_.openmm()) system_.openmm()->renew_ghosts();
             prepare();
             if (m < n) take(m, prepare);
@@ -118,7 +119,8 @@ void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {
     if (steps_++ == 0) first_ = n;
 }
 
-/// Of joints' errors, which are relative to lengths. What converges slowly is far above it.
+/// Returns the rounding of joints' violations, which are relative to lengths. A violation that
+/// converges slowly is far above it.
 double ClosedSteps::rounding_at(ConstrainedIntegrator::Kept const& kept) const {
     double constexpr few = 64, most = 1e-7, infinity = std::numeric_limits<double>::infinity();
     Communicator const& communicator = system_.communicator();
@@ -129,7 +131,7 @@ double ClosedSteps::rounding_at(ConstrainedIntegrator::Kept const& kept) const {
         double largest = 0, shortest = infinity;
         for (double const x : array_named(kept.state[g], "position").values)
             largest = std::max(largest, std::abs(x));
-        bool const links = group.beads || group.linked;  // bodies on joints have no lengths
+        bool const links = group.beads || group.linked;  // bodies on joints have no link lengths
         for (std::int64_t k = 0; links && k < group.size; ++k)
             if (double const length = group.length.view().at(k, 0); length > 0)
                 shortest = std::min(shortest, length);

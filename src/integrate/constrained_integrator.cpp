@@ -1,3 +1,4 @@
+// RATTLE and g-BAOAB, and the choice of their numbers of sweeps and parts.
 #include "integrate/constrained_integrator.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace catena {
 namespace {
 
-/// The parts of a step (take_step) whose drifts go on until joints close.
+/// Operations of a time step (take_step()) whose drifts get further sweeps until joints close.
 struct ClosingParts {
     AbsoluteDynamics& dynamics;
     ClosingDrifts& drifts;
@@ -88,7 +89,7 @@ void ConstrainedIntegrator::observe() {
     for (AbsoluteDynamics* group : groups_) group->observe((pending_ - 0.5) * scheme_.step);
 }
 
-/// The first drift of a step from the state of now, or as fast as a thermostat will have it.
+/// Does the first drift of a step, from the present velocities or from thermal ones.
 void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps, bool thermal) const {
     if (thermal)
         group.draw_velocities(scheme_.kt, scheme_.seed,
@@ -97,7 +98,6 @@ void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps, boo
     group.drift(scheme_.step / drifts(), sweeps);
 }
 
-/// Where so many suffice.
 bool ConstrainedIntegrator::choose_sweeps(int most, bool thermal) {
     std::vector<std::vector<StateArray>> before;
     for (AbsoluteDynamics* group : groups_) before.push_back(group->state());
@@ -134,7 +134,8 @@ bool ConstrainedIntegrator::choose_sweeps(int most, bool thermal) {
 
 void ConstrainedIntegrator::choose_sweeps() {
     if (is_implicit(scheme_.kind)) {
-        // A sweep that gains two digits has room for joints that turn more than those of the trial.
+        // A sweep that gains two digits leaves a margin for joints that rotate faster than those of
+        // the trial.
         int constexpr few = 8;
         for (parts_ = 1; parts_ <= most_parts; parts_ *= 2)
             if (choose_sweeps(few, true)) return;

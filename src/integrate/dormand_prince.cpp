@@ -1,3 +1,4 @@
+// The Dormand-Prince integrator in joint coordinates, with fixed or adaptive inner steps.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,9 +14,11 @@ namespace catena {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr std::int64_t most_inner_steps = 100000;  // of one step; rejected ones count
+// Inner steps of one time step, rejected ones included.
+constexpr std::int64_t most_inner_steps = 100000;
 constexpr char const* name_of_state = "inner_step";
 
+/// JointIntegrator of the Dormand-Prince pair.
 class DormandPrinceSteps final : public JointIntegrator {
   public:
     DormandPrinceSteps(ChainSystem& system, double tolerance, double step)
@@ -23,7 +26,8 @@ class DormandPrinceSteps final : public JointIntegrator {
         has_tips_ = std::any_of(groups_.begin(), groups_.end(),
                                 [](JointDynamics const* g) { return g->group().has_tips(); });
     }
-    /// Tips that are closed leave the rates at the step's end behind.
+    /// Closing tips changes the state, so that the accelerations at the step's end are no longer
+    /// valid.
     bool carries_rates() const override { return !has_tips_; }
     void close_with(int corrections) override { corrections_ = corrections; }
     std::optional<SweepsAStep> last_step() const override { return last_; }
@@ -76,18 +80,19 @@ class DormandPrinceSteps final : public JointIntegrator {
     }
 
   private:
+    /// Computes accelerations and counts the sweeps.
     void solve() {
         system_.solve_joint_groups();
         ++now_.matrices;
         ++now_.biases;
     }
-    /// The next inner step.
+    /// Starts the next inner step.
     void begin_at(double time) {
         if (has_tips_) system_.close_tips(corrections_);
         for (JointDynamics* const group : groups_) group->set_time(time);
         prepare();
     }
-    /// False where the step is far too long.
+    /// Computes all stages of an inner step. Returns false if the step is far too long.
     bool advance(InnerStep const& inner) {
         for (int stage = 0; stage < DormandPrince::stages; ++stage) {
             for (JointDynamics* const group : groups_) group->embedded_stage(stage, inner);
@@ -96,15 +101,17 @@ class DormandPrinceSteps final : public JointIntegrator {
         }
         return true;
     }
-    /// Asked before equations are solved whose failure one rank alone would see.
+    /// True if the next stage's state is too far off. Checked before equations are solved, whose
+    /// failure only one rank would see.
     bool is_wild(double length) {
         double worst = 0;
         for (JointDynamics* const group : groups_) worst = larger(worst, group->wildness(length));
         return !(system_.communicator().max(worst) < 1);
     }
-    /// Over what is allowed, the largest of all coordinates: maxima are exact in any order. Angles
-    /// count by a radian, lengths by the reach of the longest chain, velocities by the largest of
-    /// their kind; what is below the rounding of coordinates within the step is no error.
+    /// Returns the largest error of a coordinate, divided by the allowed error. Maxima are exact in
+    /// any order. Angles are relative to a radian, lengths to the reach of the longest chain, and
+    /// velocities to the largest of their kind. Errors below the rounding of coordinates within the
+    /// step do not count.
     double error(double length) {
         Speeds fastest;
         double reach = 0;
@@ -125,7 +132,7 @@ class DormandPrinceSteps final : public JointIntegrator {
             worst = larger(worst, group->embedded_error(length, allowed));
         return all.max(worst);
     }
-    /// Every rank knows.
+    /// Throws on every rank: all ranks find the same reason.
     [[noreturn]] void refuse(double time, double length, char const* why) const {
         std::ostringstream line;
         line << why << " for dynamics.tolerance " << tolerance_ << " at time " << time
@@ -140,8 +147,8 @@ class DormandPrinceSteps final : public JointIntegrator {
     StepControl control_;
     bool has_tips_ = false, ready_ = false;
     int corrections_ = JointDynamics::usual_corrections;
-    SweepsAStep now_{0, 0, 0},
-        last_;  // now_: of the step that is under way, from what it is prepared by on
+    // now_: sweeps of the step in progress, counted from its preparation.
+    SweepsAStep now_{0, 0, 0}, last_;
 };
 
 }  // namespace

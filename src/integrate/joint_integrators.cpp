@@ -1,3 +1,4 @@
+// Choice of the integrator in joint coordinates and its numbers of sweeps.
 #include "integrate/joint_integrators.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Steps in joint coordinates: nothing drifts apart but jointed tips, which are to be closed after
-// every step (ChainSystem::close_tips).
+// Integrators in joint coordinates. Constraint violation occurs only at jointed tips, which must be
+// closed after every time step (ChainSystem::close_tips()).
 #pragma once
 
 #include <memory>
@@ -12,83 +12,93 @@ namespace catena {
 
 class StepControl;
 
-/// Of an integrator in joint coordinates. As many bias sweeps, so many passes of the kinematics.
+/// Number of sweeps per time step of an integrator in joint coordinates. There are as many passes
+/// of the kinematics as bias sweeps.
 struct SweepsAStep {
     int matrices = 1, biases = 1;
-    int closings = 1;  // of jointed tips, whose own sweeps are not among those
+    int closings = 1;  // closings of jointed tips, whose sweeps are not included above
 };
 
+/// An integrator of all groups in joint coordinates.
 class JointIntegrator {
   public:
     virtual ~JointIntegrator() = default;
-    /// One step of length h of all groups' states, whose time is their own. Collective.
+    /// Advances the states and times of all groups by a time step h. Collective.
     virtual void step(double h) = 0;
-    /// What the next step needs beside the states is made where it is not there yet. Collective.
+    /// Computes what the next step needs besides the states, unless it is available. Collective.
     virtual void prepare() {}
-    /// The groups' time at step 0, from where noise counts steps: not 0 in a branch with another
-    /// step.
+    /// Sets the groups' time at step 0, from which the noise counts steps. It is not 0 in a branch
+    /// with another time step.
     virtual void set_origin(double /*time*/) {}
-    /// Whether that is the groups' carried rates.
+    /// True if accelerations are carried from step to step, in the groups' carried rates.
     virtual bool carries_rates() const { return false; }
-    /// Corrections of jointed tips within a step, where these are closed between inner steps.
+    /// Sets the number of corrections of jointed tips that are closed between inner steps.
     virtual void close_with(int /*corrections*/) {}
-    /// Of the last step, where not all are alike.
+    /// Returns the sweeps of the last step if steps differ in their number.
     virtual std::optional<SweepsAStep> last_step() const { return std::nullopt; }
-    /// Of inner steps; null where there are none.
+    /// Returns the controller of inner steps; null if there are none.
     virtual StepControl const* control() const { return nullptr; }
-    /// What it needs beside states and rates; these were set from outside, to those of this
-    /// checkpoint.
+    /// Saves what the integrator needs besides states and rates.
     virtual void save(Checkpoint&) const {}
+    /// Called after states and rates have been set to those of this checkpoint.
     virtual void restored(Checkpoint const&) {}
 };
 
-/// Whether its solutions are refined `solver.refine` times: those of the others are solved for more
-/// than once with one matrix.
+/// True if the integrator's solutions are refined `solver.refine` times. The other integrators
+/// solve more than once with one matrix.
 inline bool is_refined(Integrator i) { return i <= Integrator::velocity_verlet; }
-/// Whether steps in joint coordinates assemble matrices by themselves: forces are computed
-/// meanwhile, or they are needed again (ChainSystem::solves_once()).
+/// True if steps in joint coordinates assemble matrices in a sweep of their own. Forces are
+/// computed meanwhile, or the matrices are needed again (ChainSystem::solves_once()).
 inline bool keeps_matrices(Scene const& scene) {
     return scene.forces.openmm || scene.solver.refine > 0 || !is_refined(scene.dynamics.integrator);
 }
+/// True if a chain of the scene has a jointed tip; rings have one as well.
 bool has_jointed_tips(Scene const&);
-/// `tips`: whether the scene has jointed ones. Of an adaptive step: of one inner step.
+/// Returns the sweeps per time step, with an adaptive step per inner step. `tips`: true if the
+/// scene has jointed tips.
 SweepsAStep sweeps_a_step(DynamicsSpec const&, bool tips);
-/// The one that the scene's dynamics names.
+/// Makes the integrator that the scene's dynamics names.
 std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem&, DynamicsSpec const&);
 
-/// The classical fourth-order Runge-Kutta step (the chapter's integrator). Quaternions follow q' =
-/// 1/2 q (0, omega) and are normalised at the end of the step.
+/// Makes the classical fourth-order Runge-Kutta integrator (that of the DCA chapter). Quaternions
+/// follow q' = 1/2 q (0, omega) and are normalised at the end of the step.
 std::unique_ptr<JointIntegrator> make_runge_kutta4(ChainSystem&);
 
-/// The Dormand-Prince pair (embedded_steps.hpp), quaternions as under Runge-Kutta. With a tolerance
-/// a step is made of inner steps whose lengths StepControl chooses; the last one ends where the
-/// step does. Without it (0) a step is one of fifth order.
+/// Makes the Dormand-Prince integrator (embedded_steps.hpp); quaternions are treated as under
+/// Runge-Kutta. With a tolerance, a step consists of inner steps whose lengths StepControl chooses.
+/// The last one ends where the step does. With tolerance 0, a step is one step of fifth order.
 std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem&, double tolerance, double step);
 
-/// Velocity Verlet for accelerations that depend on velocities, one evaluation a step, second order
-/// (Groot & Warren, J. Chem. Phys. 107, 4423, 1997, with lambda = 1): q moves by h q' + h^2/2 q'',
-/// the acceleration is taken there with q' + h q'', and q' gets the mean of both accelerations.
-/// Orientations move by the exponential of that rotation vector.
+/// Makes velocity Verlet for accelerations that depend on velocities, with one evaluation per step
+/// and second order (Groot & Warren, J. Chem. Phys. 107, 4423, 1997, with lambda = 1).
+/// q is advanced by h q' + h^2/2 q'', and the acceleration is evaluated there with q' + h q''. Then
+/// q' is advanced by h times the mean of both accelerations. Orientations are advanced by the
+/// exponential of that rotation vector.
 std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem&);
 
-/// Kick, drift, kick with velocity-dependent forces at the kick's middle, whose velocities a first
-/// bias sweep finds: second order, one matrix sweep per step. With springs K and dampers C of
-/// implicit joints (JointDynamics) it is the staggered scheme (src/dca/README.md, "Implicit joint
-/// springs"), B = c h^2 K + h C / 2 (rotor_of_spring()), stable however stiff they are: velocity
-/// Verlet of a chain with a rotor of inertia B in every joint.
-///
-/// With friction Langevin dynamics: an Ornstein-Uhlenbeck step in the middle of the drift (BAOAB:
-/// Leimkuhler & Matthews, J. Chem. Phys. 138, 174102, 2013), whose velocities have the covariance
-/// kt (M + B)^-1 of where the chain is. How fast the chain moves depends on B; where it is,
-/// harmonic springs sample exactly at any step, for a rotor changes no more than the weight
-/// sqrt(det(M + B)) of rigid joints.
+/// Parameters of the Langevin thermostat of make_kicks(): friction (1/time), Boltzmann constant
+/// times temperature, seed.
 struct JointThermostat {
     double friction = 0, kt = 0;
     std::uint64_t seed = 1;
 };
+/// Makes a kick-drift-kick integrator of second order with one matrix sweep per step.
+/// Velocity-dependent forces are evaluated at the middle of the kick, where a first bias sweep
+/// finds the velocities.
+/// With springs K and dampers C of implicit joints (JointDynamics) it is the staggered scheme
+/// (src/dca/README.md, "Implicit joint springs"). Its rotors are B = c h^2 K + h C / 2
+/// (rotor_of_spring()). It is stable however stiff they are: it equals velocity Verlet of a chain
+/// with a rotor of inertia B in every joint.
+///
+/// With friction it is Langevin dynamics: an Ornstein-Uhlenbeck step in the middle of the drift
+/// (BAOAB: Leimkuhler & Matthews, J. Chem. Phys. 138, 174102, 2013). Its velocities have the
+/// covariance kt (M + B)^-1 at the present configuration. B changes how fast the chain moves.
+/// Positions sample harmonic springs exactly at any time step. A rotor changes no more than the
+/// weight sqrt(det(M + B)) of rigid joints.
 std::unique_ptr<JointIntegrator> make_kicks(ChainSystem&, JointThermostat const&);
 
-/// Lists of ghosts belong to the step at which they were asked for: a restart makes them there.
+/// Makes ghost lists now if they are due. They belong to the step at which they were requested: a
+/// restart makes them there. Collective.
 void make_ghosts(ChainSystem&);
 
 }  // namespace catena

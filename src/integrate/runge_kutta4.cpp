@@ -1,8 +1,10 @@
+// The classical fourth-order Runge-Kutta integrator in joint coordinates.
 #include "integrate/joint_integrators.hpp"
 
 namespace catena {
 namespace {
 
+/// Four stages, each after a solution at the stage's state.
 class RungeKutta4 final : public JointIntegrator {
   public:
     explicit RungeKutta4(ChainSystem& system) : system_(system) {}

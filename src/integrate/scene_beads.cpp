@@ -1,3 +1,4 @@
+// Collection of a scene's beads, their links, neighbours and start positions.
 #include "integrate/scene_beads.hpp"
 
 #include <algorithm>
@@ -7,10 +8,11 @@
 namespace catena {
 namespace {
 
-/// The carried bead that stands at a point of body k (from its centre of mass, B); -1: none does.
+/// Returns the carried bead at a point of body k (relative to its centre of mass, body axes); -1 if
+/// there is none.
 std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& point) {
-    double constexpr rounding =
-        1e-9;  // of positions that a file holds in decimals, turned into the body's axes
+    // Relative rounding of positions that a file holds as decimals, rotated into body axes.
+    double constexpr rounding = 1e-9;
     for (std::int64_t i = linked.carried.offset[k]; i < linked.carried.offset[k + 1]; ++i) {
         Vec3 const at = linked.carried.position[static_cast<std::size_t>(i)];
         if (norm(at - point) <= rounding * (norm(at) + norm(point))) return i;
@@ -18,6 +20,7 @@ std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& poin
     return -1;
 }
 
+/// Adds the beads and links of a bead chain.
 void add_beads(BeadSystem& system, ChainSpec const& chain) {
     std::int64_t const first = system.size();
     system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
@@ -30,6 +33,7 @@ void add_beads(BeadSystem& system, ChainSpec const& chain) {
     if (chain.is_ring()) system.links.push_back({first, first + beads - 1, chain.tip_joint.length});
 }
 
+/// Adds the beads that a chain's bodies carry, and the links or neighbours between them.
 void add_carried(BeadSystem& system, ChainSpec const& chain) {
     std::int64_t const first = system.size();
     CarriedBeads const& carried = chain.carried();
@@ -51,14 +55,15 @@ void add_carried(BeadSystem& system, ChainSpec const& chain) {
             system.neighbours.emplace_back(first + begin - 1, first + begin);
         }
     }
+    // A ring of two bodies has its neighbours already.
     bool const both_ends =
         carried.offset[1] > 0 && carried.offset[chain.size()] > carried.offset[chain.size() - 1];
-    if (chain.is_ring() && !chain.is_linked() && both_ends &&
-        chain.size() > 2)  // two are neighbours already
+    if (chain.is_ring() && !chain.is_linked() && both_ends && chain.size() > 2)
         system.neighbours.emplace_back(first,
                                        first + static_cast<std::int64_t>(carried.size()) - 1);
 }
 
+/// Adds the positions of a body's carried beads, W.
 void add_positions(std::vector<Vec3>& positions, CarriedBeads const& carried, std::size_t body,
                    scene::Pose const& pose) {
     Mat3 const turn = to_matrix(pose.orientation);

@@ -1,4 +1,4 @@
-// A scene's beads as OpenMM knows them.
+// The beads of a scene and their start positions, in the form that OpenMM's model needs.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,10 @@
 
 namespace catena {
 
-/// Every bead of the scene in the order of its chains; which rank owns which is still to be said.
+/// Returns every bead of the scene in the order of its chains. The owners (first_of_rank, by_rank)
+/// are left empty.
 BeadSystem bead_system_of(Scene const&);
-/// Where they stand at the scene's start, in the same order; W, unwrapped.
+/// Returns the beads' positions at the scene's start, in the same order; nm, W, unwrapped.
 std::vector<Vec3> bead_positions_of(Scene const&);
 
 }  // namespace catena

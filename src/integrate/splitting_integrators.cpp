@@ -1,3 +1,4 @@
+// Kick-drift-kick and BAOAB integrators in joint coordinates (make_kicks()).
 #include <cmath>
 
 #include "integrate/joint_integrators.hpp"
@@ -5,6 +6,7 @@
 namespace catena {
 namespace {
 
+/// JointIntegrator of make_kicks().
 class SplittingIntegrator final : public JointIntegrator {
   public:
     SplittingIntegrator(ChainSystem& system, JointThermostat const& thermostat)
@@ -38,9 +40,10 @@ class SplittingIntegrator final : public JointIntegrator {
     }
 
   private:
+    /// True for Langevin dynamics.
     bool is_warm() const { return thermostat_.friction > 0; }
-    /// Velocities and accelerations at a kick's middle, where it has `before` of it behind it; the
-    /// velocities so far are those at its start.
+    /// Computes velocities and accelerations at the middle of a kick, `before` after its start. The
+    /// present velocities are those at the start of the kick.
     void accelerate(double before) {
         system_.solve_joint_groups();
         for (JointDynamics* const group : system_.joint()) group->kick(before);

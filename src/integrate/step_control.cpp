@@ -1,3 +1,4 @@
+// The PI controller of inner steps.
 #include "integrate/step_control.hpp"
 
 #include <algorithm>
@@ -7,11 +8,11 @@ namespace catena {
 namespace {
 
 constexpr double safety = 0.9, least_factor = 0.2, most_factor = 5;
-constexpr double least_error =
-    1e-4;  // that the controller remembers: one lucky step is no reason for a short one
-constexpr double slack = 1.01;  // a hundredth longer rather than one step more
+// Smallest error that the controller remembers: one very accurate step must not shorten the next.
+constexpr double least_error = 1e-4;
+constexpr double slack = 1.01;  // allows a step 1 % longer rather than one step more
 
-/// x^(1/2^times)
+/// Returns x^(1/2^times).
 double root(double x, int times) {
     for (int i = 0; i < times; ++i) x = std::sqrt(x);
     return x;
@@ -38,7 +39,8 @@ bool StepControl::accepts(double length, double error) {
     double const next =
         length * std::clamp(safety * root(state_.previous, 4) / (root(e, 3) * root(e, 5)),
                             least_factor, most);
-    // A step far below what was proposed, since the way was at its end, says nothing against that.
+    // A step far below the proposed length, cut at the end of the interval, is no evidence against
+    // that length.
     bool const cut = length < 0.5 * state_.length;
     state_.length = std::min(longest_, cut ? std::max(state_.length, next) : next);
     if (!cut) state_.previous = std::max(error, least_error);

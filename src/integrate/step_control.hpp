@@ -1,4 +1,4 @@
-// How long the inner steps of an adaptive run are.
+// StepControl: lengths of the inner steps of an adaptive run.
 #pragma once
 
 #include <cstdint>
@@ -6,28 +6,31 @@
 namespace catena {
 
 /// A PI controller (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.4;
-/// Gustafsson, ACM TOMS 17, 533, 1991) for errors of fifth order: the next step is the last one's
-/// times 0.9 e^(-5/32) f^(1/16), at least a fifth and at most five times it; e, f: the error over
-/// what is allowed, of this step and of the one before. Only square roots are taken: these round
-/// the same everywhere.
+/// Gustafsson, ACM TOMS 17, 533, 1991) for errors of fifth order.
+/// The next step is 0.9 e^(-5/32) f^(1/16) times the last one, at least a fifth and at most five
+/// times it. Here e and f are the errors, divided by the allowed error, of this step and of the one
+/// before. Only square roots are used, because these round identically on all machines.
 class StepControl {
   public:
-    /// Of the next run, and of a restart.
+    /// State that the next time step, and a restart, continue with.
     struct State {
-        double length = 0;    // proposed
-        double previous = 1;  // f
+        // Proposed length of the next inner step.
+        double length = 0;
+        double previous = 1;  // f of the formula above
     };
-    /// Of accepted steps, but for `rejected`.
+    /// Counts and extreme lengths of the accepted steps, and count of the rejected ones.
     struct Counts {
         std::int64_t taken = 0, rejected = 0;
         double shortest = 0, longest = 0;
     };
 
-    /// `longest`: of a step.
+    /// `longest`: largest length of a step.
     explicit StepControl(double longest) : longest_(longest), state_{longest} {}
-    /// Of the next step where `left` is left to go: the rest in equal steps, as few as may be.
+    /// Returns the length of the next step if `left` remains. The remainder is divided into equal
+    /// steps, as few as possible.
     double length(double left) const;
-    /// What the error of a step of this length says about it, and about the next one.
+    /// Returns true if a step of this length with this error (divided by the allowed one) is
+    /// accepted. Proposes the length of the next step.
     bool accepts(double length, double error);
 
     State const& state() const { return state_; }
@@ -37,6 +40,7 @@ class StepControl {
   private:
     double longest_;
     State state_;
+    // true if the last step was rejected: the next one must not grow
     bool after_rejection_ = false;
     Counts counts_;
 };

@@ -1,3 +1,4 @@
+// Message about a failure within a time step.
 #include "integrate/step_failure.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +10,8 @@
 namespace catena {
 namespace {
 
-/// " (the stiffest spring, 2000, is that of chain `c`, body 5)"; empty where no joint has one.
+/// Returns " (the stiffest spring, 2000, is that of chain `c`, body 5)"; empty if no joint has a
+/// spring.
 std::string stiffest_spring(Scene const& scene) {
     double most = 0;
     std::string place;

@@ -1,4 +1,4 @@
-// What failed within a step, said with the causes in the order in which they come there.
+// Message about a failure within a time step, with its possible causes in order of likelihood.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace catena {
 
-/// "at step 12: WHAT". `has_started`: the state at the run's start was sound. A matrix that is lost
-/// later is a matter of the step first: its length, the stiffest joint spring and a smaller step
-/// are named before masses and positions.
+/// Returns "at step 12: WHAT". `has_started`: true if the state at the run's start was sound. A
+/// pivot failure after that is most likely due to the step. The text then names the step's length,
+/// the stiffest joint spring and a smaller step before masses and positions.
 std::string failure_in_step(std::int64_t step, std::string const& what, Scene const& scene,
                             bool has_started);
 

@@ -1,3 +1,4 @@
+// Estimate of the longest stable time step from the joints' springs.
 #include "integrate/step_limit.hpp"
 
 #include <fmt/format.h>
@@ -14,32 +15,36 @@
 namespace catena {
 namespace {
 
-/// Chains of one kind are alike, and so are a long chain's bodies: so many stand for all.
+/// Limits of the sample: chains of one kind are alike, and so are the bodies of a long chain.
 constexpr std::size_t most_chains = 4, most_bodies = 400;
 constexpr int most_iterations = 400, least_iterations = 50;
-constexpr double settled = 1e-4;  // change of the frequency from one iteration to the next
-/// Of the limit, and said: at 0.71 of it, where four steps are a period of the stiffest mode,
-/// energy grows by resonance.
+// Relative change of the squared frequency between iterations at convergence.
+constexpr double settled = 1e-4;
+/// Fraction of the limit above which a note is given. At 0.71 of it, where four steps are a period
+/// of the stiffest mode, energy grows by resonance.
 constexpr double near = 0.65;
 
-/// Of h times the largest frequency, undamped.
+/// Returns the stability limit of an integrator: h times the largest angular frequency, undamped.
 double reach_of(Integrator integrator) {
     return integrator == Integrator::rk4              ? 2.8284
            : integrator == Integrator::dormand_prince ? 3.3
                                                       : 2.0;
 }
 
+/// True if a joint of the chain has a spring.
 bool has_springs(ChainSpec const& chain) {
     auto const& k = chain.bodies.stiffness;
     return std::any_of(k.begin(), k.end(),
                        [](Vec3 const& stiffness) { return norm(stiffness) > 0; });
 }
 
+/// Removes the entries of a list from `size` on.
 template <class T>
 void cut(std::vector<T>& list, std::size_t size) {
     if (list.size() > size)
         list.erase(list.begin() + static_cast<std::ptrdiff_t>(size), list.end());
 }
+/// Removes the bodies of a chain from `size` on, and its tip.
 void cut(ChainSpec& chain, std::size_t size) {
     BodyArrays& b = chain.bodies;
     if (b.size() <= size) return;
@@ -55,7 +60,7 @@ void cut(ChainSpec& chain, std::size_t size) {
     chain.tip = Tip::free;
 }
 
-/// The chains with springs alone, as forward dynamics on one thread sees them.
+/// Returns a scene of the chains with springs only, for forward dynamics on one thread.
 Scene sprung_part(Scene const& scene) {
     Scene part;
     part.si = scene.si;
@@ -65,7 +70,8 @@ Scene sprung_part(Scene const& scene) {
     part.dynamics.given = true;
     part.solver.backend = Backend::segments;
     part.solver.threads = 1;
-    part.solver.handles = scene.solver.handles;  // those of less digits may fail, or be far off
+    // The scene's handles: those with fewer digits may fail or be far off.
+    part.solver.handles = scene.solver.handles;
     for (ChainSpec const& chain : scene.chains) {
         if (!has_springs(chain) || part.chains.size() == most_chains) continue;
         part.chains.push_back(chain);
@@ -76,9 +82,10 @@ Scene sprung_part(Scene const& scene) {
     return part;
 }
 
-/// Displacements of all groups along their coordinates, and what they do to accelerations.
+/// Displacements of all groups along their coordinates, and the accelerations that they add.
 class Displacements {
   public:
+    /// Sets all velocities to zero and starts from an irregular displacement.
     explicit Displacements(ChainSystem& system) : system_(system) {
         for (JointDynamics* const group : system_.joint()) {
             JointState at_rest = group->state();
@@ -90,13 +97,14 @@ class Displacements {
         for (JointState const& s : start_) along_.push_back({s.qd, s.base_velocity});
         unmoved_ = accelerations();
         std::int64_t i = 0;
-        each([&](Vec3&, Vec3& along) {  // no mode is orthogonal to numbers without a pattern
+        // No mode is orthogonal to a sequence of numbers without a pattern.
+        each([&](Vec3&, Vec3& along) {
             for (int c = 0; c < 3; ++c)
                 along[c] = std::sin(1.0 + 12.9898 * static_cast<double>(++i));
         });
     }
-    /// Replaces the displacement by what it does to the accelerations. Returns how much longer that
-    /// is.
+    /// Replaces the displacement by the accelerations that it adds. Returns the ratio of their
+    /// lengths.
     double iterate() {
         scale(1 / length());
         for (std::size_t g = 0; g < start_.size(); ++g) {
@@ -118,7 +126,9 @@ class Displacements {
     }
 
   private:
+    // size of the displacement
     static constexpr double small = 1e-6;
+    /// Computes the accelerations of all groups at their present states.
     std::vector<JointRates> accelerations() {
         system_.solve_joint_groups();
         std::vector<JointRates> all;
@@ -128,8 +138,8 @@ class Displacements {
         }
         return all;
     }
-    /// action(change of the acceleration per displacement, displacement) of every coordinate's
-    /// three numbers.
+    /// Calls action(change of the acceleration per displacement, displacement) for the three
+    /// numbers of every coordinate.
     template <class Action>
     void each(Action const& action) {
         for (std::size_t g = 0; g < along_.size(); ++g)
@@ -145,6 +155,7 @@ class Displacements {
                     (along_[g].*part).set(k, along);
                 }
     }
+    /// Euclidean length of the displacement.
     double length() {
         double square = 0;
         each([&](Vec3&, Vec3& along) { square += dot(along, along); });
@@ -159,6 +170,7 @@ class Displacements {
     std::vector<JointRates> along_, unmoved_, moved_;
 };
 
+/// Returns the largest angular frequency of the chains of `scene`; 0 if there is none.
 double largest_frequency_of(Scene const& scene) {
     auto const alone = serial_communicator();
     ChainSystem system(scene, Axes::joint, *alone);
@@ -172,7 +184,8 @@ double largest_frequency_of(Scene const& scene) {
     return std::sqrt(square);
 }
 
-/// 0 where there is none, or none can be computed: the run itself says what it cannot do.
+/// Returns 0 if there is no frequency, or if it cannot be computed: the run itself reports the
+/// error.
 double largest_frequency(Scene const& scene) {
     try {
         return largest_frequency_of(scene);

@@ -1,5 +1,5 @@
-// How long a step of an explicit integrator may be before the stiffest of the joints' springs makes
-// it unstable.
+// StepLimit: longest time step of an explicit integrator that the stiffest joint spring leaves
+// stable.
 #pragma once
 
 #include <optional>
@@ -9,23 +9,28 @@
 
 namespace catena {
 
+/// Stability limit of a scene's time step.
 struct StepLimit {
-    double frequency = 0;  // largest angular frequency of the chains with springs at the start
-    double step = 0;       // the longest stable step of the scene's integrator
-    bool whole = true;     // false: of the first bodies of long chains alone
+    /// Largest angular frequency at the start, of the chains with springs, 1/time.
+    double frequency = 0;
+    /// Longest stable step of the scene's integrator.
+    double step = 0;
+    /// False if only the first bodies of long chains were considered.
+    bool whole = true;
 };
 
-/// By power iteration on the accelerations that small displacements from the start add, in joint
-/// coordinates. None where no joint has a spring and where the integrator takes springs implicitly
-/// or chooses its own steps. Of a few chains and their first bodies, so that it costs little. On
-/// this rank alone, the same on all.
+/// Estimates the limit by power iteration on the accelerations that small displacements from the
+/// start add, in joint coordinates. Returns nothing if no joint has a spring, or if the integrator
+/// is implicit or adaptive.
+/// Only a few chains and their first bodies are considered, so that the cost is small. Computed on
+/// this rank alone, with the same result on all.
 std::optional<StepLimit> estimate_step_limit(Scene const&);
 
-/// "0.435 ps, 2 / the largest frequency of the joints' springs".
+/// Returns "0.435 ps, 2 / the largest frequency of the joints' springs".
 std::string text_of(StepLimit const&, Scene const&);
 
-/// Refuses a step beyond the limit by InputError. Returns a note of one that is near it, or beyond
-/// the limit of a part of the scene; empty: there is nothing to say.
+/// Throws InputError for a step beyond the limit. Returns a note about a step near the limit, or
+/// beyond the limit of a part of the scene; else an empty text.
 std::string note_of_step(Scene const&, std::optional<StepLimit> const&);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Steppers for integrators in joint coordinates and for constrained integrators.
 #include "integrate/stepper.hpp"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 
+/// Stepper in joint coordinates; its sweeps are corrections of jointed tips.
 class JointStepper final : public Stepper {
   public:
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
@@ -26,8 +28,8 @@ class JointStepper final : public Stepper {
         system.close_tips();
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
-    /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at
-    /// the step's end.
+    /// OpenMM's energies are those of its last evaluation, which need not be at the end of a step.
+    /// They and joint forces therefore need another evaluation.
     void observe(ObservedQuantities const& asked) override {
         if (!asked.joint_forces && !(asked.energies && system_.openmm())) return;
         system_.evaluate();
@@ -38,13 +40,13 @@ class JointStepper final : public Stepper {
         set_time(n);
         integrator_->close_with(corrections_);
         integrator_->step(h_);
-        set_time(n + 1);  // as a restart has it: sums of inner steps round
+        set_time(n + 1);  // the time that a restart computes; sums of inner steps round
         system_.close_tips(corrections_);
         sum_.add(solved(), has_tips() ? corrections_ + 1 : 0);
         if (timeline)
             timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
-    /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is
+    /// Only jointed tips can be open in joint coordinates. The result is NaN if the state is not
     /// finite.
     double constraint_error() override {
         double worst = 0;
@@ -52,7 +54,7 @@ class JointStepper final : public Stepper {
             worst = larger(worst, group->closure_error());
         return worst;
     }
-    /// One more correction of jointed tips.
+    /// Above a tenth of the tolerance, jointed tips get one more correction.
     double early() const override { return 0.1; }
     bool add_sweep() override {
         if (!has_tips() || corrections_ >= most_corrections) return false;
@@ -115,7 +117,7 @@ class JointStepper final : public Stepper {
                            [](JointDynamics const* g) { return g->group().has_tips(); });
     }
 
-    /// Of all steps so far.
+    /// Sums over all steps so far.
     struct Sum {
         std::int64_t steps = 0, evaluations = 0, matrices = 0, biases = 0;
         void add(SweepsAStep const& s, int a_closing) {
@@ -131,13 +133,16 @@ class JointStepper final : public Stepper {
 
     static constexpr int most_corrections = 10;
     ChainSystem& system_;
-    double h_, tolerance_, origin_ = 0;  // of time: at step 0
+    // origin_: time at step 0.
+    double h_, tolerance_, origin_ = 0;
     SweepsAStep sweeps_;
     Sum sum_;
-    int corrections_ = JointDynamics::usual_corrections;  // of tips' positions after a step
+    // Corrections of tips' positions after a step.
+    int corrections_ = JointDynamics::usual_corrections;
     std::unique_ptr<JointIntegrator> integrator_;
 };
 
+/// Stepper of RATTLE and g-BAOAB in absolute coordinates.
 class ConstrainedStepper final : public Stepper {
   public:
     ConstrainedStepper(ChainSystem& system, DynamicsSpec const& d)
@@ -188,12 +193,12 @@ class ConstrainedStepper final : public Stepper {
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
-        // A branch with a shorter step that was not taken yet owes more.
+        // A branch with a shorter step may owe more than one kick before its first step.
         c.integers["pending_half_kicks"] =
             static_cast<std::int64_t>(std::clamp(2 * integrator_.pending(), 0.0, 2.0));
         c.arrays[array_of_kick] = {integrator_.pending()};
     }
-    /// The half kick that ends the last step is of that step's length.
+    /// The half kick that ends the last step has the length of that step, not of the branch's.
     void branch(Checkpoint const& c) override {
         double const h = system_.scene().dynamics.step, before = number_in(c, array_of_step, h);
         integrator_.set_pending((pending_in(c) - 0.5) * before / h + 0.5);
@@ -219,9 +224,11 @@ class ConstrainedStepper final : public Stepper {
     }
 
   private:
+    /// Returns the part of a kick that is due, in steps.
     static double pending_in(Checkpoint const& c) {
         return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2));
     }
+    /// Draws the start velocities of chains with thermal start velocities.
     void draw_velocities(DynamicsSpec const& d) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             std::vector<bool> thermal;

@@ -1,4 +1,4 @@
-// One step of a scene's integrator over everything in the scene.
+// Stepper: one time step of a scene's integrator for all chains of the scene.
 #pragma once
 
 #include <memory>
@@ -11,68 +11,75 @@
 
 namespace catena {
 
-/// What an observer asks for beside positions and velocities; `energies`:
+/// Quantities that an observer needs besides positions and velocities. `energies`:
 /// ChainSystem::potential_energy().
 struct ObservedQuantities {
     bool joint_forces = false, energies = false;
 };
 
-/// Arrays of one number in checkpoints: the length of a step, the time at step 0 where it is not 0
-/// (of branches with another step), and the kick that is due, in steps, where it is no whole number
-/// of halves.
+/// Names of checkpoint arrays that hold one number. They are the length of a step, the time at step
+/// 0 if it is not 0 (branches with another step), and the kick that is due, in steps.
 inline constexpr char const *array_of_step = "step_length", *array_of_origin = "time_origin",
                             *array_of_kick = "pending_kick";
-/// The number in one of them, else `otherwise`.
+/// Returns the number in one of these arrays, or `otherwise` if it is missing.
 double number_in(Checkpoint const&, char const* array, double otherwise);
 
-/// One way to take a step. Between steps the state is that of a whole step.
+/// Advances a ChainSystem by time steps. Between steps the state is that of a whole step.
 class Stepper {
   public:
     virtual ~Stepper() = default;
-    /// Forces, matrices and whatever else is needed at the present step. Collective.
+    /// Computes forces, matrices and whatever else the present step needs. Collective.
     virtual void prepare(StepTimeline*) = 0;
-    /// Velocities as an observer sees them, and what else is asked for; after prepare().
-    /// Collective.
+    /// Computes the velocities that observers use, and the other requested quantities.
+    /// Precondition: prepare() was called. Collective.
     virtual void observe(ObservedQuantities const&) = 0;
+    /// Advances from step n to step n + 1. Precondition: prepare() was called. Collective.
     virtual void step(std::int64_t n, StepTimeline*) = 0;
+    /// Returns the largest relative constraint violation at the present state. Collective.
     virtual double constraint_error() = 0;
-    /// After step n: how far joints are open is noted where that costs next to nothing.
+    /// Records the constraint violation after step n, if that costs next to nothing.
     virtual void note_error(std::int64_t /*n*/) {}
-    /// constraint_error() at step n, after prepare(). Steps since the last call that left joints
-    /// open beyond the tolerance are taken again first, with further sweeps. Collective.
+    /// Returns constraint_error() at step n, after prepare(). Steps since the last call that left
+    /// joints open beyond the tolerance are first repeated with further sweeps. Collective.
     virtual double look(std::int64_t /*n*/) { return constraint_error(); }
-    /// After a prepare() at step n that failed on all ranks alike: takes steps since the last
-    /// look() that left joints open again, and prepares. False where there are none. Collective.
+    /// Repeats the steps since the last look() that left joints open, and prepares. To be called
+    /// after a prepare() at step n that failed on all ranks. Returns false if there are no such
+    /// steps. Collective.
     virtual bool mend(std::int64_t /*n*/) { return false; }
-    /// What there is to say of that in the end; empty: nothing.
+    /// Returns a sentence about repeated steps for the end of the run; empty if there were none.
     virtual std::string note_of_sweeps() const { return ""; }
-    /// One more projection sweep from now on where `watch` says that one is due and there is one to
-    /// add. Returns whether it was added.
+    /// Adds one projection sweep from now on if `watch` says that one is due and the limit is not
+    /// reached. Returns true if one was added.
     bool adapt(SweepWatch& watch, double error, double tolerance);
-    /// Of a drift; in joint coordinates corrections of jointed tips.
+    /// Projection sweeps per drift; in joint coordinates, corrections of jointed tips per step.
     virtual int sweeps() const = 0;
-    /// That every drift is taken in.
+    /// Number of parts that every drift is split into.
     virtual int parts() const { return 1; }
-    /// Of the last step, in joint coordinates.
+    /// Sweeps of the last step, in joint coordinates.
     virtual SweepsAStep solved() const { return {}; }
-    /// How many there were of an adaptive run; null of others.
+    /// Returns the counts and lengths of the inner steps of an adaptive run; null for other runs.
     virtual nlohmann::json inner_steps() const;
+    /// Saves what a restart needs besides the system's state.
     virtual void save(Checkpoint&) const = 0;
-    /// What is carried from step to step beside the system's own state.
+    /// Adds the accelerations that are carried from step to step besides the system's own state.
     virtual void save(ChainSystem::OwnState&) const {}
+    /// Restores what save() saved, after the system's state was set. Throws InputError. Collective.
     virtual void restore(Checkpoint const&) = 0;
+    /// Returns the number of sweeps per step, for the summary.
     virtual nlohmann::json describe() const = 0;
-    /// As restore(), for a run that goes on from there in another way: nothing of how the
-    /// checkpoint's run stepped is kept.
+    /// Restores as restore() does, for a run that continues with other settings: how the
+    /// checkpoint's run stepped is not kept.
     virtual void branch(Checkpoint const&) = 0;
 
   protected:
-    /// Of the tolerance: above that another sweep is due.
+    /// Fraction of the tolerance above which another sweep is due.
     virtual double early() const = 0;
-    /// False where there is none to add.
+    /// Adds a sweep. Returns false if the limit is reached.
     virtual bool add_sweep() = 0;
 };
 
+/// Makes the stepper for the integrator that `dynamics` names. Draws thermal start velocities of
+/// chains in absolute coordinates. Collective.
 std::unique_ptr<Stepper> make_stepper(ChainSystem&, DynamicsSpec const&);
 
 }  // namespace catena

@@ -1,5 +1,5 @@
-// When a run takes one sweep more to close its joints: their error grows and falls with the chains'
-// shape and speed.
+// SweepWatch: decides if a run needs another sweep to close its joints, whose violation varies with
+// the chains' shape and speed.
 #pragma once
 
 #include <algorithm>
@@ -8,22 +8,22 @@
 
 namespace catena {
 
-/// Looks at errors in turn. What rounding leaves, which grows with coordinates, no sweep lessens:
-/// one that was added in vain says where that is.
+/// Sees the violations one after the other. Rounding grows with coordinates, and no sweep reduces
+/// its contribution. A sweep that was added in vain reveals how large that contribution is.
 class SweepWatch {
   public:
-    /// Whether an error calls for another sweep: above `allowed`, a part of the `tolerance`, and
-    /// above rounding.
+    /// True if a violation calls for another sweep: it exceeds `allowed`, which is a fraction of
+    /// the `tolerance`, and rounding.
     bool is_due(double error, double allowed, double tolerance) {
         if (added_at_ > 0 && error > 0.5 * added_at_) in_vain_at_ = std::max(in_vain_at_, error);
         added_at_ = 0;
         return error > std::max({allowed, std::min(2 * in_vain_at_, 0.5 * tolerance),
                                  std::min(rounding_of_joints, 0.1 * tolerance)});
     }
-    /// There it was added.
+    /// Records the violation at which a sweep was added.
     void added(double error) { added_at_ = error; }
 
-    /// For checkpoints: a restart is to be the undisturbed run.
+    /// State for checkpoints: a restart must reproduce the undisturbed run.
     std::vector<double> state() const { return {added_at_, in_vain_at_}; }
     void set_state(std::vector<double> const& state) {
         if (state.size() != 2) throw std::invalid_argument("a sweep watch has two numbers");
@@ -31,7 +31,9 @@ class SweepWatch {
     }
 
   private:
-    static constexpr double rounding_of_joints = 1e-13;  // near the origin
+    // Violation due to rounding near the origin.
+    static constexpr double rounding_of_joints = 1e-13;
+    // violations at which a sweep was added last (0: none since), and in vain
     double added_at_ = 0, in_vain_at_ = 0;
 };
 

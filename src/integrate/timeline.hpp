@@ -1,4 +1,4 @@
-// When each phase of a step ran, and how much of the matrix sweep was hidden behind the forces.
+// StepTimeline: when each phase of one time step ran, for jobs/timeline.py and reports.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,12 @@
 
 namespace catena {
 
+/// One phase of a time step; `lane` is the row of the picture in which it is drawn.
 struct Phase {
     std::string name, lane;
-    double begin = 0, end = 0;  // seconds from the start of the step
+    double begin = 0, end = 0;  // seconds since the start of the step
 };
+/// All phases of one time step.
 struct StepTimeline {
     std::int64_t step = 0;
     std::vector<Phase> phases;

@@ -1,8 +1,10 @@
+// Velocity Verlet in joint coordinates, for accelerations that depend on velocities.
 #include "integrate/joint_integrators.hpp"
 
 namespace catena {
 namespace {
 
+/// JointIntegrator of make_velocity_verlet().
 class VelocityVerlet final : public JointIntegrator {
   public:
     explicit VelocityVerlet(ChainSystem& system) : system_(system) {}

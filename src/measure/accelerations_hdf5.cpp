@@ -1,4 +1,5 @@
-// `catena solve --accelerations FILE`: what the JSON holds, for any number of bodies.
+// `catena solve --accelerations FILE`: writes the numbers of the JSON output to HDF5, for any
+// number of bodies.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,7 @@ using namespace hdf5;
 
 std::string const writing = "write the accelerations";
 
+/// Writes the solution to `draft`; `file` is the name in messages.
 void write(std::string const& draft, std::string const& file, Solution const& s) {
     File handle(check(create_anew(draft, H5P_DEFAULT, H5P_DEFAULT), file, writing));
     Place const root{handle.get(), file, writing};

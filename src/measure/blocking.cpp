@@ -1,3 +1,4 @@
+// Means and standard errors by blocking.
 #include "measure/blocking.hpp"
 
 #include <algorithm>
@@ -7,8 +8,9 @@
 namespace catena {
 namespace {
 
-constexpr std::int64_t fewest_blocks = 16;  // whose scatter is known to a fifth
+constexpr std::int64_t fewest_blocks = 16;  // their scatter is known to a fifth
 
+/// Number of samples per copy.
 std::int64_t length_of(CopySeries const& series) {
     return series.empty() ? 0 : std::ssize(series.front());
 }
@@ -20,8 +22,9 @@ double mean_of(CopySeries const& series) {
     return sum / static_cast<double>(std::ssize(series) * length_of(series));
 }
 
-/// NaN where there are fewer than two blocks. What does not fill a block at a series' end is left
-/// out, and then counts as more of the same.
+/// Returns the standard error for one block length; NaN if there are fewer than two blocks. Samples
+/// at a series' end that do not fill a block are left out. They are then treated as statistically
+/// equal to the others.
 double error_with(CopySeries const& series, std::int64_t block, double mean) {
     std::int64_t const of_copy = length_of(series) / block;
     double sum = 0;

@@ -1,3 +1,4 @@
+// Size and configurational temperature of one bead chain.
 #include "measure/chain_sample.hpp"
 
 #include <cmath>
@@ -8,7 +9,7 @@
 namespace catena {
 namespace {
 
-/// T of n - 1 links of n beads: diagonal, and `beside[j]` = T_j-1,j (entry 0: none).
+/// Matrix T of the n - 1 links of n beads: diagonal, and `beside[j]` = T_j-1,j (entry 0: unused).
 struct Tridiagonal {
     std::vector<double> diagonal, beside;
 
@@ -19,13 +20,13 @@ struct Tridiagonal {
             if (j > 0) beside[j] = -dot(e[j - 1], e[j]) / mass[j];
         }
     }
-    /// Pivots of the elimination from the first link on.
+    /// Returns the pivots of the elimination from the first link on.
     std::vector<double> pivots() const {
         std::vector<double> p = diagonal;
         for (std::size_t j = 1; j < p.size(); ++j) p[j] -= beside[j] * beside[j] / p[j - 1];
         return p;
     }
-    /// (T^-1)_j-1,j, entry 0: none.
+    /// Returns (T^-1)_j-1,j; entry 0 is unused.
     std::vector<double> inverse_beside() const {
         std::vector<double> const p = pivots();
         std::vector<double> inverse(p.size());
@@ -39,9 +40,10 @@ struct Tridiagonal {
     }
 };
 
+/// Returns g_j of each bond, and a zero after the last one.
 std::vector<double> slopes(std::span<Vec3 const> e, std::span<double const> mass,
                            BondMeasure measure) {
-    std::vector<double> g(e.size() + 1, 0.0);  // one more, of no bond
+    std::vector<double> g(e.size() + 1, 0.0);  // one entry more than bonds
     if (measure == BondMeasure::flexible) return g;
     std::vector<double> const inverse = Tridiagonal(e, mass).inverse_beside();
     for (std::size_t j = 1; j < e.size(); ++j) g[j] = -inverse[j] / mass[j];

@@ -1,3 +1,4 @@
+// The chapter's pendulum on all backends, and times of single tree levels.
 #include "measure/chapter_runs.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace catena {
 namespace {
 
-/// A case made ready: it goes back to the pendulum at rest before every step.
+/// A case ready to be measured. Every step starts from the pendulum at rest.
 class Prepared {
   public:
     Prepared(FigureCase const& what, Handles handles, std::int64_t bodies, int threads,
@@ -29,7 +30,8 @@ class Prepared {
         start_ = system_.state();
     }
 
-    /// Once by the clock, and once more with its sweeps measured one by one.
+    /// Times one step as a whole, and another one with its sweeps measured separately. `counts`:
+    /// false during warm-up.
     void step(bool counts) {
         Communicator const& communicator = system_.communicator();
         double const seconds = seconds_of_step();
@@ -67,6 +69,7 @@ class Prepared {
     }
 
   private:
+    /// Returns the seconds of one step from the start.
     double seconds_of_step() {
         system_.set_state(start_);
         system_.wait();
@@ -94,7 +97,7 @@ class Prepared {
     std::vector<double> step_, solve_, upload_, download_, lower_, upper_;
 };
 
-/// The pendulum at rest, solved with the tree cut above one level.
+/// Solver for the pendulum at rest, with the tree cut above one level.
 class CutTree {
   public:
     CutTree(ChainGroup const& group, Scene const& scene, Executor const& executor,
@@ -104,6 +107,7 @@ class CutTree {
                                         dca::make_level_solver(group, communicator, {level, level},
                                                                lower, dca::host_levels(upper)))) {}
 
+    /// Does one evaluation; `counts`: false during warm-up.
     void evaluate(bool counts) {
         SplitSeconds const before = dynamics_->solver().report().split;
         dynamics_->update_configuration();
@@ -123,9 +127,9 @@ class CutTree {
     std::vector<SplitSeconds> spent_;
 };
 
-/// Median of what `more` spent in that part beyond `less`, evaluation by evaluation: they were
-/// taken one after the other. NaN where more than a quarter of the differences are not positive:
-/// noise is larger than what was to be measured.
+/// Returns the median of the difference in seconds between `more` and `less` in that part,
+/// evaluation by evaluation, since they ran alternately. NaN if more than a quarter of the
+/// differences are not positive: noise then exceeds the difference.
 double median_of_differences(CutTree const& more, CutTree const& less,
                              double SplitSeconds::* part) {
     std::vector<double> differences;
@@ -135,15 +139,17 @@ double median_of_differences(CutTree const& more, CutTree const& less,
     std::nth_element(differences.begin(), quarter, differences.end());
     return *quarter > 0 ? spread_of(differences).median : std::nan("");
 }
-/// Of the level between two cuts.
+/// Returns the seconds of the level between two cuts, as part of the lower levels.
 LevelSeconds as_lower(CutTree const& below, CutTree const& above) {
     return {median_of_differences(above, below, &SplitSeconds::lower_assembly),
             median_of_differences(above, below, &SplitSeconds::lower_disassembly)};
 }
+/// Returns the seconds of the level between two cuts, as part of the upper levels.
 LevelSeconds as_upper(CutTree const& below, CutTree const& above) {
     return {median_of_differences(below, above, &SplitSeconds::upper_assembly),
             median_of_differences(below, above, &SplitSeconds::upper_disassembly)};
 }
+/// Returns the median seconds of transfers per evaluation.
 double median_of_transfers(CutTree const& cut) {
     std::vector<double> transfers;
     for (SplitSeconds const& s : cut.spent()) transfers.push_back(s.transfers());
@@ -214,7 +220,8 @@ LevelStudy measure_levels(Handles handles, std::int64_t bodies, int threads, int
                many = openmp_is_built() ? openmp_executor(threads) : serial_executor();
     bool const gpu = cuda::why_not().empty() && cuda::choose_device(*communicator).empty();
     std::vector<std::int64_t> const merges = merges_of_levels(bodies);
-    std::vector<std::unique_ptr<CutTree>> host, device;  // by the number of levels below the cut
+    std::vector<std::unique_ptr<CutTree>> host,
+        device;  // indexed by the number of levels below the cut
     for (int level = 0; level <= static_cast<int>(merges.size()); ++level) {
         auto const cut = [&](dca::LevelPartMaker const& lower) {
             return std::make_unique<CutTree>(*groups[0], scene, *one, *communicator, level, lower,

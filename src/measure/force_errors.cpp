@@ -1,3 +1,4 @@
+// Errors and times of OpenMM's forces on all platforms.
 #include "measure/force_errors.hpp"
 
 #include <algorithm>
@@ -6,11 +7,13 @@
 namespace catena {
 namespace {
 
+/// A platform with a precision.
 struct Kind {
     std::string platform, precision;
 };
 
-/// The CPU platform computes pairs in single precision, OpenMM's own reference in double.
+/// Returns all kinds, Reference first. The CPU platform computes pairs in single precision,
+/// Reference in double precision.
 std::vector<Kind> kinds() {
     std::vector<Kind> all;
     for (std::string const& platform : openmm_platforms())
@@ -24,6 +27,7 @@ std::vector<Kind> kinds() {
     return all;
 }
 
+/// Returns the seconds per evaluation of the forces, after a warm-up of two evaluations.
 Spread seconds_of_forces(ChainSystem& system, int repeat) {
     std::vector<double> all;
     for (int i = 0; i < repeat + 2; ++i) {

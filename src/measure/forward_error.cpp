@@ -1,3 +1,4 @@
+// Estimates of the forward error by one more step of refinement.
 #include "measure/forward_error.hpp"
 
 #include <algorithm>
@@ -7,10 +8,12 @@
 namespace catena {
 namespace {
 
+// limit of automatic refinement steps
 constexpr int most_steps = 4;
 
 bool in_joint_coordinates(ChainSpec const& chain) { return chain.bodies.size() > 0; }
 
+/// Refines by one step and returns the relative change.
 double next_correction(ChainSystem& system) {
     system.refine();
     return system.correction();
@@ -28,7 +31,7 @@ ForwardError forward_error(ChainSystem& system, std::function<void()> const& loo
         system.scene().bodies() > most_estimated)
         return found;
     while (found.steps < most_steps && *found.estimate > refined_beyond) {
-        look();  // at what the step before left
+        look();  // called with the solution of the step before
         ++found.steps;
         double const before = *found.estimate;
         found.estimate = next_correction(system);

@@ -1,6 +1,6 @@
-// How far accelerations may be off, which a small residual does not say: where light bodies hang
-// between heavy ones, solutions of nearly the same equations differ. Estimated by what one more
-// step of refinement changes.
+// Estimates the forward error of accelerations, which a small residual does not bound: for light
+// bodies between heavy ones, solutions of nearly the same equations differ. The estimate is the
+// change due to one more step of refinement.
 #pragma once
 
 #include <functional>
@@ -10,37 +10,44 @@
 
 namespace catena {
 
-/// Of the largest acceleration. Beyond `largest_forward_error` an answer is not valid; beyond
-/// `refined_beyond` articulated handles, which promise more, are refined on their own.
+/// Limits of the error relative to the largest acceleration. Beyond `largest_forward_error` a
+/// result is not valid. Beyond `refined_beyond`, results of articulated handles, which promise
+/// more, are refined automatically.
 inline constexpr double largest_forward_error = 1e-6, refined_beyond = 1e-10;
-/// Bodies a rank up to which the error is estimated: of a solution, and of a run's start. Only
-/// scenes of no more bodies in all are refined unasked: whether they are must not depend on the
-/// number of ranks, as the bits do not.
+/// Largest number of bodies per rank for which the error is estimated, for one solution and for a
+/// run's start. Automatic refinement is limited to `most_estimated` bodies of the whole scene. It
+/// must not depend on the number of ranks, because results are bitwise independent of it.
 inline constexpr std::int64_t most_estimated = 2000000, most_estimated_of_run = 100000;
 
+/// Result of forward_error().
 struct ForwardError {
-    std::optional<double> estimate;  // none: of beads and linked bodies, which are not refined, and
-                                     // of very many bodies
-    int steps = 0;                   // of refinement beyond those that the scene asks for
+    /// Relative error. Absent for beads and linked bodies, which are not refined, and for very many
+    /// bodies.
+    std::optional<double> estimate;
+    /// Number of refinement steps beyond those that the scene asks for.
+    int steps = 0;
     bool is_small() const { return !estimate || *estimate <= largest_forward_error; }
 };
-/// Of what the system was evaluated and refined to last, at which `look` is called. Articulated
-/// handles are refined further while that helps, and `look` is called again. Afterwards the system
-/// holds one step more. Collective.
+/// Estimates the error of the system's last evaluation and refinement; `look` is called when the
+/// system holds that solution. With articulated handles it refines further as long as that helps,
+/// and calls `look` again for each new solution. Afterwards the system holds one refinement step
+/// more. Collective.
 ForwardError forward_error(ChainSystem&, std::function<void()> const& look);
 
-/// Of the accelerations in joint coordinates where a run of the scene starts, OpenMM's forces left
-/// out; none as above. Collective.
+/// Estimates the error of the accelerations in joint coordinates at the start of a run of the
+/// scene, without OpenMM's forces. Absent in the cases given above, and if the integrator has
+/// absolute coordinates. Collective.
 std::optional<double> forward_error_at_start(Scene const&, Communicator const&);
 
-/// Whether articulated handles hold all chains that are refined at all.
+/// True if articulated handles support all chains that are refined at all.
 bool takes_articulated_handles(Scene const&);
 
-/// What to write against a large error where `refine` steps were taken already; empty where nothing
-/// helps.
+/// Texts of the remedies: more refinement, and articulated handles.
 struct RefineHint {
     char const *refine, *handles;
 };
+/// Returns the text of the remedy for a large error; empty if nothing helps. `is_refined`: true if
+/// refinement is a remedy.
 std::string remedy_of_forward_error(Scene const&, bool is_refined, RefineHint const&);
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Reference accelerations and their sensitivity to rounding.
 #include "measure/growth.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 namespace catena {
 namespace {
 
-/// Far above the roundings of 64 bits, far below what would change the problem.
+/// Relative size of perturbations. It is far above the rounding of 64 bits and far below what would
+/// change the problem.
 constexpr double nudge = 0x1p-48;
 
 std::vector<double> joined(std::vector<double> a, std::vector<double> const& b) {
@@ -22,7 +24,7 @@ std::vector<double> joined(std::vector<double> a, std::vector<double> const& b) 
 ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::int64_t largest_quad,
                              int nudges) {
     bool const quad = scene.bodies() <= largest_quad;
-    std::future<std::vector<double>> widest;  // solutions go side by side
+    std::future<std::vector<double>> widest;  // solutions run concurrently
     if (quad)
         widest = std::async(std::launch::async, [&] {
             return oracle_accelerations<oracle::Quad>(scene, layout.bead_force);

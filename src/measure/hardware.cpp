@@ -1,3 +1,4 @@
+// Description of the machine and the compiler.
 #include "measure/hardware.hpp"
 
 #include <sys/utsname.h>
@@ -26,8 +27,8 @@ int processor_threads() { return static_cast<int>(std::thread::hardware_concurre
 int tasks_running() {
     std::array<int, 5> counts{};
     for (int& count : counts) {
-        std::ifstream file("/proc/loadavg");  // "0.20 0.18 0.12 1/80 11206": the fourth are tasks
-                                              // that run, and all
+        // "0.20 0.18 0.12 1/80 11206": the fourth field holds the running tasks and all tasks.
+        std::ifstream file("/proc/loadavg");
         std::string skipped;
         char slash = 0;
         int all = 0;

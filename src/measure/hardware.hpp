@@ -1,19 +1,21 @@
-// What a time was measured on.
+// Description of the machine and the compiler with which times were measured.
 #pragma once
 
 #include <string>
 
 namespace catena {
 
-/// As the system names it ("Intel(R) Xeon(R) Platinum 8480+"); "unknown" where it does not.
+/// Returns the processor's name from the system ("Intel(R) Xeon(R) Platinum 8480+"), else
+/// "unknown".
 std::string processor_name();
-/// Hardware threads that this process sees.
+/// Returns the number of hardware threads that this process sees.
 int processor_threads();
-/// Tasks of all programs that run or want to run on the machine's processors, this one included:
-/// the median over some milliseconds; 1 where the system does not say.
+/// Returns the number of tasks of all programs that run or are ready to run, this one included. It
+/// is the median over some milliseconds, and 1 if the system does not report it.
 int tasks_running();
-/// Compiler and version, and the instruction set this library was compiled for.
+/// Returns compiler and version, such as "gcc 13.2.0".
 std::string compiler_name();
+/// Returns the instruction set for which this library was compiled.
 std::string instruction_set();
 
 }  // namespace catena

@@ -1,3 +1,4 @@
+// Integration of a scene without output files.
 #include "measure/integration.hpp"
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double constraint_tolerance = 1e-13;
 
+/// Returns the scene with the study's integrator and step.
 Scene with(Scene scene, Stepping const& stepping) {
     DynamicsSpec& d = scene.dynamics;
     d.given = true;
@@ -18,7 +20,7 @@ Scene with(Scene scene, Stepping const& stepping) {
     d.friction = 0;
     d.constraint_tolerance = constraint_tolerance;
     if (!is_refined(d.integrator)) scene.solver.refine = 0;
-    // Which absolute coordinates and implicit joints have none of.
+    // Absolute coordinates and implicit joints do not support articulated handles.
     if (!uses_joint_coordinates(d.integrator) || is_implicit(d.integrator))
         if (scene.solver.handles == Handles::articulated) scene.solver.handles = Handles::projected;
     return scene;

@@ -1,3 +1,4 @@
+// Work-precision studies of the integrators.
 #include "measure/integrator_errors.hpp"
 
 #include <algorithm>
@@ -12,21 +13,24 @@
 namespace catena {
 namespace {
 
+// Number of energy samples per run, and k of the largest step, time / 2^k.
 constexpr int samples_of_energy = 32, coarsest = 3;
-constexpr double rounding = 1e-11;  // of positions after thousands of steps, relative
-constexpr double too_wide = 0.01;   // an error from which on steps are too wide to show an order
-constexpr double unstable = 4;  // times the reference's largest kinetic energy: twice its speeds
+constexpr double rounding = 1e-11;  // relative rounding of positions after thousands of steps
+constexpr double too_wide = 0.01;   // error above which steps are too large to show an order
+constexpr double unstable = 4;  // ratio to the reference's largest kinetic energy: twice its speeds
 
 constexpr double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
 
 int order_of(Integrator integrator) { return integrator == Integrator::rk4 ? 4 : 2; }
 
+/// Treatment of a scene's springs by implicit integrators: no springs, supported, not supported on
+/// a GPU, not supported because a joint's springs are uneven.
 enum class Springs { none, implicit, on_gpu, uneven };
 Springs springs_of(Scene const& scene) {
     bool any = false;
     DynamicsSpec some;
     some.integrator = Integrator::staggered;
-    some.step = 1;  // without dampers inertias are as unlike at any step
+    some.step = 1;  // arbitrary: without dampers the ratio of inertias does not depend on the step
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 0; k < chain.bodies.size(); ++k) {
             if (!scene::resists(chain.bodies, k)) continue;
@@ -38,6 +42,7 @@ Springs springs_of(Scene const& scene) {
     if (!any) return Springs::none;
     return uses_gpu(scene.solver.backend) ? Springs::on_gpu : Springs::implicit;
 }
+/// Returns why springs are treated by explicit integrators only.
 std::string why_explicit_alone(Springs springs) {
     if (springs == Springs::on_gpu) return "they work on the host";
     if (springs == Springs::uneven)
@@ -45,6 +50,7 @@ std::string why_explicit_alone(Springs springs) {
     return "";
 }
 
+/// Returns the integrators that support all chains, the reference's first.
 std::vector<Integrator> integrators_of(Scene const& scene) {
     bool joint = true, absolute = true;
     for (ChainSpec const& chain : scene.chains) {
@@ -60,18 +66,21 @@ std::vector<Integrator> integrators_of(Scene const& scene) {
     return all;
 }
 
+/// Returns the extent of a configuration: largest distance from the first body, or from the origin
+/// to the first body.
 double extent(std::vector<Vec3> const& positions) {
     double largest = 0;
     for (Vec3 const& x : positions) largest = std::max(largest, norm(x - positions.front()));
     return std::max(largest, norm(positions.front()));
 }
+/// Returns the largest distance between corresponding bodies, divided by the extent of `b`.
 double distance(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) largest = larger(largest, norm(a[i] - b[i]));
     return largest / extent(b);
 }
 
-/// What a run's energies say, looked at a few times.
+/// Energies of a run at a few samples, and its end.
 struct RunResult {
     double change = 0, kinetic = 0;  // the largest
     std::vector<Vec3> end;
@@ -92,7 +101,7 @@ RunResult result_of(Scene const& scene, Communicator const& communicator, Steppi
     return result;
 }
 
-/// Through logarithms, by least squares.
+/// Returns the slope of a line through the points' logarithms, by least squares.
 double slope_of(std::vector<std::pair<double, double>> const& points) {
     double x = 0, y = 0, xx = 0, xy = 0;
     auto const count = static_cast<double>(points.size());
@@ -101,7 +110,8 @@ double slope_of(std::vector<std::pair<double, double>> const& points) {
         xx += (std::log(a) - x) * (std::log(a) - x), xy += (std::log(a) - x) * (std::log(b) - y);
     return xy / xx;
 }
-/// Errors below `floor` are not the integrator's.
+/// Returns the order from the two finest steps with an error above `floor`; smaller errors are not
+/// the integrator's.
 std::optional<double> finest_slope(std::vector<IntegratorPoint> const& points, double floor) {
     for (std::size_t i = points.size(); i-- > 1;) {
         auto const &fine = points[i], &wide = points[i - 1];
@@ -110,6 +120,8 @@ std::optional<double> finest_slope(std::vector<IntegratorPoint> const& points, d
     }
     return std::nullopt;
 }
+/// Returns the order from all steps of at least `shortest` with an error between `floor` and
+/// `too_wide`.
 std::optional<double> slope_from(double shortest, std::vector<IntegratorPoint> const& points,
                                  double floor) {
     std::vector<std::pair<double, double>> errors;
@@ -119,8 +131,8 @@ std::optional<double> slope_from(double shortest, std::vector<IntegratorPoint> c
     return errors.size() < 2 ? std::nullopt : std::optional(slope_of(errors));
 }
 
-/// Joint torques and wrenches: what they do to the bodies is work, and the energy's change no
-/// error.
+/// True if joint torques or wrenches act on the chain. They do work, so that the change of energy
+/// is not an error.
 bool works_on_bodies(ChainSpec const& chain) {
     auto const is_zero = [](Vec3 const& v) { return norm(v) == 0; };
     auto const& [torque, wrench] = std::tie(chain.bodies.torque, chain.bodies.wrench);
@@ -129,7 +141,7 @@ bool works_on_bodies(ChainSpec const& chain) {
                         [&](auto const& w) { return is_zero(w.first) && is_zero(w.second); });
 }
 
-/// With the reference, and how it is done.
+/// The reference solution, and settings of the comparison.
 struct Comparison {
     Scene const& scene;
     Communicator const& communicator;
@@ -137,9 +149,10 @@ struct Comparison {
     int repeat;
     bool keeps_energy;
     std::vector<Vec3> end;
-    double kinetic;  // the largest
-    double floor;    // below it errors are not the integrator's
+    double kinetic;  // largest kinetic energy
+    double floor;    // smaller errors are not the integrator's
 };
+/// Runs one integrator with one step and compares it with the reference.
 IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::int64_t steps,
                          double tolerance = 0) {
     IntegratorPoint point;
@@ -170,6 +183,7 @@ IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::in
     }
     return point;
 }
+/// Runs one integrator with steps of time / 2^coarsest .. time / 2^last.
 IntegratorCurve curve_of(Comparison const& exact, Integrator integrator, int last) {
     IntegratorCurve curve;
     curve.name = name_of(integrator);
@@ -180,6 +194,7 @@ IntegratorCurve curve_of(Comparison const& exact, Integrator integrator, int las
     curve.slope = finest_slope(curve.points, exact.floor);
     return curve;
 }
+/// Runs dormand-prince with all tolerances.
 IntegratorCurve adaptive_curve(Comparison const& exact) {
     IntegratorCurve curve;
     curve.name = name_of(Integrator::dormand_prince);
@@ -192,7 +207,7 @@ IntegratorCurve adaptive_curve(Comparison const& exact) {
     }
     return curve;
 }
-/// From where on the explicit integrator that steps as this one is unstable.
+/// Returns the step from which on the explicit counterpart of an implicit integrator is unstable.
 double limit_beside(IntegratorCurve const& implicit, std::vector<IntegratorCurve> const& curves) {
     bool const joint = implicit.name == name_of(Integrator::staggered);
     std::string const counterpart =
@@ -272,8 +287,9 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     std::vector<Integrator> const integrators = integrators_of(scene);
     bool const springs = springs_of(scene) != Springs::none;
     if (springs) finest += 2;
-    // Of second order sixteen times finer than the finest: 1/256 of that one's error, or rounding.
-    // Of fifth order as fine; where springs may be stiff for that, four times finer.
+    // A reference of second order has steps sixteen times finer than the finest: 1/256 of its
+    // error, or rounding. A reference of fifth order has the finest step, or a quarter of it if
+    // springs may be stiff.
     Integrator const judge = integrators.front();
     bool const joint = uses_joint_coordinates(judge);
     if (joint) study.refine = scene.solver.refine;
@@ -309,7 +325,8 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
         curve.too_stiff = springs && curve.scheme == Scheme::explicit_steps && stable < 2;
         study.curves.push_back(curve);
     }
-    // Last, so that pictures without it have the others in the same colours.
+    // The reference's curve is the last, so that pictures without it have the others in the same
+    // colours.
     if (joint) std::rotate(study.curves.begin(), study.curves.begin() + 1, study.curves.end());
     for (IntegratorCurve& curve : study.curves) {
         double const limit =
@@ -322,7 +339,7 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
 
 DriftStudy study_drift(Scene const& scene, Communicator const& communicator, Integrator integrator,
                        double step, std::int64_t steps) {
-    constexpr int blocks = 50, samples = 200;  // samples: of a block
+    constexpr int blocks = 50, samples = 200;  // samples per block
     std::int64_t const each = std::max<std::int64_t>(1, steps / (blocks * samples));
     Trajectory trajectory(scene, communicator, {integrator, step});
     std::vector<double> mean(blocks, 0.0);

@@ -1,6 +1,6 @@
-// Work-precision of the integrators: how far a scene's bodies are from where they belong after a
-// fixed time, and how well energy is kept, over the step or the tolerance; and whether energy
-// drifts over many steps.
+// Work-precision studies of the integrators. One compares positions after a fixed time and energy
+// conservation for different steps or tolerances. The other looks for a drift of energy over many
+// steps.
 #pragma once
 
 #include <optional>
@@ -11,77 +11,95 @@
 
 namespace catena {
 
+/// One integrator with one step or tolerance.
 struct IntegratorPoint {
-    double step = 0;   // adaptive: at whose multiples the run stops over
-    double error = 0;  // largest difference of a centre of mass (bead) at the end, over the scene's
-                       // extent there
-    std::optional<double>
-        energy_error;  // largest |E - E(0)| at the samples, over the largest kinetic energy there
-    Spread seconds;    // of the whole time
-    std::string no_error;  // why there is none to speak of: "unstable", "came to no end"; empty:
-                           // there is one
-    // Of an adaptive run.
+    double step = 0;  // time step; adaptive: interval at whose multiples inner steps end
+    /// Largest difference of a centre of mass (bead) at the end, divided by the scene's extent
+    /// there.
+    double error = 0;
+    /// Largest |E - E(0)| of the samples, divided by the largest kinetic energy of the run.
+    std::optional<double> energy_error;
+    Spread seconds;  // time of the run, s
+    /// Reason why no error could be computed: "unstable" or "came to no end"; empty if one could.
+    std::string no_error;
+    // Members of adaptive runs.
     double tolerance = 0;
     std::int64_t taken = 0, rejected = 0;  // inner steps
-    double allowed = 0;                    // error; see study_integrator_errors()
+    /// Largest error allowed; see study_integrator_errors().
+    double allowed = 0;
 };
+/// Kind of an integrator's time steps.
 enum class Scheme { explicit_steps, implicit_springs, adaptive };
+/// Error over step (or tolerance) of one integrator.
 struct IntegratorCurve {
     std::string name;
-    int order = 0;  // nominal; 0: adaptive
+    int order = 0;  // nominal order; 0: adaptive
     std::vector<IntegratorPoint> points;
-    /// Of the two finest steps whose errors stand well above the reference's own and rounding;
-    /// nothing where there are none.
+    /// Order found from the two finest steps whose errors are well above rounding and the
+    /// reference's own error. Absent if there are no such steps.
     std::optional<double> slope;
-    bool exact =
-        false;  // all errors are roundings, and so is the reference's: there is no order to see
+    /// True if all errors are rounding, and so is the reference's: no order can be found.
+    bool exact = false;
     Scheme scheme = Scheme::explicit_steps;
-    /// Of an implicit one: of a line through errors below a hundredth at all steps at which its
-    /// explicit counterpart has no error to speak of.
+    /// Order of an implicit integrator at large steps: the slope of a line through errors below a
+    /// hundredth, at all steps at which its explicit counterpart is unstable.
     std::optional<double> slope_beyond;
-    bool slow = false;       // and that is to be the order, too
-    bool too_stiff = false;  // springs leave an explicit one fewer than two of the steps
+    /// True if slope_beyond must be the nominal order, too.
+    bool slow = false;
+    /// True if springs leave an explicit integrator fewer than two stable steps.
+    bool too_stiff = false;
 
+    /// True if the order, or each error of an adaptive integrator, is as promised.
     bool as_promised() const;
-    /// The shortest step without an error to speak of; 0: all have one.
+    /// Returns the shortest step at which the integrator was unstable or failed; 0 if there is
+    /// none.
     double unstable_from() const;
 };
+/// Result of study_integrator_errors().
 struct IntegratorStudy {
     std::string title, reference;
     std::int64_t bodies = 0;
+    // length of the run
     double time = 0;
-    double reference_error = 0;   // how far the reference is from itself at twice its step
-    std::string no_energy_error;  // why the energy's change is no error; empty: it is one
-    std::string no_implicit;  // why joints have springs and no integrator takes them implicitly;
-                              // empty: none has, or some do
-    int refine = 0;           // solver.refine, of those integrators whose solutions are refined
+    /// Difference between the reference and itself at twice its step.
+    double reference_error = 0;
+    /// Reason why the energy's change is no error; empty if it is one.
+    std::string no_energy_error;
+    /// Reason why no integrator treats existing springs implicitly; empty if there are no springs
+    /// or some integrator does.
+    std::string no_implicit;
+    /// solver.refine of the integrators whose solutions are refined.
+    int refine = 0;
     std::vector<IntegratorCurve> curves;
+    /// True if all curves are as promised and all errors are finite.
     bool valid() const;
+    /// True if the study has an implicit integrator.
     bool has_implicit() const;
 };
 
-/// Empty where the study can be made; else why not: OpenMM, a thermal start, dampers, drag, driven
-/// joints, or no integrator for all chains.
+/// Returns why the study cannot be made; empty if it can. Reasons are OpenMM, a thermal start,
+/// dampers, drag, driven joints, or no integrator for all chains.
 std::string why_integrators_cannot_be_compared(Scene const&);
 
-/// Every deterministic integrator of second or fourth order that the scene's chains have, g-baoab
-/// at zero friction included, over `time`: steps of time / 2^k, finest for those of second order
-/// `finest`. Where joints have springs also those that take them implicitly, and steps down to a
-/// quarter of that, for the explicit ones to be stable at some.
+/// Compares every deterministic integrator of second or fourth order that supports the scene's
+/// chains, including g-baoab at zero friction.
+/// `time`: length of the run. Steps are time / 2^k; `finest` is the largest k for second order. If
+/// joints have springs, integrators that treat them implicitly are included. Steps are then refined
+/// by another factor of four, so that explicit integrators are stable at some of them.
 ///
-/// dormand-prince over tolerances: its error is allowed to be the tolerance times the inner steps,
-/// each of which may add that much.
+/// dormand-prince is run with several tolerances. Its error may be the tolerance times the number
+/// of inner steps, because each may contribute that much.
 ///
-/// `slow`: springs hardly vibrate in this scene, so that implicit integrators are of second order
-/// wherever steps resolve the slow motion.
+/// `slow`: true if springs hardly vibrate in this scene. Implicit integrators must then have second
+/// order at all steps that resolve the slow motion.
 ///
-/// The reference is dormand-prince in equal steps where the chains have it, else rattle, at far
-/// smaller ones.
+/// The reference is dormand-prince in equal steps if it supports the chains, else rattle, with far
+/// smaller steps. `repeat`: timed runs per point. Collective.
 IntegratorStudy study_integrator_errors(Scene const&, Communicator const&, double time, int finest,
                                         int repeat, bool slow = false);
 
-/// Of a scene whose energy is kept. The energy's trend over many steps: the slope of a straight
-/// line through means over blocks of them, and its standard error.
+/// Drift of energy of a scene that conserves it: the slope of a straight line through block means
+/// of the energy, and the slope's standard error.
 struct DriftStudy {
     std::string title, name;
     double step = 0;
@@ -89,10 +107,10 @@ struct DriftStudy {
     double kinetic_energy = 0;          // mean
     double scatter = 0;                 // standard deviation of the energy about its mean
     double slope = 0, slope_error = 0;  // per unit of time
-    bool valid() const {
-        return slope * slope <= 16 * slope_error * slope_error;
-    }  // four standard errors
+    /// True if the slope is within four standard errors of zero.
+    bool valid() const { return slope * slope <= 16 * slope_error * slope_error; }
 };
+/// Runs the scene for `steps` time steps and fits the drift. Collective.
 DriftStudy study_drift(Scene const&, Communicator const&, Integrator, double step,
                        std::int64_t steps);
 

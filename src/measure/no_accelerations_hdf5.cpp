@@ -1,4 +1,4 @@
-// In the place of accelerations_hdf5.cpp in a build without HDF5.
+// Stub for accelerations_hdf5.cpp in a build without HDF5.
 #include "error.hpp"
 #include "measure/solution.hpp"
 

@@ -1,3 +1,4 @@
+// Perturbation of chains and of their equations.
 #include "measure/nudged.hpp"
 
 #include <cmath>
@@ -10,7 +11,7 @@ namespace {
 
 using Exact = oracle::OracleResult<long double>;
 
-/// Moves numbers by up to `size` of themselves.
+/// Changes numbers by random factors of 1 - size .. 1 + size, and rotations by random angles.
 class Perturbation {
   public:
     Perturbation(std::uint64_t seed, double size) : draws_(seed, 0), size_(size) {}
@@ -42,6 +43,7 @@ class Perturbation {
 struct Wrench {
     Vec3 torque, force;
 };
+/// Returns the wrench in double precision.
 Wrench in_double(oracle::SpatialForce<long double> const& f) {
     Wrench w;
     for (int i = 0; i < 3; ++i)
@@ -50,12 +52,13 @@ Wrench in_double(oracle::SpatialForce<long double> const& f) {
     return w;
 }
 
-/// Sums of the sizes of what acts on a body, and of what that adds to the accelerations of its
-/// handles.
+/// Sums of the magnitudes of the forces and moments on a body, and of the accelerations that they
+/// add at its handles.
 struct Terms {
     double force = 0, moment = 0, linear1 = 0, linear2 = 0, angular = 0;
 };
 
+/// Returns the terms of body k.
 Terms terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at, Exact const& exact,
                std::size_t k) {
     BodyArrays const& b = chain.bodies;
@@ -80,8 +83,8 @@ Terms terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at, Exa
     return t;
 }
 
-/// Of the forces on each bead, and of what they and the links add to the accelerations of a link's
-/// ends.
+/// Perturbs the force on each bead, and the closing of each link by a fraction of what forces and
+/// links add to the accelerations of its ends.
 void nudge_beads(Nudged& n, Exact const& exact, scene::Draws draws, double size) {
     std::size_t const beads = n.chain.size();
     n.loads.bead_forces.resize(beads, Vec3::zero());
@@ -101,6 +104,7 @@ void nudge_beads(Nudged& n, Exact const& exact, scene::Draws draws, double size)
     if (n.chain.tip == Tip::jointed) n.loads.link_gaps.back() = draws.between(-size, size) * before;
 }
 
+/// Perturbs the wrench on each body and the closing of each joint.
 void nudge_bodies(Nudged& n, ChainSpec const& chain, oracle::Loads const& loads, Exact const& exact,
                   scene::Draws draws, double size) {
     BodyArrays& b = n.chain.bodies;

@@ -1,25 +1,27 @@
-// What roundings do to a chain: every number of it, and every equation that the local residual
-// looks at, moved by a little.
+// Perturbation of a chain as by rounding: every number of it, and every equation that the local
+// residual measures, is changed slightly.
 #pragma once
 
 #include "oracle/oracle.hpp"
 
 namespace catena {
 
-/// The chain with every number moved by up to `size` of itself (rotations by angles up to `size`).
-/// What the accelerations change by, over `size`, is the problem's own growth of errors: no solver
-/// can be asked for less than growth x eps.
+/// Returns the chain with every number changed by up to `size` of itself (rotations by angles up to
+/// `size`). The resulting change of the accelerations, divided by `size`, is the problem's own
+/// growth of errors. No solver can reach an error below growth x eps.
 ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size);
 
+/// A perturbed chain with perturbed loads.
 struct Nudged {
     ChainSpec chain;
     oracle::Loads loads;
 };
-/// The chain's numbers move by up to `size` of themselves; of beads and of bodies on joints also
-/// the balance of each by up to `size` of the forces and moments on it, and the closing of every
-/// joint by up to `size` of what those add to the accelerations there. A solver whose local
-/// residual is r has solved such a chain of size r exactly: r times the growth of its answers, per
-/// `size`, is the error to expect.
+/// Perturbs the chain's numbers by up to `size` of themselves.
+/// For beads and bodies on joints, it also perturbs the balance of forces of each by up to `size`
+/// of the forces and moments on it. The closing of every joint is perturbed by up to `size` of what
+/// those add to the accelerations there.
+/// A solver whose local residual is r has solved exactly such a chain of size r. The error to
+/// expect is r times the change of the accelerations per `size`.
 Nudged nudged(std::uint64_t seed, ChainSpec const&, oracle::Loads const&,
               oracle::OracleResult<long double> const& exact, double size);
 

@@ -1,3 +1,4 @@
+// Operation counts of leaves, assembly and disassembly.
 #include "measure/operation_counts.hpp"
 
 #include "dca/leaf.hpp"
@@ -9,6 +10,7 @@ using namespace dca;
 using Vector3 = Vector<Counted, 3>;
 using Matrix3 = Matrix<Counted, 3, 3>;
 
+/// Returns the operations of `action`.
 template <class Action>
 Operations count(Action const& action) {
     Counted::done() = {};
@@ -16,13 +18,14 @@ Operations count(Action const& action) {
     return Counted::done();
 }
 
-/// Results leave through here, so that nothing is left out as unused.
+/// Stores results here, so that the compiler does not remove their computation.
 template <class T>
 void keep(T const& value) {
     static thread_local T kept;
     kept = value;
 }
 
+/// Counts a merge of two segments with K directions.
 template <int K>
 void count_merges(HandleOperations& h) {
     h.directions = K;
@@ -36,7 +39,8 @@ void count_merges(HandleOperations& h) {
     h.disassembly = count([&] { keep(disassemble(joint, offset, b.b1, b.b2)); });
 }
 
-/// As BodyLeaf with JointFrameHandles (dca/body_leaf.hpp) calls them.
+/// Counts the operations of a rigid body, with the calls of BodyLeaf with JointFrameHandles
+/// (dca/body_leaf.hpp).
 template <int K, bool sliding>
 HandleOperations count_bodies() {
     HandleOperations h;
@@ -75,7 +79,7 @@ HandleOperations count_bodies() {
     return h;
 }
 
-/// As BeadLeaf.
+/// Counts the operations of a bead, with the calls of BeadLeaf.
 template <int K>
 HandleOperations count_beads() {
     HandleOperations h;

@@ -1,4 +1,5 @@
-// How many operations the solver's own functions need: they run with a scalar that counts.
+// Numbers of floating-point operations of the solver's own functions, which run with a scalar that
+// counts.
 #pragma once
 
 #include <cmath>
@@ -8,21 +9,23 @@
 
 namespace catena {
 
+/// Numbers of operations by kind.
 struct Operations {
-    std::int64_t additions = 0, multiplications = 0, fused = 0, divisions = 0,
-                 square_roots = 0;  // a change of sign is none
+    /// Changes of sign are not counted.
+    std::int64_t additions = 0, multiplications = 0, fused = 0, divisions = 0, square_roots = 0;
     /// A fused multiplication and addition counts as two.
     std::int64_t sum() const {
         return additions + multiplications + 2 * fused + divisions + square_roots;
     }
 };
 
-/// A double that counts what is done to it, on this thread.
+/// A double that counts the operations done with it, in a counter of this thread.
 class Counted {
   public:
     Counted() = default;
     explicit Counted(double value) : value_(value) {}
     double value() const { return value_; }
+    /// Returns the counter of this thread, which the caller may reset.
     static Operations& done() {
         static thread_local Operations operations;
         return operations;
@@ -51,23 +54,26 @@ class Counted {
     double value_ = 0;
 };
 
-/// Of one body or one joint, in the functions as they stand.
+/// Operations for one body or one joint with one kind of handles, in the functions as written.
 struct HandleOperations {
+    // directions per handle
     int directions = 0;
-    Operations leaf_matrices, leaf_biases,
-        leaf_accelerations;  // the first two: of a body's two handles
+    /// Operations of a leaf; the first two include both handles of a body.
+    Operations leaf_matrices, leaf_biases, leaf_accelerations;
+    // operations per merge of two segments
     Operations assembly_matrices, assembly_biases, disassembly;
     std::int64_t assembly() const { return assembly_matrices.sum() + assembly_biases.sum(); }
     std::int64_t leaf() const {
         return leaf_matrices.sum() + leaf_biases.sum() + leaf_accelerations.sum();
     }
 };
+/// Operations for one joint type.
 struct JointOperations {
     std::string joint;
     HandleOperations projected, full;
 };
-/// Every joint type: link (point beads), planar, spherical, universal, revolute, sliding
-/// (prismatic, helical), weld.
+/// Counts the operations for every joint type: link (point beads), planar, spherical, universal,
+/// revolute, sliding (prismatic, helical), weld.
 std::vector<JointOperations> count_operations();
 
 }  // namespace catena

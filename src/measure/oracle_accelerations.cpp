@@ -1,3 +1,4 @@
+// Accelerations of a scene by the articulated-body oracles.
 #include "measure/oracle_accelerations.hpp"
 
 #include <algorithm>

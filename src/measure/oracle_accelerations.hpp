@@ -1,5 +1,5 @@
-// What the oracles say of a scene, laid out as a Solution, so that both can be compared number by
-// number.
+// Accelerations of a scene by the oracles, in the layout of a Solution, so that both can be
+// compared number by number.
 #pragma once
 
 #include "measure/solution.hpp"
@@ -7,15 +7,16 @@
 
 namespace catena {
 
-/// What acts on chain `chain` of the scene. `bead_force`: OpenMM's, of all beads; empty: none.
+/// Returns the loads on chain `chain` of the scene. `bead_force`: OpenMM's forces on all beads;
+/// empty if there are none.
 oracle::Loads oracle_loads(Scene const&, std::size_t chain, std::vector<Vec3> const& bead_force);
 
-/// Joint accelerations of one chain.
+/// Returns the joint accelerations of one chain, in the layout of Solution::acceleration.
 template <class Scalar>
 std::vector<double> joint_accelerations(ChainSpec const&, oracle::OracleResult<Scalar> const&);
 
-/// Joint accelerations of all chains by articulated bodies, in the layout of
-/// Solution::acceleration.
+/// Returns the joint accelerations of all chains by the articulated-body algorithm, in the layout
+/// of Solution::acceleration.
 template <class Scalar>
 std::vector<double> oracle_accelerations(Scene const&, std::vector<Vec3> const& bead_force);
 

@@ -1,3 +1,4 @@
+// Results of an evaluation in the layout that users get.
 #include "measure/solution.hpp"
 
 #include <algorithm>
@@ -12,13 +13,15 @@ void append(std::vector<double>& list, Vec3 const& v) {
     list.insert(list.end(), v.data, v.data + 3);
 }
 
-/// Of handle 1 of the link on the inboard side of body k.
+/// Returns the outboard end of the link on the inboard side of body k, W. `body`: index of body k
+/// in the scene.
 Vec3 link_end(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
               std::size_t body) {
     return chain.is_linked()
                ? at.position[body] + to_matrix(at.orientation[body]) * chain.linked.inboard[k]
                : at.position[body];
 }
+/// Returns the inboard end of that link, W.
 Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
                 std::size_t body) {
     if (k == 0) return chain.is_linked() ? chain.linked.anchor : chain.beads.anchor;
@@ -27,7 +30,7 @@ Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot con
                              : at.position[body - 1];
 }
 
-/// The force along link k is -tension towards the outboard bead.
+/// Returns the tension of link k. The force along the link is -tension towards the outboard bead.
 double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
                std::size_t body, Vector<double, 6> const& wrench) {
     if (k == 0 && chain.base == Base::free) return 0.0;

@@ -1,5 +1,5 @@
-// Accelerations and joint forces as the contract names them, body by body in the order of the
-// scene.
+// Solution: accelerations and joint forces in the layout that users get (inputs/keys/output.md),
+// body by body in scene order.
 #pragma once
 
 #include <cstdint>
@@ -10,43 +10,50 @@
 
 namespace catena {
 
-/// On rank 0; empty on the others. Body b's numbers are entries [offset[b], offset[b + 1]).
+/// Results of one evaluation on rank 0; empty on other ranks. Body b owns entries [offset[b],
+/// offset[b + 1]).
 struct Solution {
-    /// Second derivatives of the joint's coordinates (universal 2, weld none); spherical:
-    /// derivative of the components of qd (B); free: {alpha (B), acceleration of the origin (W)};
-    /// link: the bead's acceleration (W), a rigid body's {alpha (B), of its centre of mass (W)}.
+    /// Joint accelerations. They are the second derivatives of the joint's coordinates (universal
+    /// 2, weld none).
+    /// Spherical: derivative of the components of qd (body axes). Free: {alpha (body axes),
+    /// acceleration of the origin (W)}. Link: the bead's acceleration (W), or a rigid body's {alpha
+    /// (body axes), acceleration of its centre of mass (W)}.
     std::vector<double> acceleration;
+    // first entry of each body, then the number of entries
     std::vector<std::int64_t> acceleration_offset;
-    /// Constraint wrench [torque, force] on body b at its inboard joint (W); link: its tension,
-    /// positive when it pulls its ends together (0 where bead 1 of a free chain has none).
+    /// Constraint wrench [torque, force] on body b at its inboard joint (W). Link: its tension,
+    /// positive if it pulls its ends together (0 for bead 1 of a free chain, which has no link).
     std::vector<double> joint_force;
+    // first entry of each body, then the number of entries
     std::vector<std::int64_t> force_offset;
-    std::vector<TipForce> tip_force;      // one a chain whose tip is jointed, in scene order
-    std::vector<Vec3> bead_acceleration;  // of the beads alone, W
-    std::vector<Vec3> bead_force;         // OpenMM's on the beads, W; empty without OpenMM
+    std::vector<TipForce> tip_force;      // one per chain with a jointed tip, in scene order
+    std::vector<Vec3> bead_acceleration;  // accelerations of all beads of bead chains, W
+    std::vector<Vec3> bead_force;         // OpenMM's forces on the beads, W; empty without OpenMM
 };
 
-/// Of the last evaluate(). Collective.
+/// Returns the results of the last evaluate(). Collective.
 Solution solution_of(ChainSystem&);
-/// Its acceleration_offset alone.
+/// Returns a Solution with acceleration_offset alone.
 Solution layout_of(Scene const&);
 
-/// Smallest handle kind that holds the chain.
+/// Returns the name of the smallest handle kind that the chain needs.
 char const* kind_of(ChainSpec const&);
-/// Numbers in the acceleration of body k: as many as its inboard joint has coordinates; 3 of a
-/// bead; 6 of a free or linked rigid body.
+/// Returns how many numbers the acceleration of body k has. It is the number of coordinates of the
+/// inboard joint, 3 for a bead, and 6 for a free or linked rigid body.
 int accelerations_of(ChainSpec const&, std::size_t k);
 
-/// Writes /accelerations, /joint_forces (both flat), /offsets ([bodies + 1][2]: where a body's
-/// numbers begin in the one and the other), /tip_forces ([tips][6]) and /tip_chains ([tips], from
-/// 0). Throws ComputationError naming file and cause. The first of the two tells beforehand, by
-/// InputError, what is no regular file, and "built without HDF5" where it is absent.
+/// Throws InputError if `file` exists and is not a regular file, or "built without HDF5" in a build
+/// without it.
 void require_accelerations_writer(std::string const& file);
+/// Writes /accelerations and /joint_forces (both flat), /offsets ([bodies + 1][2], first entry of
+/// each body in either array), /tip_forces ([tips][6]) and /tip_chains ([tips], from 0). Throws as
+/// require_accelerations_writer() does, and ComputationError that names file and cause.
 void write_accelerations(std::string const& file, Solution const&);
 
-/// Largest difference of the joint accelerations from the reference, relative to the largest of the
-/// reference: taken for joints' angular accelerations, linear accelerations of free bases and
-/// accelerations of beads one by one, the worst of them. Equal layouts are a precondition.
+/// Returns the largest difference of the joint accelerations from the reference, relative to the
+/// reference's largest. Angular accelerations of joints, those of prismatic joints, linear
+/// accelerations of free bases and accelerations of beads are compared class by class. The result
+/// is the largest of the classes. Precondition: both layouts are equal.
 double largest_difference(Scene const&, Solution const& found,
                           std::vector<double> const& reference);
 

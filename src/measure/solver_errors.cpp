@@ -1,3 +1,4 @@
+// Work-precision study of the solver.
 #include "measure/solver_errors.hpp"
 
 #include <algorithm>
@@ -12,14 +13,15 @@
 namespace catena {
 namespace {
 
+/// True if all values are finite.
 bool finite(std::vector<double> const& values) {
     double sum = 0;
     for (double const v : values) sum += 0.0 * v;
     return sum == 0;
 }
 
-/// The reference of a scene, made when the first point is known: OpenMM's forces are taken from
-/// there.
+/// Reference accelerations of a scene. They are computed after the first point, which supplies
+/// OpenMM's forces.
 struct Reference {
     std::vector<double> acceleration;
     void make(SolverStudy& study, Scene const& scene, Solution const& first, int repeat) {
@@ -40,6 +42,7 @@ struct Reference {
     }
 };
 
+/// Returns the largest condition number of a chain; absent if no chain has a joint.
 std::optional<double> largest_condition_number(Scene const& scene) {
     std::optional<double> largest;
     for (ChainSpec const& chain : scene.chains) {
@@ -49,6 +52,7 @@ std::optional<double> largest_condition_number(Scene const& scene) {
     return largest;
 }
 
+/// Returns the handle kinds of all chains, joined by "+".
 std::string kinds_of(Scene const& scene) {
     std::set<std::string> kinds;
     for (ChainSpec const& chain : scene.chains) kinds.insert(kind_of(chain));
@@ -87,7 +91,7 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
             Scene variant = scene;
             variant.solver.backend = backend;
             variant.solver.handles = kind;
-            variant.dynamics.fixman = false;  // whose forces the oracles do not know
+            variant.dynamics.fixman = false;  // the oracles do not know its forces
             ChainSystem system(variant, Axes::joint, communicator);
             SolverPoint point{
                 name_of(backend), name_of(kind), system.executor().threads(), 0, 0, 0, {}, false};

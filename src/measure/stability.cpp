@@ -1,3 +1,4 @@
+// Stability study of all backends on difficult chains.
 #include "measure/stability.hpp"
 
 #include <algorithm>
@@ -16,11 +17,13 @@
 namespace catena {
 namespace {
 
+// bodies up to which the reference has 113 bits, and above which the growth has one perturbation
 constexpr std::int64_t largest_quad_here = 5000;
 constexpr std::int64_t few_nudges_above = 100000;
 constexpr int refinements = 2, most_refinements = 10;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+/// Returns the median; NaN if a value is NaN.
 double median(std::vector<double> const& values) {
     auto const number = [](double v) { return v == v; };
     return std::all_of(values.begin(), values.end(), number)
@@ -28,19 +31,20 @@ double median(std::vector<double> const& values) {
                : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// One way to solve, over the seeds.
+/// Results of one backend with one kind of handles, over the seeds.
 struct Variant {
     struct Errors {
         std::vector<double> residual, error, cost;
     };
     SolverSpec solver;
-    std::array<Errors, refinements + 1> after;  // so many steps of refinement
-    Errors settled;                             // as many as help
-    int steps = 0;                              // of these, the most
+    std::array<Errors, refinements + 1> after;  // indexed by the number of refinement steps
+    Errors settled;                             // after as many steps as help
+    int steps = 0;                              // number of these steps, largest over the seeds
     std::vector<double> residual_bound, bound;
     std::string refused;
 };
 
+/// Returns all combinations that support the chain.
 std::vector<Variant> variants_of(ChainSpec const& chain, std::vector<Backend> const& backends,
                                  std::vector<Handles> const& handles) {
     std::vector<Variant> all;
@@ -62,12 +66,13 @@ double seconds_of(Action const& action) {
     return seconds_now() - start;
 }
 
+/// Solves one seed's scene and adds the errors to the variant.
 void add(Variant& to, Scene& scene, ExactSolution const& exact) {
     auto const communicator = serial_communicator();
     scene.solver = to.solver;
     try {
         ChainSystem system(scene, Axes::joint, *communicator);
-        system.evaluate();  // the first one finds its memory
+        system.evaluate();  // allocates memory
         double const evaluation = seconds_of([&] {
             system.evaluate();
             system.wait();
@@ -94,7 +99,7 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
              ++steps) {
             settled.cost.push_back(refine());
             before = std::exchange(error, look(settled));
-            if (error <= before) continue;  // as often as helps, by the known answer
+            if (error <= before) continue;  // the known answer tells if the step helped
             settled.residual.pop_back();
             error = before;
         }
@@ -108,12 +113,14 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
     }
 }
 
+/// Returns the largest ratio of a value to its bound.
 double largest_ratio(std::vector<double> const& values, std::vector<double> const& bounds) {
     double worst = 0;
     for (std::size_t i = 0; i < values.size(); ++i) worst = larger(worst, values[i] / bounds[i]);
     return worst;
 }
 
+/// Summarises a variant over its seeds.
 StabilityPoint point_of(Variant const& v) {
     Variant::Errors const& plain = v.after.front();
     StabilityPoint point{name_of(v.solver.backend),
@@ -136,12 +143,13 @@ StabilityPoint point_of(Variant const& v) {
     return point;
 }
 
-/// One peer, over the seeds.
+/// Results of one peer, over the seeds.
 struct PeerErrors {
     std::string name, why_not;
     std::vector<double> error;
 };
 
+/// Adds a peer's answer for one seed.
 void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution layout,
          ExactSolution const& exact) {
     to.name = answer.name;
@@ -158,7 +166,7 @@ StabilityPeer peer_of(PeerErrors const& p) {
     return {p.name, p.why_not.empty() ? median(p.error) : infinite, p.why_not};
 }
 
-/// A case with one seed, its answer and what articulated bodies in double find.
+/// A case with one seed, its reference and the error of articulated bodies in double precision.
 struct KnownCase {
     Scene scene;
     Solution layout;
@@ -166,6 +174,7 @@ struct KnownCase {
     double error_in_double = infinite;
 };
 
+/// Returns the error of articulated bodies in double precision; infinite if they find no answer.
 double error_in_double(Scene const& scene, Solution layout, ExactSolution const& exact) {
     try {
         layout.acceleration = oracle_accelerations<double>(scene, {});
@@ -184,7 +193,8 @@ KnownCase known_case(StabilityCase const& which, int seed) {
     return known;
 }
 
-/// The oracles have one thread a chain, so seeds go side by side, before anything is timed.
+/// Computes the references of all seeds concurrently, because an oracle has one thread per chain.
+/// No times are measured meanwhile.
 std::vector<KnownCase> known_cases(StabilityCase const& which, int seeds) {
     std::vector<std::future<KnownCase>> finding;
     for (int seed = 1; seed <= seeds; ++seed)
@@ -251,8 +261,8 @@ bool StabilityStudy::all(bool articulated,
     });
 }
 
-/// Where the equations of joint forces lose all digits an answer must still be the exact one of a
-/// chain nearby, or refused; whether articulated handles or others keep them is said.
+/// If the equations of joint forces lose all digits, an answer must still be exact for a nearby
+/// chain, or refused. The verdict then tells if articulated or other handles keep the digits.
 Verdict StabilityStudy::verdict() const {
     if (points.empty()) return Verdict::invalid;
     bool const has_articulated = std::any_of(

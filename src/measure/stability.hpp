@@ -1,12 +1,13 @@
-// How far every backend can be trusted on a hard chain: backward and forward error beside their
+// Stability study: backward and forward errors of every backend on difficult chains, and their
 // bounds, over several seeds.
 //
-// A backend has solved exactly a chain whose data and equations are off by its local residual; the
-// answer is then off by the residual times the growth (growth.hpp). With the bound of the residual,
-// 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth. Articulated bodies in
-// double and other programs ("peers") solve the same chains: after refinement, which brings back
-// what the growth took, the error may be 4 times the best of theirs, or that of the residual's
-// bound alone.
+// A backend's solution solves exactly a chain whose data and equations differ by its local
+// residual. Its error is then the residual times the growth (growth.hpp). With the bound of the
+// residual, 32 depth(tree) 2^-53, the bound of the error is 32 depth(tree) 2^-53 growth.
+//
+// Articulated bodies in double precision and other programs ("peers") solve the same chains.
+// Refinement recovers the digits that the growth costs. Afterwards the error may be 4 times the
+// smallest of theirs, or that of the residual's bound alone.
 #pragma once
 
 #include <functional>
@@ -17,82 +18,106 @@
 
 namespace catena {
 
+/// One backend with one kind of handles, over all seeds of a case.
 struct StabilityPoint {
     std::string backend, handles;
     double residual = 0, residual_bound = 0, error = 0;  // medians over the seeds
-    double of_residual_bound = 0,
-           of_bound = 0;  // residual and forward error over their bounds, the largest of the seeds
-    std::string refused = {};  // why a seed had no answer; empty: all had one
+    /// Residual and forward error divided by their bounds; largest over the seeds.
+    double of_residual_bound = 0, of_bound = 0;
+    std::string refused = {};  // reason why a seed has no answer; empty if all have one
+    /// Errors after refinement, with the same meaning as above.
     struct Refined {
         double error = 0, of_residual_bound = 0, of_bound = 0;
-        double cost = 0;  // of the step, over that of an evaluation; median
+        double cost = 0;  // time of the refinement step, divided by that of an evaluation; median
     };
-    std::vector<Refined> refined =
-        {};  // after one step and after two; empty: not for such chains or backends
-    std::optional<Refined> settled = {};  // after as many as help, ten at most
-    int steps = 0;                        // of these, the most of the seeds
+    /// Errors after one step and after two; empty if chains or backend are not refined.
+    std::vector<Refined> refined = {};
+    /// Errors after as many steps as help, ten at most.
+    std::optional<Refined> settled = {};
+    int steps = 0;  // number of these steps, largest over the seeds
     bool is_articulated() const { return handles == "articulated"; }
+    /// True if the residual is within its bound; with articulated handles, refinement may be
+    /// needed.
     bool is_nearby() const {
         return of_residual_bound <= 1 ||
                (is_articulated() && settled && settled->of_residual_bound <= 1);
     }
+    /// True if residual and forward error are within their bounds.
     bool holds() const { return refused.empty() && of_residual_bound <= 1 && of_bound <= 1; }
+    /// True if residual and forward error are within their bounds, possibly after refinement.
     bool holds_refined() const {
         return holds() || (refused.empty() && settled && settled->of_residual_bound <= 1 &&
                            settled->of_bound <= 1);
     }
-    /// Of the answer as it comes, or of that after as many steps of refinement as help; infinite
-    /// where there is none.
+    /// Returns the error without refinement; infinite if a seed has no answer.
     double plain_error() const;
+    /// Returns the error after as many steps of refinement as help; infinite if a seed has no
+    /// answer.
     double last_error() const;
 };
 
-/// Another program's answer to a scene, laid out as Solution::acceleration, or why there is none.
+/// Another program's answer to a scene, in the layout of Solution::acceleration, or the reason why
+/// there is none.
 struct PeerAnswer {
     std::string name;
     std::vector<double> acceleration = {};
     std::string why_not = {};
 };
-/// Asks each of them; their number and names are always the same.
+/// Function that asks all peers. Their number and names must be the same at every call.
 using AskPeers = std::function<std::vector<PeerAnswer>(StabilityCase const&, Scene const&)>;
 
+/// Errors of one peer over all seeds of a case.
 struct StabilityPeer {
     std::string name;
     double error = 0;          // median over the seeds
-    std::string why_not = {};  // of a seed without an answer; empty: all had one
+    std::string why_not = {};  // reason why a seed has no answer; empty if all have one
 };
 
+/// Verdict on a case. `valid`: within all bounds; `refined`: within them after refinement;
+/// `articulated`: with articulated handles only. `beyond` and `lost`: beyond(), the residuals are
+/// good and the errors are not. `lost` if others keep three digits. `invalid`: a bound is exceeded.
 enum class Verdict { valid, refined, articulated, beyond, lost, invalid };
 
+/// Result of study_stability() for one case.
 struct StabilityStudy {
     std::string family, name, reference;
     std::int64_t bodies = 0;
     int seeds = 0;
-    std::optional<double> condition;  // of the joint-space inertia (links' matrix), up to
-                                      // largest_condition bodies; median
-    double growth = 1;                // median
-    double oracle_error =
-        0;  // of articulated bodies in double; median; infinite where they find no answer
+    /// Condition number of the joint-space inertia (beads: links' matrix), up to largest_condition
+    /// bodies; median.
+    std::optional<double> condition;
+    double growth = 1;  // growth.hpp; median
+    /// Error of articulated bodies in double precision; median. It is infinite if they have no
+    /// answer.
+    double oracle_error = 0;
     std::vector<StabilityPoint> points;
     std::vector<StabilityPeer> peers = {};
-    /// The least error of articulated bodies in double and of the peers that have one.
+    /// Returns the smallest error of articulated bodies in double precision and of the peers with
+    /// an answer.
     double best_of_others() const;
-    /// The worst last_error() of the points with or without articulated handles over what it may
-    /// be: the larger of 4 times best_of_others() and the bound of the residual, where there is no
-    /// refinement that times the growth; medians.
+    /// Returns the largest ratio of last_error() to its limit, over the points with or without
+    /// articulated handles. The limit is the larger of 4 times best_of_others() and the bound of
+    /// the residual. Without refinement the latter is multiplied by the growth. All values are
+    /// medians.
     double against_peers(bool articulated = false) const;
-    /// The equations of joint forces in double determine fewer than three digits of the answer.
+    /// True if the equations of joint forces in double precision determine fewer than three digits
+    /// of the answer.
     bool beyond() const { return growth * 0x1p-53 > 1e-3; }
-    /// So do any equations in double, as the condition number says.
+    /// True if any equations in double precision do so, according to the condition number.
     bool ill_conditioned() const { return condition && *condition * 0x1p-53 > 1e-3; }
-    /// The worst over the points without articulated handles; infinite where one has no answer.
+    /// Returns the largest error over the points without articulated handles; infinite if one has
+    /// no answer.
     double worst(double (StabilityPoint::*error)() const) const;
-    /// Of the points with or without articulated handles.
+    /// True if `holds` is true for all points with, or all without, articulated handles.
     bool all(bool articulated, std::function<bool(StabilityPoint const&)> const& holds) const;
+    /// Returns the verdict on the case.
     Verdict verdict() const;
 };
+/// Returns the verdict in capitals, such as "VALID".
 char const* name_of(Verdict);
 
+/// Solves a case with all backends, handles and peers, for seeds 1 .. `seeds`. Backends and handles
+/// that do not support the chain are left out.
 StabilityStudy study_stability(StabilityCase const&, std::vector<Backend> const&,
                                std::vector<Handles> const&, int seeds, AskPeers const& peers = {});
 

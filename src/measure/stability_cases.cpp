@@ -1,3 +1,4 @@
+// Generators of chains that are difficult to solve.
 #include "measure/stability_cases.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace {
 
 using scene::RandomJoint;
 constexpr double earth = 9.81;
-Vec3 const down{{-0.36, -0.48, -0.8}};  // along no axis of any chain
+Vec3 const down{{-0.36, -0.48, -0.8}};  // parallel to no axis of any chain
 
 Scene scene_of(ChainSpec chain, double gravity = earth) {
     Scene scene;
@@ -47,7 +48,7 @@ ChainSpec random_beads_on_links(std::uint64_t seed) {
     return chain;
 }
 
-/// Rods whose masses differ by up to a tenth, so that seeds differ.
+/// Returns rods whose masses differ by up to a tenth, so that seeds differ.
 scene::Rods rods(std::int64_t bodies, std::uint64_t seed) {
     scene::Rods rods;
     rods.bodies = bodies;
@@ -59,6 +60,8 @@ ChainSpec wound(std::uint64_t seed, double turn, double twist) {
     return chain_of(scene::coil(rods(hard_bodies, seed), {.turn = turn, .twist = twist}));
 }
 
+/// Multiplies masses and inertias by factor(place, k), where `place` is 0 at the base and 1 at the
+/// tip.
 void scale_masses(ChainSpec& chain,
                   std::function<double(double place, std::size_t k)> const& factor) {
     for (std::size_t k = 0; k < chain.size(); ++k) {
@@ -72,7 +75,7 @@ void scale_masses(ChainSpec& chain,
     }
 }
 
-/// As the same chain in other units of mass, length and time.
+/// Returns the same chain in other units of mass, length and time.
 ChainSpec in_units(ChainSpec chain, double mass, double length, double time) {
     BodyArrays& b = chain.bodies;
     double const torque = mass * length * length / (time * time);
@@ -89,7 +92,7 @@ ChainSpec in_units(ChainSpec chain, double mass, double length, double time) {
     return chain;
 }
 
-/// Beads at rest on an arc that turns by `angle` between two points of the ground.
+/// Returns beads at rest on an arc of angle `angle` between two points of the ground.
 ChainSpec bridge(std::uint64_t seed, double angle) {
     std::vector<Vec3> points{Vec3::zero()};
     double const each = angle / static_cast<double>(hard_bodies + 1);
@@ -111,7 +114,7 @@ ChainSpec bridge(std::uint64_t seed, double angle) {
     return chain;
 }
 
-/// Of revolute joints: every one in `every`.
+/// Adds springs to revolute joints: every `every`-th gets `stiffness`, the others 1.
 void add_springs(ChainSpec& chain, std::uint64_t seed, double stiffness, std::size_t every) {
     BodyArrays& b = chain.bodies;
     b.stiffness.assign(b.size(), Vec3{{1, 0, 0}});
@@ -122,6 +125,7 @@ void add_springs(ChainSpec& chain, std::uint64_t seed, double stiffness, std::si
     }
 }
 
+/// Collects cases by family.
 class Cases {
   public:
     explicit Cases(bool quick) : quick_(quick) {}
@@ -129,7 +133,7 @@ class Cases {
              std::int64_t bodies = hard_bodies) {
         all_.push_back({std::move(family), std::move(name), bodies, std::move(scene)});
     }
-    /// For each power of ten, or with `quick` for the first and the last.
+    /// Calls `action` for each power of ten, or with `quick` for the first and the last.
     template <class Action>
     void powers(std::vector<int> const& exponents, Action const& action) const {
         for (int const e : exponents)

@@ -1,3 +1,4 @@
+// Timed evaluations and their phases.
 #include "measure/timing.hpp"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace catena {
 namespace {
 
-/// Sums over the solvers of a system, and the system's own clocks.
+/// Sums over the solvers of a system, and the system's own clocks, in seconds.
 struct Clocks {
     double matrix = 0, bias = 0, exchange = 0, forces = 0, waiting = 0, moment = 0;
     SplitSeconds split;
@@ -34,9 +35,10 @@ Clocks read_clocks(ChainSystem const& system) {
     return c;
 }
 
-/// Clocks before and after each of many evaluations.
+/// Clock readings before and after each of many evaluations.
 struct Samples {
     std::vector<Clocks> before, after;
+    /// Returns the difference of a quantity over each evaluation, of the slowest rank. Collective.
     template <class Quantity>
     std::vector<double> of(Quantity const& quantity, Communicator const& communicator) const {
         std::vector<double> values;
@@ -44,8 +46,8 @@ struct Samples {
             values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
         return values;
     }
-    /// Of one evaluation; at least 1: where matrices and biases are found at once they are not
-    /// counted apart.
+    /// Returns the number of sweeps per evaluation. It is at least 1: if matrices and biases are
+    /// computed in one sweep, they are not counted separately.
     int count(std::int64_t Clocks::* sweeps) const {
         return std::max(1, static_cast<int>(after.front().*sweeps - before.front().*sweeps));
     }
@@ -78,7 +80,7 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
     for (int i = 0; i < warm_up; ++i) system.evaluate();
 
     repeat = std::max(repeat, 1);
-    // Whole evaluations first: to measure their sweeps one by one would hold a GPU up.
+    // Whole evaluations are measured first: measuring their sweeps separately would delay a GPU.
     Samples const whole = sample(system, repeat, false);
     system.measure(true);
     Samples const apart = sample(system, repeat, true);

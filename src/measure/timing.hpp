@@ -1,5 +1,5 @@
-// How long an evaluation takes: warm-up, then many of them, the slowest rank's time of each, and
-// the median.
+// Time of one evaluation: median over many evaluations after a warm-up, each with the time of the
+// slowest rank.
 #pragma once
 
 #include <vector>
@@ -8,27 +8,29 @@
 
 namespace catena {
 
+/// Median and range of repeated measurements.
 struct Spread {
     double median = 0, min = 0, max = 0;
     int count = 0;
 };
-/// Zeros for an empty list.
+/// Returns the spread of `values`; zeros for an empty list.
 Spread spread_of(std::vector<double> values);
 
-/// Seconds. A rank's time counts where it is the largest.
+/// Times of one evaluation, in seconds. A rank's time counts if it is the largest.
 struct Timing {
-    Spread evaluation;                       // ChainSystem::evaluate(), velocities projected before
-    Spread matrix_sweep, bias_sweep;         // one sweep
-    int matrix_sweeps = 0, bias_sweeps = 0;  // in one evaluation
-    /// Of one evaluation, medians: "matrix sweep", "bias sweep", "exchange of units" (a part of the
-    /// sweeps), "other" (kinematics, loads, rates), with cuda-levels "levels on the GPU", "levels
-    /// on the host", "transfers" (parts of the sweeps) and, with OpenMM, "forces" (side by side
-    /// with the rest on path `host`) and "waiting for forces".
+    Spread evaluation;                // ChainSystem::evaluate(); velocities were projected before
+    Spread matrix_sweep, bias_sweep;  // one sweep each
+    int matrix_sweeps = 0, bias_sweeps = 0;  // sweeps per evaluation
+    /// Medians of the phases of one evaluation. They are "matrix sweep", "bias sweep", "exchange of
+    /// units" (a part of the sweeps) and "other" (kinematics, loads, rates).
+    /// cuda-levels adds "levels on the GPU", "levels on the host" and "transfers" (parts of the
+    /// sweeps). OpenMM adds "forces" (concurrent with the rest on path `host`) and "waiting for
+    /// forces".
     std::vector<std::pair<std::string, double>> phases;
 };
 
 /// Evaluates the present state `repeat` times (at least once) after a warm-up, in which OpenMM also
-/// finds its faster path. Collective.
+/// chooses its faster path. Collective.
 Timing time_evaluations(ChainSystem&, int repeat);
 
 }  // namespace catena
