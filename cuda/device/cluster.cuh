@@ -37,8 +37,13 @@ class Inbox {
     /// Announces the number of bytes to come. One thread calls it before any block sends.
     __device__ void open(int bytes) const {
 #if __CUDA_ARCH__ >= 900
-        asm volatile("mbarrier.init.shared::cta.b64 [%0], 1;\n\tfence.mbarrier_init.release.cluster;" ::"r"(arrived_) : "memory");
-        asm volatile("mbarrier.arrive.expect_tx.shared::cta.b64 _, [%0], %1;" ::"r"(arrived_), "r"(bytes) : "memory");
+        asm volatile(
+            "mbarrier.init.shared::cta.b64 [%0], 1;\n\tfence.mbarrier_init.release.cluster;" ::"r"(
+                arrived_)
+            : "memory");
+        asm volatile("mbarrier.arrive.expect_tx.shared::cta.b64 _, [%0], %1;" ::"r"(arrived_),
+                     "r"(bytes)
+                     : "memory");
 #endif
     }
     /// Writes `value` to the address that corresponds to `at` in the shared memory of block
@@ -46,8 +51,10 @@ class Inbox {
     __device__ void send(int block, double* at, double value) const {
 #if __CUDA_ARCH__ >= 900
         asm volatile(
-            "{\n\t.reg .b32 to, arrived;\n\tmapa.shared::cluster.u32 to, %0, %2;\n\tmapa.shared::cluster.u32 arrived, %1, %2;\n\t"
-            "st.async.shared::cluster.mbarrier::complete_tx::bytes.b64 [to], %3, [arrived];\n\t}" ::"r"(address(at)),
+            "{\n\t.reg .b32 to, arrived;\n\tmapa.shared::cluster.u32 to, %0, "
+            "%2;\n\tmapa.shared::cluster.u32 arrived, %1, %2;\n\t"
+            "st.async.shared::cluster.mbarrier::complete_tx::bytes.b64 [to], %3, [arrived];\n\t}" ::
+                "r"(address(at)),
             "r"(arrived_), "r"(block), "l"(__double_as_longlong(value))
             : "memory");
 #endif
@@ -56,14 +63,17 @@ class Inbox {
     __device__ void wait() const {
 #if __CUDA_ARCH__ >= 900
         asm volatile(
-            "{\n\t.reg .pred all;\n\tWAIT:\n\tmbarrier.try_wait.parity.acquire.cluster.shared::cta.b64 all, [%0], 0;\n\t@!all bra WAIT;\n\t}" ::"r"(
-                arrived_)
+            "{\n\t.reg .pred "
+            "all;\n\tWAIT:\n\tmbarrier.try_wait.parity.acquire.cluster.shared::cta.b64 all, [%0], "
+            "0;\n\t@!all bra WAIT;\n\t}" ::"r"(arrived_)
             : "memory");
 #endif
     }
 
   private:
-    __device__ static std::uint32_t address(void const* shared) { return static_cast<std::uint32_t>(__cvta_generic_to_shared(shared)); }
+    __device__ static std::uint32_t address(void const* shared) {
+        return static_cast<std::uint32_t>(__cvta_generic_to_shared(shared));
+    }
     std::uint32_t arrived_;
 };
 
@@ -77,11 +87,16 @@ struct alignas(16) LetterBox {
     unsigned long long memory[2];
 
     __device__ void put(Halves const& halves) {
-        asm volatile("st.relaxed.gpu.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
+        asm volatile("st.relaxed.gpu.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower),
+                     "l"(halves.upper)
+                     : "memory");
     }
     __device__ Halves get() const {
         Halves halves;
-        asm volatile("ld.relaxed.gpu.global.v2.b64 {%0, %1}, [%2];" : "=l"(halves.lower), "=l"(halves.upper) : "l"(this) : "memory");
+        asm volatile("ld.relaxed.gpu.global.v2.b64 {%0, %1}, [%2];"
+                     : "=l"(halves.lower), "=l"(halves.upper)
+                     : "l"(this)
+                     : "memory");
         return halves;
     }
 };
@@ -89,11 +104,16 @@ struct alignas(16) LetterBox {
 /// Memory cell that blocks on other GPUs read and write too (system scope instead of GPU scope).
 struct PeerLetterBox : LetterBox {
     __device__ void put(Halves const& halves) {
-        asm volatile("st.relaxed.sys.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
+        asm volatile("st.relaxed.sys.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower),
+                     "l"(halves.upper)
+                     : "memory");
     }
     __device__ Halves get() const {
         Halves halves;
-        asm volatile("ld.relaxed.sys.global.v2.b64 {%0, %1}, [%2];" : "=l"(halves.lower), "=l"(halves.upper) : "l"(this) : "memory");
+        asm volatile("ld.relaxed.sys.global.v2.b64 {%0, %1}, [%2];"
+                     : "=l"(halves.lower), "=l"(halves.upper)
+                     : "l"(this)
+                     : "memory");
         return halves;
     }
 };
@@ -130,11 +150,16 @@ __device__ inline void wait_for_launch() {
 /// therefore knows whether the number has arrived, and no barrier is needed.
 struct Letter : LetterBox::Halves {
     __device__ static Letter of(double value, unsigned launch) {
-        auto const bits = static_cast<unsigned long long>(__double_as_longlong(value)), beside = static_cast<unsigned long long>(launch) << 32;
+        auto const bits = static_cast<unsigned long long>(__double_as_longlong(value)),
+                   beside = static_cast<unsigned long long>(launch) << 32;
         return {{(bits & lower_half) | beside, bits >> 32 | beside}};
     }
-    __device__ bool is_of(unsigned launch) const { return lower >> 32 == launch && upper >> 32 == launch; }
-    __device__ double value() const { return __longlong_as_double(static_cast<long long>((lower & lower_half) | upper << 32)); }
+    __device__ bool is_of(unsigned launch) const {
+        return lower >> 32 == launch && upper >> 32 == launch;
+    }
+    __device__ double value() const {
+        return __longlong_as_double(static_cast<long long>((lower & lower_half) | upper << 32));
+    }
 
   private:
     static constexpr unsigned long long lower_half = 0xffffffff;
@@ -147,7 +172,9 @@ struct LettersIn {
     /// Number of the launch, never 0: unwritten letters belong to launch 0.
     unsigned launch = 0;
 
-    __device__ void put(int i, int n, double value) const { boxes[n * records + i].put(Letter::of(value, launch)); }
+    __device__ void put(int i, int n, double value) const {
+        boxes[n * records + i].put(Letter::of(value, launch));
+    }
     /// Polls until number n of record i has arrived and returns it.
     __device__ double wait_for(int i, int n) const {
         Letter letter;
@@ -164,10 +191,12 @@ struct LettersIn {
             while (!are_here) {
                 CATENA_UNROLL
                 for (int j = 0; j < at_once; ++j)
-                    if (int const n = first + j * step; n < end && !letter[j].is_of(launch)) letter[j] = {boxes[n * records + i].get()};
+                    if (int const n = first + j * step; n < end && !letter[j].is_of(launch))
+                        letter[j] = {boxes[n * records + i].get()};
                 are_here = true;
                 CATENA_UNROLL
-                for (int j = 0; j < at_once; ++j) are_here = are_here && (first + j * step >= end || letter[j].is_of(launch));
+                for (int j = 0; j < at_once; ++j)
+                    are_here = are_here && (first + j * step >= end || letter[j].is_of(launch));
             }
             CATENA_UNROLL
             for (int j = 0; j < at_once; ++j)
@@ -199,7 +228,8 @@ __device__ void touch([[maybe_unused]] T const& parameter) {
     constexpr int line = 64;
     CATENA_UNROLL
     for (std::size_t i = 0; i < sizeof(T); i += line)
-        asm volatile("" ::"r"(*reinterpret_cast<int const*>(reinterpret_cast<char const*>(&parameter) + i)));
+        asm volatile(
+            "" ::"r"(*reinterpret_cast<int const*>(reinterpret_cast<char const*>(&parameter) + i)));
 #endif
 }
 

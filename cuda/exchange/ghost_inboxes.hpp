@@ -29,7 +29,7 @@ class GhostInboxes {
     /// rank writes or reads an inbox. Collective.
     bool fit(std::span<Halo::Message const> messages);
     /// Selects the other inbox for the next filling and reading. Every rank must call it.
-    void turn() { turn_ = (turn_ + 1) % inboxes_; }
+    void advance() { current_ = (current_ + 1) % inboxes_; }
     /// Enqueues copies of `shown`, three numbers per position, to the inboxes of the receivers.
     /// `shown` holds one message after the other, or a single message for all if `one_for_all`.
     template <class Number>
@@ -66,7 +66,7 @@ class GhostInboxes {
     void* box(int rank) const;
 
     Communicator const& communicator_;
-    int inboxes_, turn_ = 0;
+    int inboxes_, current_ = 0;
     std::int64_t capacity_ = 0;  // positions per inbox, equal on every rank
     Buffer<double> own_;
     /// Base address of each rank's inboxes, as mapped here.

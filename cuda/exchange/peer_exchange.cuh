@@ -33,7 +33,7 @@ struct PeerCall {
 /// streams. The order is that of the host's calls and the same on all ranks. Otherwise a kernel
 /// that fills a GPU while it waits could block another kernel for which another GPU waits.
 /// (Contexts are time-sliced on a GPU.)
-class Meetings {
+class ExchangeOrder {
   public:
     /// Makes `stream` of context number `context` (PeerMemory) wait for the previous such kernel.
     /// While a stream is being captured, the previous kernel must have been on it as well.
@@ -63,7 +63,7 @@ class Peers {
     /// Orders the next kernel of `stream` that uses the connections; that kernel must be enqueued
     /// right after the call. Precondition: there are connections.
     void meet_next(std::shared_ptr<Stream> const& stream) const {
-        Meetings::next(stream, memory_->context());
+        ExchangeOrder::next(stream, memory_->context());
     }
     /// Describes an exchange that sends a body's numbers to rank `to` and receives one from
     /// `source`. A negative rank means no rank.
@@ -165,21 +165,25 @@ __device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers,
     int const sent = call.sent + beside.numbers, last = boxes.width - 1;
     for (int first = t; first <= sent; first += at_once * threads) {
         double value[at_once];
-    CATENA_UNROLL
+        CATENA_UNROLL
         for (int j = 0; j < at_once; ++j) {
             int const i = first + j * threads;
-            value[j] = i < call.sent ? numbers.show(i) : i < sent ? beside.show(i - call.sent) : 0.0;
+            value[j] = i < call.sent ? numbers.show(i)
+                       : i < sent    ? beside.show(i - call.sent)
+                                     : 0.0;
         }
         for (int p = 0; p < call.peers; ++p) {
             auto const to = letters(call.peer[p], boxes.rank, p);
             CATENA_UNROLL
             for (int j = 0; j < at_once; ++j)
-                if (int const i = first + j * threads; i <= sent) to.put(0, i < sent ? i : last, value[j]);
+                if (int const i = first + j * threads; i <= sent)
+                    to.put(0, i < sent ? i : last, value[j]);
         }
     }
     for (int p = 0; p < call.peers; ++p) {
         auto const came = letters(boxes.rank, call.peer[p], p);
-        int const received = call.received[p], end = received + (call.peer[p] == beside.source ? beside.numbers : 0);
+        int const received = call.received[p],
+                  end = received + (call.peer[p] == beside.source ? beside.numbers : 0);
         came.template take_some<at_once>(0, t, end, threads, [&](int i, double value) {
             if (i < received)
                 numbers.take(call.first[p] + i, value);
@@ -193,13 +197,14 @@ __device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers,
 }
 /// Calls first(0) and then exchanges, in one block.
 template <class Numbers, class First>
-__global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, Numbers numbers, BodiesBeside beside, First first) {
+__global__ void __launch_bounds__(threads_of_exchange)
+    exchange(PeerCall call, Numbers numbers, BodiesBeside beside, First first) {
     if (threadIdx.x == 0) first(0);
     __syncthreads();
     exchange_by_block(call, numbers, beside);
 }
-/// Exchange that kernels turn(), turn_shared_scan() and turn_shared_scan_then() perform between the
-/// two passes.
+/// Exchange that kernels both_passes(), shared_passes_of_scan() and shared_passes_of_scan_then()
+/// perform between the two passes.
 template <class Numbers>
 struct ExchangeByBlock {
     PeerCall call;
@@ -211,7 +216,7 @@ struct ExchangeByBlock {
 }  // namespace kernels
 
 /// Exchange within a launch that is yet to be enqueued on a stream. next() is called just before
-/// that launch and orders it after other exchanges (Meetings).
+/// that launch and orders it after other exchanges (ExchangeOrder).
 template <class Numbers>
 struct ExchangeInTurn {
     Peers const& peers;

@@ -78,7 +78,7 @@ class GhostPath final : public GpuPath {
     /// Enqueues the direct exchange of positions, while the host checks how far beads have moved.
     void exchange_directly() {
         is_shown_.record(stream_);
-        inboxes_->turn();
+        inboxes_->advance();
         pairs_->send_positions(particles_.position, *inboxes_, stream_);
         is_sent_.record(stream_);
         pairs_->wait_for_positions(stream_);
@@ -99,7 +99,7 @@ class GhostPath final : public GpuPath {
             next += group->count();
         }
         if (inboxes_) {
-            inboxes_->turn();
+            inboxes_->advance();
             inboxes_->send(lists().messages, shown_.shown, lists().one_for_all, last);
         } else if (!out().empty()) {
             check(cudaMemcpyAsync(out().data(), shown_.shown, out().size_bytes(),
@@ -140,7 +140,7 @@ class GhostPath final : public GpuPath {
         exchange_.end = seconds_now();
         if (pairs_) choose_pairs();
         compute(beads);
-        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // see LonePath
+        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // see SingleRankPath
     }
 
     /// Puts arrived ghosts, and own beads if necessary, into OpenMM's arrays; reorders particles if

@@ -18,16 +18,16 @@ Vec3 mean(std::span<Vec3 const> x) {
 namespace {
 
 /// Coupling for a run with a single rank.
-class LonePath final : public GpuPath {
+class SingleRankPath final : public GpuPath {
   public:
-    LonePath(OpenMM::Context& context, DevicePathPlan plan)
+    SingleRankPath(OpenMM::Context& context, DevicePathPlan plan)
         : GpuPath(context, std::move(plan), evaluations_of_an_order) {
         compute_with(on_device(context));
         may_ask_ = plan_.keeps_list && why_pairs_cannot_be_shared().empty();
         if (may_ask_) openmm_->share(-1, 0, 1);
     }
     // The members' memory belongs to OpenMM's CUDA context.
-    ~LonePath() override { make_current(); }
+    ~SingleRankPath() override { make_current(); }
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         // concerns the previous evaluation, which has ended together with its step
@@ -239,7 +239,7 @@ DevicePath::Clock GpuPath::clock() {
 
 std::unique_ptr<DevicePath> make_device_path(OpenMM::Context& context, DevicePathPlan plan) {
     if (plan.halo) return make_halo_path(context, std::move(plan));
-    return std::make_unique<LonePath>(context, std::move(plan));
+    return std::make_unique<SingleRankPath>(context, std::move(plan));
 }
 
 }  // namespace catena::cuda

@@ -21,7 +21,7 @@ __global__ void __launch_bounds__(ShortWarp<Sweep>::most_threads)
     touch(sweep);
     warp.open();
     wait_for_launch();
-    warp.turn();
+    warp.both_passes();
 }
 
 }  // namespace catena::cuda::kernels

@@ -42,10 +42,11 @@ class ShortLanes {
         lanes_.open(is_.beside == 0);
         count_ = is_.bodies_of(is_.lane);
         CATENA_UNROLL
-        for (int i = 0; i < dca::part_length; ++i) restricted_[i] = i < count_ && is_.beside == 0 ? sweep_.s.restricted[is_.first + i] : 0;
+        for (int i = 0; i < dca::part_length; ++i)
+            restricted_[i] = i < count_ && is_.beside == 0 ? sweep_.s.restricted[is_.first + i] : 0;
     }
     /// Performs both passes and computes the accelerations of the thread's bodies.
-    __device__ void turn() const {
+    __device__ void both_passes() const {
         InMemory const memory(own_ + Lanes::of_warp + is_.lane);
         [[maybe_unused]] typename Sweep::Body own[bodies_stay ? most_bodies : 1];
         if (count_ < dca::part_length && is_.beside == 0) {
@@ -67,7 +68,8 @@ class ShortLanes {
             if constexpr (bodies_stay)
                 sweep_.accelerate(k, own[round], ends.first, ends.next, Factorizer{});
             else
-                sweep_.accelerate(k, sweep_.bodies.body_at(k, BranchlessInverseLength{}), ends.first, ends.next, Factorizer{});
+                sweep_.accelerate(k, sweep_.bodies.body_at(k, BranchlessInverseLength{}),
+                                  ends.first, ends.next, Factorizer{});
         });
     }
 
@@ -133,11 +135,14 @@ class ShortLanes {
         Kept kept(own_ + Lanes::of_warp + is_.lane);
         auto const restricted = [&](int i) { return restricted_[i]; };
         bool sure = true;
-        Segment segment = sweep_.join_bodies_at_once(count_, restricted, kept, UncheckedFactorizer{sure});
+        Segment segment =
+            sweep_.join_bodies_at_once(count_, restricted, kept, UncheckedFactorizer{sure});
         if (!sure) segment = sweep_.join_bodies(is_.first, count_, restricted, kept);
-        lanes_.turn(segment, restricted_[0], [&](Ends const& ends) {
+        lanes_.both_passes(segment, restricted_[0], [&](Ends const& ends) {
             sweep_.forces(count_, kept, ends.first, ends.next,
-                          [&](int i, State const& inboard, State const& outboard) { kept.put(i, Ends{inboard, outboard}); });
+                          [&](int i, State const& inboard, State const& outboard) {
+                              kept.put(i, Ends{inboard, outboard});
+                          });
         });
     }
 
@@ -145,7 +150,7 @@ class ShortLanes {
     ShortThread is_;
     double* own_;
     Lanes lanes_;
-    int count_ = 0;  // bodies of the lane
+    int count_ = 0;                     // bodies of the lane
     int restricted_[dca::part_length];  // number of directions that their joints restrict
 };
 

@@ -74,7 +74,7 @@ class ShortTeams {
             at_top_[warp] = sweep_.s.restricted[warp * bodies_of_warp];
     }
     /// Performs both passes and computes the accelerations of the thread's bodies.
-    __device__ void turn() const {
+    __device__ void both_passes() const {
         Kept const kept{records_, gains_, is_.lane};
         bool const joins = is_.beside < 0;
         typename Sweep::Body body;
@@ -201,21 +201,27 @@ class ShortTeams {
     __device__ void join_bodies() const {
         Team const team;
         CATENA_NO_UNROLL
-        for (int part = is_.beside * teams_of_warp + own_; part < lanes_of_warp; part += is_.warps_beside * teams_of_warp) {
+        for (int part = is_.beside * teams_of_warp + own_; part < lanes_of_warp;
+             part += is_.warps_beside * teams_of_warp) {
             int const count = is_.bodies_of(part);
-            double *const first = records_.record(part), *const joined = records_.record(place_of_part(part));
+            double *const first = records_.record(part), *const joined =
+                                                             records_.record(place_of_part(part));
             if (count == 1) team.copy(first, joined);
             auto const pair = [&](int i) {
                 int const place = place_of(part, i);
                 bool const works = i < count;
-                return Pair{i == 1 ? first : joined, records_.record(place), {is_.first_of(part) + i, works ? restricted_[place] : 0}, works};
+                return Pair{i == 1 ? first : joined,
+                            records_.record(place),
+                            {is_.first_of(part) + i, works ? restricted_[place] : 0},
+                            works};
             };
             Pair next = pair(1);
             CATENA_NO_UNROLL
             for (int i = 1; i < dca::part_length; ++i) {
                 Pair const now = next;
                 if (i + 1 < dca::part_length) next = pair(i + 1);
-                Biases const bias = team.join(sweep_, now.at, now.works, {now.inboard, now.outboard, joined, now.outboard});
+                Biases const bias = team.join(sweep_, now.at, now.works,
+                                              {now.inboard, now.outboard, joined, now.outboard});
                 __syncwarp();
                 if (now.works) team.put_bias(now.outboard + Kept::at_bias, bias);
             }
@@ -224,12 +230,16 @@ class ShortTeams {
     /// Returns merge number i in step `step` of the warp: parts of runs one after the other, then
     /// pairs.
     __device__ Pair of_lanes(int step, int i) const {
-        int const level = step - steps_of_parts, apart = level < 0 ? step + 1 : dca::parts_of_run << level;
-        int const inboard = level < 0 ? dca::parts_of_run * i : 2 * apart * i, outboard = inboard + apart;
+        int const level = step - steps_of_parts,
+                  apart = level < 0 ? step + 1 : dca::parts_of_run << level;
+        int const inboard = level < 0 ? dca::parts_of_run * i : 2 * apart * i,
+                  outboard = inboard + apart;
         bool const works = outboard < lanes_of_warp && is_.first_of(outboard) < chain_.bodies;
         int const there = works ? outboard : 0;
-        return {records_.record(works ? place_of_part(inboard) : idle), records_.record(works ? place_of_part(outboard) : idle),
-                {is_.first_of(there), restricted_[place_of(there, 0)]}, works};
+        return {records_.record(works ? place_of_part(inboard) : idle),
+                records_.record(works ? place_of_part(outboard) : idle),
+                {is_.first_of(there), restricted_[place_of(there, 0)]},
+                works};
     }
     /// Returns merge number i of pairs of warps at a level of the top.
     __device__ Pair of_warps(int level, int i) const {
@@ -237,7 +247,10 @@ class ShortTeams {
         bool const works = outboard < chain_.warps;
         int const there = works ? outboard : 0;
         double* const nowhere = records_.record(idle);
-        return {works ? top_.record(inboard) : nowhere, works ? top_.record(outboard) : nowhere, {there * bodies_of_warp, at_top_[there]}, works};
+        return {works ? top_.record(inboard) : nowhere,
+                works ? top_.record(outboard) : nowhere,
+                {there * bodies_of_warp, at_top_[there]},
+                works};
     }
     /// Merges pair(step, i) for i of [0, count(step)) by the warp's teams, step by step. Each pair
     /// is looked up while the previous ones are merged.
@@ -251,7 +264,8 @@ class ShortTeams {
             i += teams_of_warp;
             if (i - own_ >= count(step)) ++step, i = own_;
             if (step < steps) next = pair(step, i);
-            Team().join(sweep_, now.at, now.works, {now.inboard, now.outboard, now.inboard, now.outboard});
+            Team().join(sweep_, now.at, now.works,
+                        {now.inboard, now.outboard, now.inboard, now.outboard});
             __syncwarp();
         }
     }
@@ -266,14 +280,20 @@ class ShortTeams {
     __device__ void climb() const {
         join_steps(
             steps_of_warp,
-            [](int step) { return step < steps_of_parts ? lanes_of_warp / dca::parts_of_run : lanes_of_warp / (2 * dca::parts_of_run << (step - steps_of_parts)); },
+            [](int step) {
+                return step < steps_of_parts
+                           ? lanes_of_warp / dca::parts_of_run
+                           : lanes_of_warp / (2 * dca::parts_of_run << (step - steps_of_parts));
+            },
             [&](int step, int i) { return of_lanes(step, i); });
         if (is_.warp < chain_.warps)
-            send_to_all<numbers_of<Segment>>(chain_, inbox_, is_.lane, records_.record(of_parts), [&](int n) { return &top_.number(is_.warp, n); });
+            send_to_all<numbers_of<Segment>>(chain_, inbox_, is_.lane, records_.record(of_parts),
+                                             [&](int n) { return &top_.number(is_.warp, n); });
         if (is_.group > 0) return;
         if (!is_alone(chain_)) inbox_.wait();
         join_steps(
-            levels_of_top(), [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
+            levels_of_top(),
+            [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
             [&](int level, int i) { return of_warps(level, i); });
     }
     /// Outward pass by the merging warps. It computes the forces at the first joint, at the warp,
@@ -282,11 +302,14 @@ class ShortTeams {
         Team const team;
         Ends ends{sweep_.first_force({0, at_top_[0]}, top_.load(0), Factorizer{}), State::zero()};
         CATENA_NO_UNROLL
-        for (int level = levels_of_top() - 1; level >= 0; --level) go_down(team, ends, top_, 0, is_.warp, 1 << level, chain_.warps);
+        for (int level = levels_of_top() - 1; level >= 0; --level)
+            go_down(team, ends, top_, 0, is_.warp, 1 << level, chain_.warps);
         // Number of lanes that have bodies.
-        int const lanes = (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;
+        int const lanes =
+            (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;
         CATENA_NO_UNROLL
-        for (int lane = own_ * dca::parts_of_run; lane < lanes_of_warp; lane += teams_of_warp * dca::parts_of_run) {
+        for (int lane = own_ * dca::parts_of_run; lane < lanes_of_warp;
+             lane += teams_of_warp * dca::parts_of_run) {
             Ends of_run = ends;
             CATENA_NO_UNROLL
             for (int distance = lanes_of_warp / 2; distance >= dca::parts_of_run; distance /= 2)
@@ -294,7 +317,9 @@ class ShortTeams {
             CATENA_NO_UNROLL
             for (int p = dca::parts_of_run - 1; p > 0; --p) {
                 bool const exists = lane + p < lanes;
-                State const there = team.force(records_.record(place_of_part(exists ? lane + p : 0)), of_run.first, of_run.next);
+                State const there =
+                    team.force(records_.record(place_of_part(exists ? lane + p : 0)), of_run.first,
+                               of_run.next);
                 if (!exists) continue;
                 if (team.leads()) ends_.store(lane + p, {there, of_run.next});
                 of_run.next = there;
@@ -306,14 +331,18 @@ class ShortTeams {
         Kept const kept{records_, gains_, is_.lane};
         if (int const count = is_.bodies_of(is_.lane); count > 0)
             sweep_.forces_by_gains(count, kept, own.first, own.next,
-                                   [&](int i, State const& inboard, State const& outboard) { kept.put(i, Ends{inboard, outboard}); });
+                                   [&](int i, State const& inboard, State const& outboard) {
+                                       kept.put(i, Ends{inboard, outboard});
+                                   });
     }
     /// Descends from the ends of a pair of `distance` items each to the ends of the half that
     /// contains item `own`. `count`: number of items.
-    __device__ static void go_down(Team const& team, Ends& ends, Records const& records, int place, int own, int distance, int count) {
+    __device__ static void go_down(Team const& team, Ends& ends, Records const& records, int place,
+                                   int own, int distance, int count) {
         int const middle = (own & ~(2 * distance - 1)) + distance;
         bool const exists = middle < count;
-        State const there = team.force(records.record(place + (exists ? middle : 0)), ends.first, ends.next);
+        State const there =
+            team.force(records.record(place + (exists ? middle : 0)), ends.first, ends.next);
         ends.next = dca::either(exists && own < middle, there, ends.next);
         ends.first = dca::either(exists && own >= middle, there, ends.first);
     }
@@ -328,7 +357,7 @@ class ShortTeams {
     Records records_;
     Gains gains_;
     PackedRecords<Ends> ends_;  // forces at the ends of lanes' parts
-    int* restricted_;  // directions that the joints of the warp's bodies restrict
+    int* restricted_;           // directions that the joints of the warp's bodies restrict
 };
 
 }  // namespace catena::cuda::kernels

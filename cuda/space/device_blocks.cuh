@@ -99,13 +99,15 @@ class DeviceTeam {
     __device__ static void store(double* origin, int pitch, int at, T const& value) {
         auto const numbers = __builtin_bit_cast(Numbers<T>, value);
         CATENA_UNROLL
-        for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n) origin[n * pitch + at] = numbers[n];
+        for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n)
+            origin[n * pitch + at] = numbers[n];
     }
     template <class T>
     __device__ static T load(double const* origin, int pitch, int at) {
         Numbers<T> numbers;
         CATENA_UNROLL
-        for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n) numbers[n] = origin[n * pitch + at];
+        for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n)
+            numbers[n] = origin[n * pitch + at];
         return __builtin_bit_cast(T, numbers);
     }
     /// Exchanges a vector with the thread at offset `from` through shared memory.
@@ -116,7 +118,9 @@ class DeviceTeam {
         return load<Vec3>(places, pitch, own + from);
     }
     __device__ static int slots() { return static_cast<int>(blockDim.x) / dca::parts_of_run; }
-    __device__ static double* forces() { return shared_numbers + sizeof(Largest) / sizeof(double) * slots(); }
+    __device__ static double* forces() {
+        return shared_numbers + sizeof(Largest) / sizeof(double) * slots();
+    }
     __device__ static double* last_places() { return forces() + K * slots(); }
     __device__ static double* first_places() { return last_places() + 3 * blockDim.x; }
     DeviceTeams teams_;
@@ -125,7 +129,8 @@ class DeviceTeam {
 
 /// Calls action(team) in every block.
 template <class Action>
-__global__ void __launch_bounds__(most_threads_of_team) each_team(DeviceTeams teams, Action action) {
+__global__ void __launch_bounds__(most_threads_of_team)
+    each_team(DeviceTeams teams, Action action) {
     action(DeviceTeam<Action::K>(teams));
 }
 
@@ -154,11 +159,13 @@ class DeviceBlocks {
     static std::int64_t runs_of_block(ChainGroup const& group) {
         int device = 0, multiprocessors = 0;
         check(cudaGetDevice(&device), "say which it is");
-        check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device), "say how large it is");
+        check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
+              "say how large it is");
         std::int64_t longest = 1;
         for (dca::Piece const& piece : group.pieces)
             longest = std::max(longest, (piece.count + dca::longest_run - 1) / dca::longest_run);
-        std::int64_t const chains = (std::ssize(group.schedule.runs) - 1) / (longest * multiprocessors) + 1;
+        std::int64_t const chains =
+            (std::ssize(group.schedule.runs) - 1) / (longest * multiprocessors) + 1;
         return std::min(chains * longest, most_runs);
     }
     int threads_ = 0;

@@ -46,22 +46,22 @@ class DeviceScan {
                  cudaStream_t stream) const {
         return walk(stream).at_once(scan, count, action);
     }
-    /// True if at_once(), or turn_shared() with an action, would succeed for a scan with
+    /// True if at_once(), or shared_passes() with an action, would succeed for a scan with
     /// goes_by_steps.
     bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
     /// Performs both passes with an exchange between ranks in one launch; see
-    /// ScanWalk::turn_shared.
+    /// ScanWalk::shared_passes.
     template <class Scan, class Numbers>
-    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
-                     DeviceScan const& top, cudaStream_t stream) const {
-        return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
+    bool shared_passes(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                       DeviceScan const& top, cudaStream_t stream) const {
+        return walk(stream).shared_passes(scan, exchange, Launches{top, stream});
     }
     /// Performs the same, followed by action(k) for k < count.
     template <class Scan, class Numbers, class Action>
-    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
-                     DeviceScan const& top, std::int64_t count, Action const& action,
-                     cudaStream_t stream) const {
-        return walk(stream).turn_shared(scan, exchange, Launches{top, stream}, count, action);
+    bool shared_passes(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                       DeviceScan const& top, std::int64_t count, Action const& action,
+                       cudaStream_t stream) const {
+        return walk(stream).shared_passes(scan, exchange, Launches{top, stream}, count, action);
     }
 
   private:
@@ -102,7 +102,7 @@ class DeviceScan {
             launch(kernels::climb_scan<Scan>, i, scan);
         }
         template <class Scan>
-        void turn(std::size_t i, Scan const& scan) const {
+        void both_passes(std::size_t i, Scan const& scan) const {
             launch(kernels::turn_scan<Scan>, i, scan);
         }
         template <class Scan>
@@ -125,12 +125,13 @@ class DeviceScan {
         }
         /// Launches both passes of the last stage with an exchange and the passes of `top`.
         template <class Scan, class Numbers>
-        void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
-                         Launches const& top) const {
+        void shared_passes(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                           Launches const& top) const {
             kernels::DeviceScanStage const &own = tree.stages_.back().view,
                                            &above = top.tree.stages_.back().view;
             std::size_t const all = bytes<Scan>(own) + bytes<Scan>(above);
-            auto* const kernel = kernels::turn_shared_scan<Scan, kernels::ExchangeByBlock<Numbers>>;
+            auto* const kernel =
+                kernels::shared_passes_of_scan<Scan, kernels::ExchangeByBlock<Numbers>>;
             allow_shared(kernel, all);
             cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above,
                          exchange.next(), scan);
@@ -138,8 +139,9 @@ class DeviceScan {
         }
         /// Launches the same and the action by one cluster; returns false if that is impossible.
         template <class Scan, class Numbers, class Action>
-        bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
-                              Launches const& top, std::int64_t count, Action const& action) const {
+        bool shared_passes_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
+                                Launches const& top, std::int64_t count,
+                                Action const& action) const {
             kernels::DeviceScanStage const &own = tree.stages_.back().view,
                                            &above = top.tree.stages_.back().view;
             unsigned const blocks = kernels::blocks_of_turn<Scan>(own, count);
@@ -147,7 +149,8 @@ class DeviceScan {
                 sizeof(double) * kernels::numbers_of_turn<Scan>(own, blocks) + bytes<Scan>(above);
             if (!tree.has_cluster_of(shared)) return false;
             auto* const kernel =
-                kernels::turn_shared_scan_then<Scan, kernels::ExchangeByBlock<Numbers>, Action>;
+                kernels::shared_passes_of_scan_then<Scan, kernels::ExchangeByBlock<Numbers>,
+                                                    Action>;
             allow_shared(kernel, shared);
             cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, own,
                          above, exchange.next(), scan, count, action);

@@ -234,30 +234,30 @@ class DeviceSpace {
     /// Performs both passes of a sweep over a tree that ranks share, with the exchange between them
     /// in one launch. Returns false, and does nothing, if one launch is not enough.
     template <class Sweep>
-    bool turn_shared(Direct const& direct, typename Sweep::ShownNumbers const& numbers,
-                     Tree const& tree, Tree const& top, Sweep const& sweep) const {
-        return turn_shared_by(
+    bool shared_passes(Direct const& direct, typename Sweep::ShownNumbers const& numbers,
+                       Tree const& tree, Tree const& top, Sweep const& sweep) const {
+        return shared_passes_by(
             kernels::ExchangeByBlock<typename Sweep::ShownNumbers>{direct, numbers, {}}, tree, top,
             sweep);
     }
     /// Performs the same for a scan.
     template <class Numbers, class Scan, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
-                     ScanTree const& top, Scan const& scan,
-                     BodyExchange<D> const&... beside) const {
-        return turn_shared_by(kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)},
-                              tree, top, scan);
+    bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                       ScanTree const& top, Scan const& scan,
+                       BodyExchange<D> const&... beside) const {
+        return shared_passes_by(
+            kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, tree, top, scan);
     }
     /// Performs the same for a scan that is followed by an action per item.
     template <class Numbers, class Scan, class T, class Action, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
-                     ScanTree const& top, dca::ScanThen<Scan, Buffer<T>, Action> const& all,
-                     BodyExchange<D> const&... beside) const {
+    bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                       ScanTree const& top, dca::ScanThen<Scan, Buffer<T>, Action> const& all,
+                       BodyExchange<D> const&... beside) const {
         ExchangeInTurn<Numbers> const exchange{
             peers_, stream_, {direct, numbers, along(beside...)}};
         kernels::OfItem<T, Action> const action{all.items.data(), all.action};
-        return tree.turn_shared(all.scan, exchange, top,
-                                static_cast<std::int64_t>(all.items.size()), action, stream());
+        return tree.shared_passes(all.scan, exchange, top,
+                                  static_cast<std::int64_t>(all.items.size()), action, stream());
     }
     /// Returns a copy of the field on the host. Waits.
     template <int D>
@@ -390,10 +390,10 @@ class DeviceSpace {
     static void started() { check(cudaGetLastError(), "start a kernel"); }
     /// Performs both passes of a sweep or a scan with `exchange`, ordered after other exchanges.
     template <class AnyTree, class Sweep, class Numbers>
-    bool turn_shared_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree,
-                        AnyTree const& top, Sweep const& sweep) const {
-        return tree.turn_shared(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top,
-                                stream());
+    bool shared_passes_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree,
+                          AnyTree const& top, Sweep const& sweep) const {
+        return tree.shared_passes(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top,
+                                  stream());
     }
 
     /// Executor of the work that remains on the host.

@@ -72,7 +72,7 @@ class DeviceTree {
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep, cudaStream_t stream) const {
         if (stages_.empty()) return;
-        if constexpr (Sweep::goes_short)
+        if constexpr (Sweep::supports_short_chains)
             if (Grid const& grid =
                     short_.grid<kernels::ShortWarp<Sweep>>(kernels::turn_short<Sweep>);
                 grid.blocks > 0) {
@@ -82,11 +82,11 @@ class DeviceTree {
             }
         walk(stream).climb_and_descend(sweep);
     }
-    /// Performs both passes of a tree shared by ranks in one launch; see StageWalk::turn_shared.
+    /// Performs both passes of a tree shared by ranks in one launch; see StageWalk::shared_passes.
     template <class Sweep, class Numbers>
-    bool turn_shared(Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
-                     DeviceTree const& top, cudaStream_t stream) const {
-        return walk(stream).turn_shared(sweep, exchange, Launches{top, stream});
+    bool shared_passes(Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
+                       DeviceTree const& top, cudaStream_t stream) const {
+        return walk(stream).shared_passes(sweep, exchange, Launches{top, stream});
     }
 
   private:
@@ -154,8 +154,8 @@ class DeviceTree {
         }
         /// Launches both passes of stage `first` and of the one above it.
         template <class Sweep>
-        void turn(std::size_t first, Sweep const& sweep) const {
-            turn(first, sweep, kernels::NoExchange{}, nullptr);
+        void both_passes(std::size_t first, Sweep const& sweep) const {
+            both_passes(first, sweep, kernels::NoExchange{}, nullptr);
         }
         /// True if both passes fit in a launch that also contains an exchange and `top`.
         template <class Sweep, class Numbers>
@@ -164,13 +164,13 @@ class DeviceTree {
             Stage const& above = top.tree.stages_.back();
             if (first + 1 < stages())
                 return runs_at_once<kernels::ExchangeByBlock<Numbers>>(first, sweep, &above);
-            return grid_of_turn(first, sweep, &above).shared_bytes <= shared_bytes();
+            return grid_of_both_passes(first, sweep, &above).shared_bytes <= shared_bytes();
         }
         /// Launches both passes with an exchange and the passes of `top`.
         template <class Sweep, class Numbers>
-        void turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange,
-                  Launches const& top) const {
-            turn(first, sweep, exchange.next(), &top.tree.stages_.back());
+        void both_passes(std::size_t first, Sweep const& sweep,
+                         ExchangeInTurn<Numbers> const& exchange, Launches const& top) const {
+            both_passes(first, sweep, exchange.next(), &top.tree.stages_.back());
             ++turns_shared;
         }
         /// Launches the inward pass of the runs, by teams of lanes if there are few runs.
@@ -245,10 +245,10 @@ class DeviceTree {
         }
         /// Launches both passes of the last stages. `top`: null if there is no stage above.
         template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
-                  Stage const* top) const {
+        void both_passes(std::size_t first, Sweep const& sweep, Exchange const& exchange,
+                         Stage const* top) const {
             bool const together = first + 1 < stages();
-            launch(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top),
+            launch(kernels::both_passes<Sweep, Exchange>, grid_of_both_passes(first, sweep, top),
                    together ? tree.stages_[first].view : kernels::DeviceStage{},
                    tree.stages_.back().view, top ? top->view : kernels::DeviceStage{},
                    together ? tree.turn_.letters() : kernels::TopLaunchLetters{}, exchange, sweep);
@@ -258,13 +258,14 @@ class DeviceTree {
         /// one multiprocessor remains for the kernel in which they meet (arrived_beads.cu).
         template <class Exchange, class Sweep>
         bool runs_at_once(std::size_t first, Sweep const& sweep, Stage const* top) const {
-            return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>,
-                                                 grid_of_turn(first, sweep, top), top ? 1 : 0);
+            return tree.turn_ &&
+                   tree.turn_.fits(kernels::both_passes<Sweep, Exchange>,
+                                   grid_of_both_passes(first, sweep, top), top ? 1 : 0);
         }
         /// Returns the grid of a launch that performs both passes of the last stages, and of `top`
         /// if not null.
         template <class Sweep>
-        Grid grid_of_turn(std::size_t first, Sweep const& sweep, Stage const* top) const {
+        Grid grid_of_both_passes(std::size_t first, Sweep const& sweep, Stage const* top) const {
             Stage const &lower = tree.stages_[first], &upper = tree.stages_.back();
             int const planned = std::max(
                 {lower.threads, upper.threads, top ? kernels::threads_among_ranks<Sweep> : 0});

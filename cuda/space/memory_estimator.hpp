@@ -71,8 +71,8 @@ class MemoryEstimator : public HostAccess {
     template <class Numbers, class... Beside>
     void exchange(Direct const&, Numbers const&, Beside const&...) const {}
     template <class Numbers, class AnyTree, class Sweep, class... Beside>
-    bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const&, Sweep const&,
-                     Beside const&...) const {
+    bool shared_passes(Direct const&, Numbers const&, AnyTree const&, AnyTree const&, Sweep const&,
+                       Beside const&...) const {
         return false;
     }
     template <int D>

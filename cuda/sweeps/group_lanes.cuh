@@ -37,11 +37,11 @@ class GroupLanes {
     /// constructor reads memory that a launch writes.
     __device__ void open() { lanes_.open(true); }
     /// Performs both passes and stores the forces at the first joint of each group.
-    __device__ void turn() const {
+    __device__ void both_passes() const {
         Segment const segment = exists_ ? sweep_.load(slot_) : Segment::zero();
         __syncwarp();  // all lanes arrive at the barrier together
         wait_for_cluster();
-        lanes_.turn(segment, restricted_, [&](auto const& ends) {
+        lanes_.both_passes(segment, restricted_, [&](auto const& ends) {
             if (exists_) sweep_.s.forces.store(first_, ends.first);
         });
     }
@@ -57,7 +57,7 @@ class GroupLanes {
 
 /// True for sweeps that use this launch.
 template <class Sweep>
-constexpr bool turns_groups = Sweep::goes_short && by_groups<Sweep>;
+constexpr bool turns_groups = Sweep::supports_short_chains && by_groups<Sweep>;
 /// Kernel of both passes above the groups of one chain.
 template <class Sweep>
 __global__ void __launch_bounds__(GroupLanes<Sweep>::most_threads)
@@ -67,7 +67,7 @@ __global__ void __launch_bounds__(GroupLanes<Sweep>::most_threads)
     touch(sweep);
     warp.open();
     wait_for_launch();
-    warp.turn();
+    warp.both_passes();
 }
 
 }  // namespace catena::cuda::kernels

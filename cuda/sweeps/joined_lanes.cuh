@@ -50,7 +50,9 @@ struct Meeting {
         return of_pairs(in_row << (step - steps));
     }
     /// Returns the step that merges pairs of `distance` lanes each.
-    __device__ static Meeting of_pairs(int distance) { return {distance, 2 * distance - 1, 2 * distance - 1, false}; }
+    __device__ static Meeting of_pairs(int distance) {
+        return {distance, 2 * distance - 1, 2 * distance - 1, false};
+    }
 };
 
 /// Lanes of a warp that hold a segment of `of_lane` bodies each. First `in_row` neighbouring lanes
@@ -63,8 +65,10 @@ class JoinedLanes {
     using Node = typename Sweep::Node;
     using State = typename Sweep::Sweeps::State;
     using Factorizer = BranchlessFactorizer<true>;
-    static constexpr int levels_of_warp = levels_above(lanes_of_warp / in_row), most_levels_of_top = levels_above(lanes_of_warp);
-    static constexpr int steps_of_warp = in_row - 1 + levels_of_warp, bodies_of_warp = lanes_of_warp * of_lane;
+    static constexpr int levels_of_warp = levels_above(lanes_of_warp / in_row),
+                         most_levels_of_top = levels_above(lanes_of_warp);
+    static constexpr int steps_of_warp = in_row - 1 + levels_of_warp,
+                         bodies_of_warp = lanes_of_warp * of_lane;
 
   public:
     /// Forces at a segment's first joint and at the joint after it.
@@ -72,14 +76,17 @@ class JoinedLanes {
         State first, next;
     };
     /// Size of a block's shared memory in doubles, for a launch of `warps` merging warps.
-    static constexpr __host__ __device__ int of_block(int warps) { return 2 + numbers_of<Segment> * warps; }
+    static constexpr __host__ __device__ int of_block(int warps) {
+        return 2 + numbers_of<Segment> * warps;
+    }
     /// Size of each warp's memory in doubles: nodes of its lanes, of the top's lanes and of pairs
     /// of warps within these.
     static constexpr int of_warp = 3 * OfLanes::size<Node>;
 
     /// `warp`: number of this warp in the chain; `shared`: memory of the block; `own`: memory of
     /// the warp.
-    __device__ JoinedLanes(OneChain const& chain, Sweep const& sweep, int lane, int warp, double* shared, double* own)
+    __device__ JoinedLanes(OneChain const& chain, Sweep const& sweep, int lane, int warp,
+                           double* shared, double* own)
         : chain_(chain),
           sweep_(sweep),
           lane_(lane),
@@ -92,13 +99,15 @@ class JoinedLanes {
     /// Opens the inbox and reads the numbers of restricted directions at the top. All threads of
     /// the cluster call it before any lane merges; `joins` is true for warps that merge.
     __device__ void open(bool joins) {
-        if (threadIdx.x == 0 && !is_alone(chain_)) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        if (threadIdx.x == 0 && !is_alone(chain_))
+            inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
         arrive_at_cluster();
         CATENA_UNROLL
         for (int i = 0; i < 2; ++i) {
             int const warp = unit_ * lane_ + i;
-            at_top_[i] = warp < chain_.warps && joins ? sweep_.s.restricted[warp * bodies_of_warp] : 0;
+            at_top_[i] =
+                warp < chain_.warps && joins ? sweep_.s.restricted[warp * bodies_of_warp] : 0;
         }
     }
     /// Performs both passes. `segment`: the lane's segment, zero() if it has no bodies.
@@ -106,14 +115,15 @@ class JoinedLanes {
     /// with the forces at the ends of the lane's segment if the warp has bodies. Precondition:
     /// open() is complete in all blocks (wait_for_cluster()).
     template <class Down>
-    __device__ void turn(Segment segment, int restricted, Down const& down) const {
+    __device__ void both_passes(Segment segment, int restricted, Down const& down) const {
         climb<steps_of_warp>(segment, own_, warp_ * lanes_of_warp, of_lane, restricted,
                              [](int step) { return Meeting::of_row<in_row>(step); });
         if (warp_ >= chain_.warps) return;
         give(segment);
         int const place = lane_ % in_row;  // place of the lane in its row
         auto const of_levels = nodes_of_levels<levels_of_warp>(own_, in_row);
-        auto const of_row = nodes_of<in_row - 1>(own_, [second = lane_ - place + 1](int i) { return second + i; });
+        auto const of_row =
+            nodes_of<in_row - 1>(own_, [second = lane_ - place + 1](int i) { return second + i; });
         if (!is_alone(chain_)) inbox_.wait();
         Ends ends = solve_top();
         go_down(ends, of_levels, warp_ * lanes_of_warp, of_lane);
@@ -134,7 +144,8 @@ class JoinedLanes {
     /// outboard segment. If the unchecked factorizer was not sure, the pass is repeated with exact
     /// factors and branches.
     template <int steps, class Step>
-    __device__ void climb(Segment& segment, double* nodes, int first, int length, int restricted, Step const& step) const {
+    __device__ void climb(Segment& segment, double* nodes, int first, int length, int restricted,
+                          Step const& step) const {
         bool sure = true;
         Segment quickly = segment;
         // A lane without a joint restricts nothing.
@@ -142,12 +153,14 @@ class JoinedLanes {
         each_step<steps>([&](int s) {
             Meeting const m = step(s);
             int const lane = lane_ - m.distance + 1;
-            bool const meets = (lane_ & m.mask) == m.last, exists = (first + lane) * length < chain_.bodies;
+            bool const meets = (lane_ & m.mask) == m.last,
+                       exists = (first + lane) * length < chain_.bodies;
             Segment const inboard = from_lane(quickly, lane_ - m.distance);
             Node found;
             bool sure_here = true;
-            Segment joined = sweep_.joined_at_once(inboard, quickly, static_cast<int>(restricts >> (lane & (lanes_of_warp - 1)) & 1), found,
-                                                   UncheckedFactorizer{sure_here});
+            Segment joined = sweep_.joined_at_once(
+                inboard, quickly, static_cast<int>(restricts >> (lane & (lanes_of_warp - 1)) & 1),
+                found, UncheckedFactorizer{sure_here});
             if (!exists) joined.bias.b1 = inboard.bias.b1;
             if (meets && exists) OfLanes::store(nodes, lane, found);
             sure = sure && (!meets || sure_here);
@@ -161,7 +174,8 @@ class JoinedLanes {
         CATENA_NO_UNROLL
         for (int s = 0; s < steps; ++s) {
             Meeting const m = step(s);
-            int const lane = lane_ - m.distance + 1, of_joint = __shfl_sync(whole_warp, restricted, lane);
+            int const lane = lane_ - m.distance + 1,
+                      of_joint = __shfl_sync(whole_warp, restricted, lane);
             std::int64_t const joint = (first + lane) * length;
             Segment const inboard = from_lane(segment, lane_ - m.distance);
             if ((lane_ & m.mask) != m.last) continue;
@@ -193,12 +207,14 @@ class JoinedLanes {
     /// Returns the nodes of pairs of `lanes` lanes each, then of twice as many lanes, and so on.
     template <int levels>
     __device__ auto nodes_of_levels(double const* nodes, int lanes) const {
-        return nodes_of<levels>(nodes,
-                                [lane = lane_, lanes](int level) { return (lane & ~(2 * (lanes << level) - 1)) + (lanes << level); });
+        return nodes_of<levels>(nodes, [lane = lane_, lanes](int level) {
+            return (lane & ~(2 * (lanes << level) - 1)) + (lanes << level);
+        });
     }
     /// Outward pass from the ends of a lane's pair to the ends of its own segment, level by level.
     template <int levels, class Lane>
-    __device__ void go_down(Ends& ends, Nodes<levels, Lane> const& nodes, int first, int length) const {
+    __device__ void go_down(Ends& ends, Nodes<levels, Lane> const& nodes, int first,
+                            int length) const {
         each_step<levels, true>([&](int level) {
             int const middle = nodes.lane(level);
             bool const exists = (first + middle) * length < chain_.bodies;
@@ -216,30 +232,37 @@ class JoinedLanes {
             for (int n = 0; n < numbers_of<Segment>; ++n) letter[n] = values[n];
         }
         __syncwarp();
-        send_to_all<numbers_of<Segment>>(chain_, inbox_, lane_, letter, [&](int n) { return segments_ + n * chain_.warps + warp_; });
+        send_to_all<numbers_of<Segment>>(chain_, inbox_, lane_, letter, [&](int n) {
+            return segments_ + n * chain_.warps + warp_;
+        });
         __syncwarp();  // the top's nodes overwrite this memory
     }
     /// Returns the segment of a warp that has arrived.
     __device__ Segment given(int warp) const {
         NumbersOf<Segment> values;
         CATENA_UNROLL
-        for (int n = 0; n < numbers_of<Segment>; ++n) values[n] = segments_[n * chain_.warps + warp];
+        for (int n = 0; n < numbers_of<Segment>; ++n)
+            values[n] = segments_[n * chain_.warps + warp];
         return __builtin_bit_cast(Segment, values);
     }
     /// Merges the segments of all warps and returns the forces at the ends of this warp.
     __device__ Ends solve_top() const {
-        double *const nodes = own_ + OfLanes::size<Node>, *const within = nodes + OfLanes::size<Node>;
+        double *const nodes = own_ + OfLanes::size<Node>, *const within =
+                                                              nodes + OfLanes::size<Node>;
         int const first = unit_ * lane_;
         Segment segment = first < chain_.warps ? given(first) : Segment::zero();
         bool const two = unit_ > 1 && first + 1 < chain_.warps;
         if (two) {
             Node found;
-            segment = sweep_.joined(segment, given(first + 1), {(first + 1) * bodies_of_warp, at_top_[1]}, found, Factorizer{});
+            segment =
+                sweep_.joined(segment, given(first + 1), {(first + 1) * bodies_of_warp, at_top_[1]},
+                              found, Factorizer{});
             OfLanes::store(within, lane_, found);
         }
         Ends ends = solve_lanes<0>(segment, nodes);
         if (two) {
-            State const there = sweep_.force(OfLanes::load<Node>(within, lane_), ends.first, ends.next);
+            State const there =
+                sweep_.force(OfLanes::load<Node>(within, lane_), ends.first, ends.next);
             (first == warp_ ? ends.next : ends.first) = there;
         }
         return from_lane(ends, warp_ / unit_);
@@ -251,7 +274,8 @@ class JoinedLanes {
     __device__ Ends solve_lanes(Segment segment, double* nodes) const {
         if constexpr (levels < most_levels_of_top)
             if ((unit_ << levels) < chain_.warps) return solve_lanes<levels + 1>(segment, nodes);
-        climb<levels>(segment, nodes, 0, unit_ * bodies_of_warp, at_top_[0], [](int level) { return Meeting::of_pairs(1 << level); });
+        climb<levels>(segment, nodes, 0, unit_ * bodies_of_warp, at_top_[0],
+                      [](int level) { return Meeting::of_pairs(1 << level); });
         auto const of_levels = nodes_of_levels<levels>(nodes, 1);
         constexpr int last = (1 << levels) - 1;
         int const restricted = __shfl_sync(whole_warp, at_top_[0], 0);
@@ -267,7 +291,7 @@ class JoinedLanes {
     int lane_, warp_;
     Inbox inbox_;
     double *segments_, *own_;
-    int unit_;  // warps per lane of the top
+    int unit_;       // warps per lane of the top
     int at_top_[2];  // directions that the joints before the lane's warps restrict
 };
 

@@ -83,8 +83,10 @@ class MergeTeam {
         }
         auto const beyond = record<Directions>(places.outboard + at_b1);
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) of_inboard[i] = has_biases_ ? of_inboard[i] - beyond[i] : of_inboard[i];
-        Directions inboard = dca::solve_lower(factor, of_inboard), outboard = dca::solve_lower(factor, of_outboard);
+        for (int i = 0; i < K; ++i)
+            of_inboard[i] = has_biases_ ? of_inboard[i] - beyond[i] : of_inboard[i];
+        Directions inboard = dca::solve_lower(factor, of_inboard),
+                   outboard = dca::solve_lower(factor, of_outboard);
         __syncwarp();  // all lanes have read both segments
         put(places.node, works, inboard, outboard);
         __syncwarp();
@@ -94,27 +96,34 @@ class MergeTeam {
         // matrices do not depend on it.
         if (!__all_sync(0xffffffffu, sure || !works)) {
             factor = factorized(sweep, at, works, sum(places));
-            inboard = dca::solve_lower(factor, of_inboard), outboard = dca::solve_lower(factor, of_outboard);
+            inboard = dca::solve_lower(factor, of_inboard),
+            outboard = dca::solve_lower(factor, of_outboard);
             __syncwarp();
             put(places.node, works, inboard, outboard);
             __syncwarp();
         }
-        put_joined(places.node, dca::scaled(factor, inboard), dca::scaled(factor, outboard), works, places.joined, first, last);
+        put_joined(places.node, dca::scaled(factor, inboard), dca::scaled(factor, outboard), works,
+                   places.joined, first, last);
         CATENA_UNROLL
         for (int n = 0; n < Triangle::size; ++n)
             if (works && own_ == lanes - 1) places.node[n] = factor.data[n];
         return {beyond, last};
     }
     /// Computes the force at the joint of a merge and stores it.
-    __device__ void go_down(dca::BlockMerge const& m, bool works, Nodes const& nodes, Forces const& forces) const {
-        Directions const found = force(nodes.record(m.outboard), forces.load(m.inboard), forces.load(m.next));
+    __device__ void go_down(dca::BlockMerge const& m, bool works, Nodes const& nodes,
+                            Forces const& forces) const {
+        Directions const found =
+            force(nodes.record(m.outboard), forces.load(m.inboard), forces.load(m.next));
         if (works && own_ == 0) forces.store(m.outboard, found);
     }
     /// Returns the force at the joint from the forces at the ends of the merged segment; each lane
     /// computes one row.
-    __device__ Directions force(double const* node, Directions const& first, Directions const& next) const {
-        auto const inboard = record<Directions>(node + at_inboard + column_ * K), outboard = record<Directions>(node + at_outboard + column_ * K);
-        double const of_row = dot(inboard, first) + (dot(outboard, next) + node[at_offset + column_]);
+    __device__ Directions force(double const* node, Directions const& first,
+                                Directions const& next) const {
+        auto const inboard = record<Directions>(node + at_inboard + column_ * K),
+                   outboard = record<Directions>(node + at_outboard + column_ * K);
+        double const of_row =
+            dot(inboard, first) + (dot(outboard, next) + node[at_offset + column_]);
         Directions all;
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) all[i] = from_lane(of_row, lane_ - own_ + i);
@@ -142,16 +151,21 @@ class MergeTeam {
     }
 
   private:
-    static_assert(numbers_of<Segment> == at_b2 + K && numbers_of<Node> == at_offset + K && K < lanes);
+    static_assert(numbers_of<Segment> == at_b2 + K && numbers_of<Node> == at_offset + K &&
+                  K < lanes);
     using Matrices = dca::SegmentMatrix<double, K>;
     using Joint = dca::JointMatrix<double, K>;
-    static_assert(offsetof(Matrices, z12) == at_z12 * sizeof(double) && offsetof(Joint, outboard) == at_outboard * sizeof(double));
+    static_assert(offsetof(Matrices, z12) == at_z12 * sizeof(double) &&
+                  offsetof(Joint, outboard) == at_outboard * sizeof(double));
 
     /// Returns Z of append(). If a node takes the outboard segment's place, the joint's factor is
     /// written last, as it overwrites that segment's z11.
-    __device__ static Triangle sum(Places const& places) { return record<Triangle>(places.inboard + at_z22) + record<Triangle>(places.outboard); }
+    __device__ static Triangle sum(Places const& places) {
+        return record<Triangle>(places.inboard + at_z22) + record<Triangle>(places.outboard);
+    }
     /// Factorizes with the sweep's checks and reports a pivot failure.
-    __device__ static Triangle factorized(Sweep const& sweep, dca::JointAt const& at, bool works, Triangle const& z) {
+    __device__ static Triangle factorized(Sweep const& sweep, dca::JointAt const& at, bool works,
+                                          Triangle const& z) {
         Triangle const factor = BranchlessFactorizer<false>{}(z, at.restricted);
         dca::PivotFailure found;
         sweep.s.watch(at, factor, found);
@@ -159,10 +173,12 @@ class MergeTeam {
         return factor;
     }
     /// Stores the joint's matrices and offset.
-    __device__ void put(double* node, bool works, Directions const& inboard, Directions const& outboard) const {
+    __device__ void put(double* node, bool works, Directions const& inboard,
+                        Directions const& outboard) const {
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) {
-            if (works && own_ <= K) node[has_biases_ ? at_offset + i : at_inboard + i * K + column_] = inboard[i];
+            if (works && own_ <= K)
+                node[has_biases_ ? at_offset + i : at_inboard + i * K + column_] = inboard[i];
             if (works && own_ < K) node[at_outboard + i * K + column_] = outboard[i];
         }
     }
@@ -175,22 +191,27 @@ class MergeTeam {
     }
     /// Computes and stores a column of the merged matrices, or the biases, as append() does.
     /// Columns of the joint's matrices are read just before use, because registers are scarce.
-    __device__ void put_joined(double const* node, Directions const& of_inboard, Directions const& of_outboard, bool works, double* joined,
+    __device__ void put_joined(double const* node, Directions const& of_inboard,
+                               Directions const& of_outboard, bool works, double* joined,
                                Directions first, Directions last) const {
         Directions through;
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) {
-            Directions const inboard = column(node + at_inboard, i), outboard = column(node + at_outboard, i);
+            Directions const inboard = column(node + at_inboard, i),
+                             outboard = column(node + at_outboard, i);
             through[i] = dot(inboard, has_biases_ ? of_inboard : of_outboard);
-            first[i] = has_biases_ ? first[i] - through[i] : dca::less_products(first[i], inboard, of_inboard);
-            last[i] = has_biases_ ? last[i] + dot(outboard, of_inboard) : dca::less_products(last[i], outboard, of_outboard);
+            first[i] = has_biases_ ? first[i] - through[i]
+                                   : dca::less_products(first[i], inboard, of_inboard);
+            last[i] = has_biases_ ? last[i] + dot(outboard, of_inboard)
+                                  : dca::less_products(last[i], outboard, of_outboard);
         }
         CATENA_UNROLL
         for (int i = 0; i < K; ++i) {
             if (works && own_ < K) joined[at_z12 + i * K + column_] = through[i];
             int const at_first = has_biases_ ? at_b1 + i : Triangle::at(i, 0) + column_;
             int const at_last = has_biases_ ? at_b2 + i : at_z22 + Triangle::at(i, 0) + column_;
-            if (works && own_ <= K && (has_biases_ || i >= column_)) joined[at_first] = first[i], joined[at_last] = last[i];
+            if (works && own_ <= K && (has_biases_ || i >= column_))
+                joined[at_first] = first[i], joined[at_last] = last[i];
         }
     }
 

@@ -84,9 +84,10 @@ __device__ void send_to_all(OneChain const& chain, Inbox const& inbox, int lane,
     auto const blocks = static_cast<int>(gridDim.x);
     for (int n = lane % lanes_of_block; n < numbers; n += lanes_of_block) {
         double const number = record[n];
-    CATENA_UNROLL
+        CATENA_UNROLL
         for (int first = 0; first < most_blocks_of_chain; first += at_once)
-            if (int const block = first + lane / lanes_of_block; block < blocks) inbox.send(block, at(n), number);
+            if (int const block = first + lane / lanes_of_block; block < blocks)
+                inbox.send(block, at(n), number);
     }
 }
 

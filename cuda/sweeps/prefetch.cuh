@@ -69,7 +69,8 @@ class BodiesInTurn {
     static __host__ __device__ constexpr std::size_t size(int threads) {
         return static_cast<std::size_t>(of_thread) * static_cast<std::size_t>(threads);
     }
-    __device__ BodiesInTurn(Bodies const& bodies, std::int64_t begin, std::int64_t end, double* memory)
+    __device__ BodiesInTurn(Bodies const& bodies, std::int64_t begin, std::int64_t end,
+                            double* memory)
         : bodies_(bodies), own_(memory + threadIdx.x * of_thread), next_(begin), end_(end) {
         start();
     }

@@ -22,7 +22,7 @@ template <int lanes, bool whole>
 class RevoluteTeam {
     using Body = dca::ArticulatedBody<double>;
     using Wrench = dca::Wrench<double>;
-    using Swing = dca::BodyAcceleration<double>;
+    using VelocityBias = dca::BodyAcceleration<double>;
     using InRun = dca::LoadedBodyInRun<double>;
     using Ahead = BodiesAhead<lanes>;
     using Column = Vector<double, 6>;
@@ -48,9 +48,9 @@ class RevoluteTeam {
         Prepared const last_one = prepare(body, ahead, kept);
         begin(body(0));
         go_on<dca::Undriven>(ahead, kept);
-        dca::OutboardHandle<double> const before =
-            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward},
-                    before_last());
+        dca::OutboardHandle<double> const before = of_lane(
+            dca::OutboardHandle<double>{last_one.rotation * last_one.axes2, last_one.inward},
+            before_last());
         end(before, body(bodies_.last()), dca::Undriven{}, kept, put_row);
     }
     /// Eliminates a run whose loads at revolute joints are given. `all`: as for FollowedBodies.
@@ -61,7 +61,8 @@ class RevoluteTeam {
         begin(loaded.first());
         go_on<double>(ahead, kept);
         dca::OutboardHandle<double> const before{
-            to_matrix_of_unit(last_one.turn) * loaded.axes2(bodies_.last() - 1), last_one.inward};
+            to_matrix_of_unit(last_one.rotation) * loaded.axes2(bodies_.last() - 1),
+            last_one.inward};
         Body const last = loaded.last(before.axes, last_one.omega, ByLeader<Kept>{kept, leads()});
         end(before, last, loaded.torque_about(bodies_.last()), kept, put_row);
     }
@@ -82,7 +83,7 @@ class RevoluteTeam {
 
     /// State of a body that the following bodies need; see dca::BodiesOfRun::State.
     struct Prepared {
-        Mat3 turn, axes2;
+        Mat3 rotation, axes2;
         Vec3 inward;
     };
     /// Prepares all bodies and stores what the inward pass needs. Returns the state of the last of
@@ -91,16 +92,17 @@ class RevoluteTeam {
     __device__ __forceinline__ Prepared prepare(BodyOf const& body, Ahead const& ahead,
                                                 Kept& kept) {
         Prepared own{Mat3::identity(), Mat3::identity(), Vec3::zero()};
-        Mat3 turn = own.turn;
-        Swing swing{Vec3::zero(), Vec3::zero()};
+        Mat3 rotation = own.rotation;
+        VelocityBias velocity_bias{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
         for (int first = 0; first < bodies_of_whole_run; first += lanes) {
             Body const here = body(bodies_.body_or_last(first + own_));
-            Mat3 const mine = along(first, turn, here.turn_to(one_before(here.e2, own.axes2)),
-                                    [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
+            Mat3 const mine =
+                along(first, rotation, here.rotation_to(one_before(here.e2, own.axes2)),
+                      [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
             Vec3 const inward = mine * here.inward2;
             InRun const in_run = dca::in_run(here, mine, one_before(inward, own.inward));
-            put_ahead(first, in_run, 0.0, swing, ahead, kept);
+            put_ahead(first, in_run, 0.0, velocity_bias, ahead, kept);
             own = {mine, here.e2, inward};
         }
         __syncwarp();
@@ -119,18 +121,18 @@ class RevoluteTeam {
         dca::FollowedState<double> own{Quat::identity(), loaded.first_omega(),
                                        loaded.first_inward()};
         Vec3 const first_inward = own.inward;
-        Quat turn = own.turn;
+        Quat rotation = own.rotation;
         Vec3 omega = own.omega;
-        Swing swing{Vec3::zero(), Vec3::zero()};
+        VelocityBias velocity_bias{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
         for (int first = 0; first < bodies_of_whole_run; first += lanes) {
             int const i = first + own_;
             int const read = bodies_.body_or_last(i);
             dca::BodyOnRevolute<double> const here = loaded.on_revolute(read);
             Vec3 const omega_of_last = omega;
-            own.turn =
-                along(first, turn, here.turn, [](Quat& t, Quat const& next) { t = t * next; });
-            Mat3 const mine = to_matrix_of_unit(own.turn);
+            own.rotation = along(first, rotation, here.rotation,
+                                 [](Quat& t, Quat const& next) { t = t * next; });
+            Mat3 const mine = to_matrix_of_unit(own.rotation);
             Vec3 const after = along(
                 first, omega, Turning{mine * here.axis, here.rate},
                 [](Vec3& w, Turning const& next) { w = plus_scaled(w, next.rate, next.axis); });
@@ -141,7 +143,7 @@ class RevoluteTeam {
             InRun in_run = own.go_on(body);
             own.inward = inward;
             loaded.add_wrench(read, in_run);
-            put_ahead(first, in_run, loaded.torque_about(read), swing, ahead, kept);
+            put_ahead(first, in_run, loaded.torque_about(read), velocity_bias, ahead, kept);
             if (works_ && bodies_.is_within(i) && (all || i == bodies_.last() - 1))
                 kept.put_omega(i, transposed_times(mine, own.omega));
         }
@@ -150,23 +152,25 @@ class RevoluteTeam {
     }
     /// Lane that holds the last body but one.
     __device__ int before_last() const { return (bodies_.last() - 1) % lanes; }
-    /// Stores what the inward pass needs of the bodies from `first` on, one per lane. `swing`:
-    /// velocity bias of the body before them.
+    /// Stores what the inward pass needs of the bodies from `first` on, one per lane.
+    /// `velocity_bias`: velocity bias of the body before them.
     template <class Kept>
     __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about,
-                                              Swing& swing, Ahead const& ahead, Kept& kept) {
+                                              VelocityBias& velocity_bias, Ahead const& ahead,
+                                              Kept& kept) {
         /// Terms of a body by which the velocity bias is propagated.
-        struct Swung {
-            Swing difference;
+        struct VelocityBiasTerms {
+            VelocityBias difference;
             Vec3 across;
         };
         int const i = first + own_;
-        swing_ = along(first, swing, Swung{body.difference, body.across},
-                       [](Swing& s, Swung const& next) { swing_on(s, next); });
+        velocity_bias_ =
+            along(first, velocity_bias, VelocityBiasTerms{body.difference, body.across},
+                  [](VelocityBias& s, VelocityBiasTerms const& next) { swing_on(s, next); });
         if (!bodies_.is_within(i)) return;
         ahead.put(i - 1, {body, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
-                          about_point(load_of(body, swing_), body.centre)});
-        if (works_) kept.put(i, body, swing_);
+                          about_point(load_of(body, velocity_bias_), body.centre)});
+        if (works_) kept.put(i, body, velocity_bias_);
     }
 
     /// Starts the inward pass with the run's first body.
@@ -193,7 +197,8 @@ class RevoluteTeam {
         for (int i = 1; i < most_ - 1; ++i) {
             bool const goes = whole || bodies_.is_within(i);
             BodyAhead const next = ahead.get(i - 1);
-            dca::ReleasedRevolute<double> const revolute = pass_revolute(next.axis, torque_of<Torque>(next.torque_about), goes);
+            dca::ReleasedRevolute<double> const revolute =
+                pass_revolute(next.axis, torque_of<Torque>(next.torque_about), goes);
             if (!goes) continue;
             CATENA_UNROLL
             for (int s = 0; s < wrenches; ++s) move_point(wrench_[s], next.across);
@@ -213,7 +218,9 @@ class RevoluteTeam {
     /// Passes a revolute joint about `axis`. `goes`: false if the team only accompanies other
     /// teams.
     template <class Torque>
-    __device__ __forceinline__ dca::ReleasedRevolute<double> pass_revolute(Vec3 const& axis, Torque const& torque, bool goes = true) {
+    __device__ __forceinline__ dca::ReleasedRevolute<double> pass_revolute(Vec3 const& axis,
+                                                                           Torque const& torque,
+                                                                           bool goes = true) {
         dca::ReleasedRevolute<double> h;
         double along[wrenches] = {};
         if (goes) {
@@ -222,7 +229,8 @@ class RevoluteTeam {
             for (int s = 0; s < last_wrench; ++s) along[s] = release_revolute(wrench_[s], r);
             // Adding -0 leaves the wrenches that are not the bias unchanged, bit by bit.
             if constexpr (std::is_same_v<Torque, double>)
-                along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
+                along[last_wrench] =
+                    release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
             else
                 along[last_wrench] = release_revolute(wrench_[last_wrench], r);
         }
@@ -236,19 +244,20 @@ class RevoluteTeam {
     }
     /// Ends the run and writes the rows of its segment, as dca::end_run() and dca::segment_of() do.
     template <class Torque, class Kept, class PutRow>
-    __device__ __forceinline__ void end(dca::OutboardHandle<double> const& before, Body const& last, Torque const& torque, Kept& kept,
-                                        PutRow const& put_row) {
-        take_difference(of_lane(swing_, before_last()));
-        Mat3 const turn = transpose(before.axes);
-        turn_axes(all_, turn);
+    __device__ __forceinline__ void end(dca::OutboardHandle<double> const& before, Body const& last,
+                                        Torque const& torque, Kept& kept, PutRow const& put_row) {
+        add_velocity_bias(of_lane(velocity_bias_, before_last()));
+        Mat3 const rotation = transpose(before.axes);
+        rotate_axes(all_, rotation);
         CATENA_UNROLL
-        for (int s = 0; s < wrenches; ++s) turn_axes(wrench_[s], turn);
-        dca::ReleasedRevolute<double> const revolute = pass_revolute(dca::last_axis<double>(), torque);
+        for (int s = 0; s < wrenches; ++s) rotate_axes(wrench_[s], rotation);
+        dca::ReleasedRevolute<double> const revolute =
+            pass_revolute(dca::last_axis<double>(), torque);
         leave_revolute(all_);
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) wrench_[s].torque[2] = 0;
         if (has_bias()) wrench_[last_wrench].torque[2] = dca::left_along_revolute<double>(torque);
-        take_difference(last_difference(last, turn * before.inward));
+        add_velocity_bias(last_difference(last, rotation * before.inward));
 
         dca::LastBody<double> const body = last_body(last);
         Symmetric<double, 6> const factor = dca::factorize(inertia_of_end(all_, body), 6);
@@ -263,7 +272,8 @@ class RevoluteTeam {
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) {
             int const own = own_ + s * lanes;
-            first[s] = own == bias ? bias_of_end(wrench_[s], body) : dca::six_of(wrench_[s].force, wrench_[s].torque);
+            first[s] = own == bias ? bias_of_end(wrench_[s], body)
+                                   : dca::six_of(wrench_[s].force, wrench_[s].torque);
             if (works_ && own < bias) kept.put_first(own, first[s]);
             if (works_ && own == bias) kept.put_bias(first[s]);
             second[s] = second_of(handle, 0);
@@ -276,7 +286,8 @@ class RevoluteTeam {
         dca::SegmentRow<double, 5> row[wrenches];
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) {
-            Column const first_j = of_lane(first[j / lanes], j % lanes), second_j = of_lane(second[j / lanes], j % lanes);
+            Column const first_j = of_lane(first[j / lanes], j % lanes),
+                         second_j = of_lane(second[j / lanes], j % lanes);
             CATENA_UNROLL
             for (int s = 0; s < wrenches; ++s) {
                 row[s].z11[j] = row_[s][j] + dca::product(factor, first[s], first_j);
@@ -298,10 +309,10 @@ class RevoluteTeam {
         }
     }
     /// Subtracts the acceleration difference `d` of a joint's two sides from the bias and the rows.
-    __device__ __forceinline__ void take_difference(Swing const& d) {
+    __device__ __forceinline__ void add_velocity_bias(VelocityBias const& d) {
         CATENA_UNROLL
-        for (int s = 0; s < wrenches; ++s) dca::take_difference(e_[s], wrench_[s], d);
-        if (has_bias()) dca::take_difference(wrench_[last_wrench], all_, d);
+        for (int s = 0; s < wrenches; ++s) dca::add_velocity_bias(e_[s], wrench_[s], d);
+        if (has_bias()) dca::add_velocity_bias(wrench_[last_wrench], all_, d);
     }
     /// True if the lane's last wrench is the bias.
     __device__ bool has_bias() const { return own_ == bias % lanes; }
@@ -309,7 +320,8 @@ class RevoluteTeam {
     /// Calls step(state, value) with the values of the team's lanes in order, except for the run's
     /// first body. Returns the state after the lane's own value.
     template <class State, class T, class Step>
-    __device__ __forceinline__ State along(int first, State& state, T const& value, Step const& step) const {
+    __device__ __forceinline__ State along(int first, State& state, T const& value,
+                                           Step const& step) const {
         constexpr int few = 4;  // exchanges in flight together
         State own = state;
         CATENA_NO_UNROLL
@@ -334,7 +346,8 @@ class RevoluteTeam {
     /// belongs to the bodies before.
     template <class T>
     __device__ T one_before(T const& value, T const& of_last) const {
-        T const before = from_lane(value, leader_ + (own_ + lanes - 1) % lanes), last = of_lane(of_last, lanes - 1);
+        T const before = from_lane(value, leader_ + (own_ + lanes - 1) % lanes),
+                last = of_lane(of_last, lanes - 1);
         return dca::either(own_ > 0, before, last);
     }
     /// Returns the value of lane `lane` of the team.
@@ -345,9 +358,9 @@ class RevoluteTeam {
 
     BodiesOfTeam<lanes, whole> bodies_;
     int own_, leader_;  // lane in the team, and the team's first lane in the warp
-    int most_;  // largest number of bodies of the warp's teams
+    int most_;          // largest number of bodies of the warp's teams
     bool works_;
-    Swing swing_;  // velocity bias of the last of the lane's own bodies
+    VelocityBias velocity_bias_;  // velocity bias of the last of the lane's own bodies
     /// Articulated-body inertia of the bodies so far.
     dca::SpatialInertia<double> all_;
     Wrench wrench_[wrenches];
@@ -356,22 +369,28 @@ class RevoluteTeam {
 
 /// Inward pass of one run by a team.
 template <bool whole, int lanes, class Sweep>
-__device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
+__device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane,
+                                              bool works) {
     RevoluteTeam<lanes, whole> team(BodiesOfTeam<lanes, whole>(run), lane, works);
     dca::RunWorkspace<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
     BodiesAhead<lanes> const ahead(shared_numbers, lane);
-    auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) { sweep.store_row(run.slot, i, row); };
+    auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) {
+        sweep.store_row(run.slot, i, row);
+    };
     if (sweep.follows()) {
         team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
     } else {
-        auto const body = [&](int i) { return sweep.s.leaf.revolute(sweep.bodies.loads, run.body + i); };
+        auto const body = [&](int i) {
+            return sweep.s.leaf.revolute(sweep.bodies.loads, run.body + i);
+        };
         team.climb(body, ahead, kept, put_row);
     }
     sweep.s.note(kept.lost());
 }
 /// Outward pass of one run by a team.
 template <bool whole, int lanes, class Sweep>
-__device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
+__device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane,
+                                                bool works) {
     BodiesOfTeam<lanes, whole> const bodies(run);
     bool const leads = works && lane % lanes == 0;
     dca::RunWorkspace<typename Sweep::Sweeps> const kept(sweep.s, run, false);
@@ -380,12 +399,13 @@ __device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run con
     behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
     dca::descend_revolutes<double>(
         bodies.count(), false, [&](int i) { return behind.frame(i); }, behind, first, next,
-        [&](int i, dca::RevoluteFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
+        [&](int i, dca::RevoluteFrame<double> const& frame,
+            dca::BodyAcceleration<double> const& a) {
             if (leads) sweep.accelerate(run, i, frame, a);
         },
         [](int, dca::BodyAcceleration<double>&) {},
         [&](int i, double of_revolute) {
-            if (leads) sweep.turn(run, i, of_revolute);
+            if (leads) sweep.joint_acceleration(run, i, of_revolute);
         });
 }
 /// True if `says` is true on all lanes of the warp. It uses shuffles, because after a vote nvcc 13
@@ -398,7 +418,8 @@ __device__ inline bool all_lanes(int lane, bool says) {
 }
 /// Returns the run of a team. A team without a run on revolute joints takes that of the warp's
 /// other team.
-__device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run, bool by_revolutes) {
+__device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run,
+                                    bool by_revolutes) {
     std::int64_t const other = wanted ^ 1;
     return by_revolutes ? run : runs[other < runs.count ? other : runs.count - 1];
 }
@@ -460,7 +481,9 @@ RunsGrid grid_of_teams(std::int64_t runs, std::size_t numbers_of_warp) {
 }
 /// Returns the number of lanes per run on revolute joints; 0: one thread per run.
 constexpr int lanes_of_teams(std::int64_t runs) {
-    return runs <= most_runs_of_broad_teams ? lanes_of_broad_team : runs <= most_runs_of_teams ? lanes_of_narrow_team : 0;
+    return runs <= most_runs_of_broad_teams ? lanes_of_broad_team
+           : runs <= most_runs_of_teams     ? lanes_of_narrow_team
+                                            : 0;
 }
 /// Calls launch(kernel, grid) for the inward pass. Returns false, without a call, if teams are not
 /// used.
@@ -468,8 +491,12 @@ template <class Sweep, class Launch>
 bool climb_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     if constexpr (dca::takes_whole_runs<Sweep>) {
         constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
-        if (lanes == broad) launch(climb_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, BodiesAhead<broad>::size));
-        if (lanes == narrow) launch(climb_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, BodiesAhead<narrow>::size));
+        if (lanes == broad)
+            launch(climb_runs_by_teams<broad, Sweep>,
+                   grid_of_teams<broad>(runs, BodiesAhead<broad>::size));
+        if (lanes == narrow)
+            launch(climb_runs_by_teams<narrow, Sweep>,
+                   grid_of_teams<narrow>(runs, BodiesAhead<narrow>::size));
         return lanes != 0;
     }
     return false;
@@ -480,9 +507,12 @@ template <class Sweep, class Launch>
 bool descend_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     if constexpr (dca::takes_whole_runs<Sweep>) {
         constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
-        std::size_t const numbers = lanes == broad ? RevolutesBehind<Sweep, broad, true>::size : RevolutesBehind<Sweep, narrow, true>::size;
-        if (lanes == broad) launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, numbers));
-        if (lanes == narrow) launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, numbers));
+        std::size_t const numbers = lanes == broad ? RevolutesBehind<Sweep, broad, true>::size
+                                                   : RevolutesBehind<Sweep, narrow, true>::size;
+        if (lanes == broad)
+            launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, numbers));
+        if (lanes == narrow)
+            launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, numbers));
         return lanes != 0;
     }
     return false;

@@ -31,7 +31,8 @@ class GroupOfRuns {
         int const restricted = lane_ < runs_ ? sweep.s.restricted[joint(lane_)] : 0;
         CATENA_UNROLL
         for (int distance = 1; distance < runs_of_group; distance *= 2) {
-            int const middle = lane_ - distance + 1, of_joint = __shfl_sync(0xffffffffu, restricted, middle);
+            int const middle = lane_ - distance + 1,
+                      of_joint = __shfl_sync(0xffffffffu, restricted, middle);
             typename Sweep::Segment const inboard = from_lane(segment, lane_ - distance);
             if ((lane_ & (2 * distance - 1)) != 2 * distance - 1) continue;
             if (middle >= runs_) {

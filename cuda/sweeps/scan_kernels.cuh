@@ -297,7 +297,7 @@ std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
     return numbers;
 }
 /// Performs both passes of one block, with exchange() and the one block of the top `above` between
-/// the passes, as turn() does.
+/// the passes, as both_passes() does.
 template <bool runs_are_known, class Scan, class Exchange>
 __device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above,
                                   Exchange const& exchange) {
@@ -315,7 +315,8 @@ __device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> co
 /// Kernel of both passes with an exchange between ranks.
 template <class Scan, class Exchange>
 __global__ void __launch_bounds__(most_of_scan)
-    turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
+    shared_passes_of_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange,
+                          Scan scan) {
     wait_for_launch();
     BlockOfScan<Scan> block(stage, scan, shared_numbers, false);
     BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
@@ -324,8 +325,8 @@ __global__ void __launch_bounds__(most_of_scan)
 /// Kernel of both passes with an exchange between ranks, then action(i) as in turn_scan_then().
 template <class Scan, class Exchange, class Action>
 __global__ void __launch_bounds__(most_of_scan)
-    turn_shared_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan,
-                          std::int64_t count, Action action) {
+    shared_passes_of_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange,
+                               Scan scan, std::int64_t count, Action action) {
     wait_for_launch();
     double* const of_top = shared_numbers + BlockOfScan<Scan>::size(stage);
     BlockOfScan<Scan> block(stage, scan, shared_numbers, false, 0);

@@ -12,13 +12,13 @@ namespace catena::cuda {
 
 /// Performs the passes of a scan by calls of `Launches`, which has these members.
 /// - stages(), blocks(i): number of stages and blocks of stage i.
-/// - climb(i, scan), turn(i, scan), descend(i, scan): inward pass, both passes and outward pass of
-/// stage i.
+/// - climb(i, scan), both_passes(i, scan), descend(i, scan): inward pass, both passes and outward
+/// pass of stage i.
 /// - turn_then(scan, count, action): both passes and an action in one launch; false if that is
 /// impossible.
-/// - turn_shared(scan, exchange, top): both passes of the last stage with an exchange between ranks
-/// and their `top` tree.
-/// - turn_shared_then(scan, exchange, top, count, action): the same with an action; false if that
+/// - shared_passes(scan, exchange, top): both passes of the last stage with an exchange between
+/// ranks and their `top` tree.
+/// - shared_passes_then(scan, exchange, top, count, action): the same with an action; false if that
 /// is impossible.
 template <class Launches>
 class ScanWalk {
@@ -40,7 +40,7 @@ class ScanWalk {
         if (launches_.stages() == 0) return;
         std::size_t const last = launches_.stages() - 1;
         climb_below(last, scan);
-        launches_.turn(last, scan);
+        launches_.both_passes(last, scan);
         descend_below(last, scan);
     }
     /// Performs both passes, then action(k) for k < count, in one launch. If one launch is not
@@ -53,22 +53,22 @@ class ScanWalk {
     bool is_one_block() const { return launches_.stages() == 1 && launches_.blocks(0) == 1; }
 
     /// Performs both passes with an exchange between ranks and their `top` tree, as
-    /// StageWalk::turn_shared().
+    /// StageWalk::shared_passes().
     template <class Scan, class Exchange>
-    bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
+    bool shared_passes(Scan const& scan, Exchange const& exchange, Launches const& top) const {
         if (!turns_in_a_block(launches_, top)) return false;
         std::size_t const last = launches_.stages() - 1;
         climb_below(last, scan);
-        launches_.turn_shared(scan, exchange, top);
+        launches_.shared_passes(scan, exchange, top);
         descend_below(last, scan);
         return true;
     }
     /// Performs the same, then action(k) for k < count, in one launch as at_once().
     template <class Scan, class Exchange, class Action>
-    bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top,
-                     std::int64_t count, Action const& action) const {
+    bool shared_passes(Scan const& scan, Exchange const& exchange, Launches const& top,
+                       std::int64_t count, Action const& action) const {
         return is_one_block() && turns_in_a_block(launches_, top) &&
-               launches_.turn_shared_then(scan, exchange, top, count, action);
+               launches_.shared_passes_then(scan, exchange, top, count, action);
     }
 
   private:

@@ -178,7 +178,7 @@ class BlockOfStage {
         __syncthreads();
     }
     /// Stores segments that other stages or ranks need.
-    __device__ void give_up() const {
+    __device__ void send_segments() const {
         int const ups = words_.head().ups;
         if constexpr (by_teams)
             for (int i = 0; i < ups; ++i) give(words_.up(i));
@@ -188,7 +188,7 @@ class BlockOfStage {
             });
     }
     /// Sends segments to the block of the stage above.
-    __device__ void give_up(Letters const& letters) const {
+    __device__ void send_segments(Letters const& letters) const {
         each_of(words_.head().ups * Segments::numbers, [&](int i) {
             dca::BlockHanded const& up = words_.up(i / Segments::numbers);
             int const n = i % Segments::numbers;
@@ -236,8 +236,9 @@ class BlockOfStage {
     /// Sends forces to the blocks of the stage below.
     __device__ void give_forces(Letters const& letters) const {
         each_of(stage_.forces, [&](int place) {
-        CATENA_UNROLL
-            for (int n = 0; n < Forces::numbers; ++n) letters.put(place, n, forces_.number(place, n));
+            CATENA_UNROLL
+            for (int n = 0; n < Forces::numbers; ++n)
+                letters.put(place, n, forces_.number(place, n));
         });
     }
     /// Computes joint forces, from the highest level to the lowest.
@@ -246,8 +247,9 @@ class BlockOfStage {
         for (int l = stage_.layout.levels - 1; l >= 0; --l) {
             __syncthreads();
             if constexpr (by_teams)
-                each_merge_of_team(
-                    l, [&](auto const& team, dca::BlockMerge const& m, bool works) { team.go_down(m, works, nodes_, forces_); });
+                each_merge_of_team(l, [&](auto const& team, dca::BlockMerge const& m, bool works) {
+                    team.go_down(m, works, nodes_, forces_);
+                });
             else
                 each_merge(l, [&](dca::BlockMerge const& m) { go_down(m); });
         }
@@ -262,7 +264,8 @@ class BlockOfStage {
             descend_runs<alone>(part);
         else
             each_of(words_.head().items, [&](int i) {
-                if (dca::BlockItem const& item = words_.item(i); !item.is_given()) sweep_.s.forces.store(item.joint, forces_.load(i));
+                if (dca::BlockItem const& item = words_.item(i); !item.is_given())
+                    sweep_.s.forces.store(item.joint, forces_.load(i));
             });
     }
 
@@ -273,7 +276,8 @@ class BlockOfStage {
     }
     /// Size of the words, segments and forces in doubles; the memory of run parts follows.
     static __host__ __device__ int before_parts(DeviceStage const& stage) {
-        return numbers_of_words(stage) + static_cast<int>(Segments::size(stage.layout.items) + Forces::size(stage.forces));
+        return numbers_of_words(stage) +
+               static_cast<int>(Segments::size(stage.layout.items) + Forces::size(stage.forces));
     }
     // Sweeps with merges by teams never process stages with runs here; StageWalk splits these
     // sweeps.
@@ -281,11 +285,15 @@ class BlockOfStage {
     __device__ void descend_runs(typename Sweep::Part const* part) const {
         if constexpr (!by_teams) {
             dca::BlockHead const& head = words_.head();
-            auto const place = [&](std::int64_t i) { return static_cast<int>(i - head.first_item); };
+            auto const place = [&](std::int64_t i) {
+                return static_cast<int>(i - head.first_item);
+            };
             descend_some_runs<alone, !alone, false>(
                 stage_.runs, head.first_item, head.first_item + head.items, sweep_, parts_, part,
                 [&](dca::Run const&, std::int64_t i) { return forces_.load(place(i)); },
-                [&](dca::Run const&, std::int64_t i) { return forces_.load(words_.next_of_run(place(i))); });
+                [&](dca::Run const&, std::int64_t i) {
+                    return forces_.load(words_.next_of_run(place(i)));
+                });
         }
     }
     /// Computes the forces at the ends of one chain.
@@ -293,10 +301,13 @@ class BlockOfStage {
         Segment const whole = segments_.load(closed.place);
         if constexpr (takes_factors<Sweep>)
             if (closed.root.tip == dca::TipTo::nothing)
-                return sweep_.close_free({closed.root.first, closed.restricted}, whole, BranchlessFactorizer<false>{});
+                return sweep_.close_free({closed.root.first, closed.restricted}, whole,
+                                         BranchlessFactorizer<false>{});
         sweep_.close(closed.root, whole);
     }
-    __device__ void take_force(dca::BlockHanded const& down) const { forces_.store(down.place, sweep_.s.forces.load(down.at)); }
+    __device__ void take_force(dca::BlockHanded const& down) const {
+        forces_.store(down.place, sweep_.s.forces.load(down.at));
+    }
     /// Merges two segments; the merged one takes the place of the inboard one.
     __device__ void join(dca::BlockMerge const& m) const {
         Segment const inboard = segments_.load(m.inboard), outboard = segments_.load(m.outboard);
@@ -316,20 +327,23 @@ class BlockOfStage {
             node = nodes_.load(m.outboard);
         else
             node = sweep_.node(m.joint);
-        forces_.store(m.outboard, sweep_.force(node, forces_.load(m.inboard), forces_.load(m.next)));
+        forces_.store(m.outboard,
+                      sweep_.force(node, forces_.load(m.inboard), forces_.load(m.next)));
     }
     /// Calls action(merge) for the merges of a level.
     template <class Action>
     __device__ void each_merge(int level, Action const& action) const {
         int const end = words_.end_of_level(level);
         CATENA_NO_UNROLL
-        for (int i = words_.end_of_level(level - 1) + static_cast<int>(threadIdx.x); i < end; i += static_cast<int>(blockDim.x))
+        for (int i = words_.end_of_level(level - 1) + static_cast<int>(threadIdx.x); i < end;
+             i += static_cast<int>(blockDim.x))
             action(words_.merge(i));
     }
     /// Calls action(merge) for the merges of all levels.
     template <class Action>
     __device__ void each_merge(Action const& action) const {
-        each_of(words_.end_of_level(stage_.layout.levels - 1), [&](int i) { action(words_.merge(i)); });
+        each_of(words_.end_of_level(stage_.layout.levels - 1),
+                [&](int i) { action(words_.merge(i)); });
     }
     /// Calls action(team, merge, works) for the merges of a level by the block's teams.
     template <class Action>
@@ -341,25 +355,33 @@ class BlockOfStage {
     /// Reads the items' segments: one number per warp, one item per lane.
     __device__ void take_segments() const {
         constexpr int at_once = 9;  // independent requests hide the latency of memory
-        int const warp = static_cast<int>(threadIdx.x) / 32, warps = static_cast<int>(blockDim.x) / 32;
-        for (int place = static_cast<int>(threadIdx.x) % 32; place < words_.head().items; place += 32) {
+        int const warp = static_cast<int>(threadIdx.x) / 32,
+                  warps = static_cast<int>(blockDim.x) / 32;
+        for (int place = static_cast<int>(threadIdx.x) % 32; place < words_.head().items;
+             place += 32) {
             std::int64_t const slot = words_.item(place).own_slot();
             move_some<at_once>(
-                warp, Segments::numbers, warps, [&](int n) { return sweep_.s.number_of_segment(slot, n); },
+                warp, Segments::numbers, warps,
+                [&](int n) { return sweep_.s.number_of_segment(slot, n); },
                 [&](int n, double number) { segments_.number(place, n) = number; });
         }
     }
     /// Stores a segment by all threads of the block.
     __device__ void give(dca::BlockHanded const& up) const {
-        each_of(Segments::numbers, [&](int n) { sweep_.s.number_of_segment(up.at, n) = segments_.number(up.place, n); });
+        each_of(Segments::numbers, [&](int n) {
+            sweep_.s.number_of_segment(up.at, n) = segments_.number(up.place, n);
+        });
     }
     /// Address of the block's places in the stage's memory.
-    __device__ double* kept() const { return stage_.kept + block_ * Segments::size(stage_.layout.items); }
+    __device__ double* kept() const {
+        return stage_.kept + block_ * Segments::size(stage_.layout.items);
+    }
     /// Copies the memory of all segments.
     __device__ void copy(double const* from, double* to) const {
         move_some<8>(
-            static_cast<int>(threadIdx.x), static_cast<int>(Segments::size(stage_.layout.items)), static_cast<int>(blockDim.x),
-            [&](int i) { return from[i]; }, [&](int i, double number) { to[i] = number; });
+            static_cast<int>(threadIdx.x), static_cast<int>(Segments::size(stage_.layout.items)),
+            static_cast<int>(blockDim.x), [&](int i) { return from[i]; },
+            [&](int i, double number) { to[i] = number; });
     }
 
     DeviceStage const& stage_;

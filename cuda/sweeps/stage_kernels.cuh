@@ -26,7 +26,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>)
     typename Sweep::Part part;
     block.template take_items<false>(part);
     block.climb();
-    block.give_up();
+    block.send_segments();
     block.close();
     block.put_nodes();
 }
@@ -59,8 +59,8 @@ struct NoExchange {
 /// the same instructions.
 template <class Sweep, class Exchange>
 __global__ void __launch_bounds__(threads_of_turn<Sweep>)
-    turn(DeviceStage lower, DeviceStage upper, DeviceStage top, TopLaunchLetters letters,
-         Exchange exchange, Sweep sweep) {
+    both_passes(DeviceStage lower, DeviceStage upper, DeviceStage top, TopLaunchLetters letters,
+                Exchange exchange, Sweep sweep) {
     constexpr bool among_ranks = !std::is_same_v<Exchange, NoExchange>;
     bool const by_letters = lower.blocks > 0, is_upper = blockIdx.x >= lower.blocks,
                has_top = among_ranks && is_upper;
@@ -99,9 +99,9 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
                 block.template take_items<true>(part);
             block.climb();
             if (!is_upper)
-                block.give_up(letters.up);
+                block.send_segments(letters.up);
             else if (has_top && i == 0)
-                block.give_up();
+                block.send_segments();
             block.close();
         });
         __syncthreads();
@@ -131,9 +131,9 @@ constexpr int blocks_of_climb = Sweep::Sweeps::K > 1   ? 1
                                                        : 4;
 template <class Sweep>
 constexpr int blocks_of_descent =
-    Sweep::Sweeps::K == 1                                                    ? 4
-    : comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3
-                                                                             : 1;
+    Sweep::Sweeps::K == 1                                                           ? 4
+    : reads_bodies_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3
+                                                                                    : 1;
 /// True if a thread processes a whole run in the inward pass. With larger handles and one thread
 /// per part, most threads would wait for the thread that merges the parts.
 template <class Sweep>
@@ -154,7 +154,7 @@ __device__ void climb_parts_quickly(Sweep const& sweep, dca::Run const& run, Rea
 /// Eliminates a whole run by one thread, with prefetched bodies if that is faster.
 template <class Sweep>
 __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
-    if constexpr (comes_ahead<Sweep>) {
+    if constexpr (prefetches_bodies<Sweep>) {
         // Bodies can be read only once here; links read them again if the branchless factorizer
         // fails.
         static_assert(Sweep::K > 1);
@@ -270,7 +270,7 @@ RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads,
 /// block.
 template <class Sweep>
 RunsGrid grid_of_climb(std::int64_t runs, std::size_t most_shared_bytes) {
-    if constexpr (comes_ahead<Sweep>)
+    if constexpr (prefetches_bodies<Sweep>)
         return grid_that_fits(runs, 1, threads, most_shared_bytes,
                               BodiesInTurn<BodiesOf<Sweep>>::size);
     else if constexpr (whole_runs<Sweep>)

@@ -16,7 +16,8 @@ namespace catena::cuda {
 /// - gathers(): true if the last stage only gathers segments for other ranks.
 /// - blocks(i), takes_runs(i): blocks of stage i, and whether its items are runs.
 /// - climb(i, sweep), descend(i, sweep): inward and outward pass of stage i.
-/// - turn(i, sweep), turn(i, sweep, exchange, top): both passes of stage i and the stage above it,
+/// - both_passes(i, sweep), both_passes(i, sweep, exchange, top): both passes of stage i and the
+/// stage above it,
 ///   if any. The call requires can_turn() with the same arguments; for the last stage alone it is
 ///   always true.
 /// - climb_runs(sweep), descend_runs(sweep): passes of the runs.
@@ -56,7 +57,7 @@ class StageWalk {
     /// launch must contain the last stages, the exchange and the top; otherwise the call does
     /// nothing and returns false.
     template <class Sweep, class Exchange>
-    bool turn_shared(Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
+    bool shared_passes(Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
         if (!turns_in_a_block(launches_, top)) return false;
         std::size_t const stages = launches_.stages();
         for (std::size_t const turned : {std::size_t{2}, std::size_t{1}})
@@ -100,7 +101,7 @@ class StageWalk {
     template <class Sweep, class... Shared>
     void turn_from(std::size_t first, Sweep const& sweep, Shared const&... exchange_and_top) const {
         climb_stages(first, sweep);
-        launches_.turn(first, sweep, exchange_and_top...);
+        launches_.both_passes(first, sweep, exchange_and_top...);
         descend_stages(first, sweep);
     }
     /// Performs the inward pass of the first `stages` stages.

@@ -113,7 +113,9 @@ class RevolutesBehind {
     __device__ dca::BodyInRun<double> body(int i) const { return revolutes_.get(i - 1).body; }
     __device__ dca::RunsEnd<double> end() const { return tail_.get(0).end; }
     __device__ Mat3 axes() const { return tail_.get(0).axes; }
-    __device__ dca::BodyAcceleration<double> swing(int) const { return tail_.get(0).swing; }
+    __device__ dca::BodyAcceleration<double> velocity_bias(int) const {
+        return tail_.get(0).velocity_bias;
+    }
 
   private:
     BodiesOfTeam<lanes, whole> bodies_;

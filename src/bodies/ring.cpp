@@ -19,13 +19,13 @@ struct Opening {
 
 /// Computes the closure error. `b` is the pose of the first body relative to the joint frame.
 Opening opening_of(TipJoint const& joint, Pose const& b) {
-    Mat3 const turn = to_matrix(b.orientation);
+    Mat3 const rotation = to_matrix(b.orientation);
     // Distance from the axis, and sine of the angle between the axes on both sides.
     double const across = norm(cross(joint.axis, b.origin)),
-                 tilt = norm(cross(joint.axis, turn * joint.axis));
+                 tilt = norm(cross(joint.axis, rotation * joint.axis));
     switch (joint.type) {
         case JointType::universal:
-            return {norm(b.origin), std::abs(dot(joint.first_axis, turn * joint.axis) -
+            return {norm(b.origin), std::abs(dot(joint.first_axis, rotation * joint.axis) -
                                              dot(joint.first_axis, joint.axis))};
         case JointType::revolute:
             return {norm(b.origin), tilt};

@@ -99,18 +99,18 @@ CATENA_HD_APART Vector<Real, K> solve_transposed(LuFactor<Real, K> const& f, Vec
 }
 
 /// Triangular form of a matrix under an orthonormal transformation of its leading `rows`
-/// directions: turn a = upper. `upper` is upper triangular in the columns order[0], order[1], ...,
-/// `rank` of them, and 0 in the others. Householder reflections with column pivoting compute it
-/// (Golub and Van Loan, Matrix Computations, 2013, section 5.4.2). Without `with_turn`, `turn`
-/// stays the identity.
+/// directions: orthogonal a = upper. `upper` is upper triangular in the columns order[0], order[1],
+/// ..., `rank` of them, and 0 in the others. Householder reflections with column pivoting compute
+/// it (Golub and Van Loan, Matrix Computations, 2013, section 5.4.2). Without `with_orthogonal`,
+/// `orthogonal` stays the identity.
 template <class Real, int K, int N>
 struct Turned {
-    Matrix<Real, K, K> turn;
+    Matrix<Real, K, K> orthogonal;
     Matrix<Real, K, N> upper;
     int order[N], rank;
 };
 /// Returns the triangular form of `a` with respect to its leading `rows` rows.
-template <bool with_turn = true, class Real, int K, int N>
+template <bool with_orthogonal = true, class Real, int K, int N>
 CATENA_HD_APART Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int rows) {
     using std::sqrt;
     Turned<Real, K, N> t{Matrix<Real, K, K>::identity(), Matrix<Real, K, N>::zero(), {}, 0};
@@ -136,8 +136,8 @@ CATENA_HD_APART Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int row
             Real const along = scale * dot(v, m.column(j));
             for (int k = i; k < rows; ++k) m(k, j) = less_product(along, v[k], m(k, j));
         };
-        if constexpr (with_turn)
-            for (int j = 0; j < K; ++j) reflect(t.turn, j);
+        if constexpr (with_orthogonal)
+            for (int j = 0; j < K; ++j) reflect(t.orthogonal, j);
         for (int j = 0; j < N; ++j)
             if (!taken[j]) reflect(a, j);
         a(i, largest) = length;
@@ -261,8 +261,8 @@ CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const
     Turned<Real, K, 2 * K> const turned = turned_to_upper(all, restricted);
     for (int i = 0; i < K; ++i)
         for (int j = 0; j < K; ++j) {
-            joint.motion(i, j) = turned.turn(i, j) / unit[j];
-            joint.force(i, j) = turned.turn(i, j) * unit[j];
+            joint.motion(i, j) = turned.orthogonal(i, j) / unit[j];
+            joint.force(i, j) = turned.orthogonal(i, j) * unit[j];
             joint.tip(i, j) = turned.upper(i, j);
         }
     auto const none = Symmetric<Real, K>::zero();
@@ -440,7 +440,7 @@ CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& 
     }
     Turned<Real, 6, 6> const turned = turned_to_upper(body.tip, restricted_outboard);
     Vector<Real, 6> const by_inboard = body.carry * a + bias.e;
-    Vector<Real, 6> const rest = turned.turn * (outboard.acceleration - by_inboard);
+    Vector<Real, 6> const rest = turned.orthogonal * (outboard.acceleration - by_inboard);
     for (int i = turned.rank - 1; i >= 0; --i) {
         int const at = turned.order[i];
         Real sum = rest[i], terms(0);
@@ -448,7 +448,7 @@ CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& 
             if (j != at) sum = less_product(turned.upper(i, j), z[j], sum);
             if (j != at) terms = terms + fabs(turned.upper(i, j) * z[j]);
             if (j < restricted_outboard)
-                terms = fused(fabs(turned.turn(i, j)),
+                terms = fused(fabs(turned.orthogonal(i, j)),
                               fabs(outboard.acceleration[j]) + fabs(by_inboard[j]), terms);
         }
         Real const pivot = turned.upper(i, at), found = sum / pivot;

@@ -171,7 +171,7 @@ struct ArticulatedSweeps {
 /// The matrix sweep: matrices of every run and joint.
 template <class Leaf>
 struct ArticulatedMatrixSweep {
-    static constexpr bool descends = false, keeps_nodes = false, goes_short = false;
+    static constexpr bool descends = false, keeps_nodes = false, supports_short_chains = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Matrices;
     using Part = NothingRead;
@@ -218,7 +218,7 @@ struct ArticulatedMatrixSweep {
 /// last. Bodies are computed again rather than stored.
 template <class Leaf>
 struct ArticulatedBiasSweep {
-    static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
+    static constexpr bool descends = true, keeps_nodes = false, supports_short_chains = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Biases;
     using ShownNumbers = RecordNumbers<Segment>;

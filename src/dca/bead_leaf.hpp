@@ -40,7 +40,7 @@ struct BeadLeafFromPositions {
         // Unit direction from inboard to outboard, W; 0 if there is no link.
         Vector<Real, 3> direction;
         // Velocity term -c = |v_rel,perp|^2 / length (src/dca/README.md, "Link chains").
-        Real swing;
+        Real velocity_bias;
         static CATENA_HD Link none() { return {Vector<Real, 3>::zero(), Real(0)}; }
     };
     /// All data of one bead and its two links; the force is in W.
@@ -106,26 +106,32 @@ struct BeadLeafFromPositions {
         // This variant has no branch for which other reads would wait.
         if constexpr (InverseLength::may_fail) {
             if (starts) {
-                if (!floats) position[0] = piece_of(configuration.piece, configuration.pieces, begin).anchor;
+                if (!floats)
+                    position[0] = piece_of(configuration.piece, configuration.pieces, begin).anchor;
                 velocity[0] = Vec3::zero();
             }
-            read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0], inverse_length);
+            read.link[0] =
+                link(position[1] - position[0], velocity[1] - velocity[0], inverse_length);
             if (floats) read.link[0] = Link<double>::none();
         } else if (!starts) {
             read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0]);
         } else {
-            read.link[0] = floats ? Link<double>::none()
-                                  : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
+            read.link[0] =
+                floats ? Link<double>::none()
+                       : link(position[1] -
+                                  piece_of(configuration.piece, configuration.pieces, begin).anchor,
+                              velocity[1]);
         }
         CATENA_UNROLL
         for (int i = 1; i <= most; ++i) {
-            read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i], inverse_length);
+            read.link[i] =
+                link(position[i + 1] - position[i], velocity[i + 1] - velocity[i], inverse_length);
             if (begin + i >= end && !goes_on) read.link[i] = Link<double>::none();
         }
         if constexpr (InverseLength::may_fail) {
-            double sum = read.link[0].swing;
+            double sum = read.link[0].velocity_bias;
             CATENA_UNROLL
-            for (int i = 1; i <= most; ++i) sum = sum + read.link[i].swing;
+            for (int i = 1; i <= most; ++i) sum = sum + read.link[i].velocity_bias;
             if (sum != sum) return neighbours<most>(begin, end, dca::InverseLength{}, by);
         }
         return read;
@@ -133,12 +139,15 @@ struct BeadLeafFromPositions {
     /// Returns bead `i` of those read.
     template <int most>
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Neighbours<most> const& part, int i) const {
-        return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
+        return {part.begin + i, part.link[i],         part.link[i + 1],
+                part.force[i],  part.inverse_mass[i], part.restricted[i]};
     }
     /// Writes the acceleration of bead `i` of a part from the forces at its two links.
     template <class Factorizer>
-    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard, Vector<double, K> const& outboard,
-                                       AccelerationsView const& out, Factorizer const& factors) const {
+    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard,
+                                       Vector<double, K> const& outboard,
+                                       AccelerationsView const& out,
+                                       Factorizer const& factors) const {
         accelerate(body(part, i), inboard, outboard, out, factors);
     }
     template <class Place>
@@ -151,7 +160,8 @@ struct BeadLeafFromPositions {
     template <class Place>
     class Walk {
       public:
-        CATENA_HD_IN_PLACE Walk(BeadLeafFromPositions const& beads, Place begin) : beads_(beads), begin_(begin), outboard_(beads.link_before(begin)) {}
+        CATENA_HD_IN_PLACE Walk(BeadLeafFromPositions const& beads, Place begin)
+            : beads_(beads), begin_(begin), outboard_(beads.link_before(begin)) {}
         CATENA_HD_IN_PLACE Body<Place> body(int i) {
             Body<Place> const body = beads_.between(begin_ + i, outboard_);
             outboard_ = body.outboard;
@@ -170,32 +180,38 @@ struct BeadLeafFromPositions {
 
     /// Returns the segment of one bead.
     template <class Place, class Factorizer = dca::Factorizer>
-    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Factorizer const& /*factors*/ = {}) const {
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body,
+                                                      Factorizer const& /*factors*/ = {}) const {
         using Kind = Vector<RealAt<Place>, K>;
         auto const &u1 = body.inboard.direction, &u2 = body.outboard.direction;
         BiasedSegment<RealAt<Place>, K> s{bead_matrix(body.inverse_mass, u1, u2, Kind{}),
                                           bead_bias(body.inverse_mass, body.force, u1, u2, Kind{})};
-        s.bias.b1[0] = s.bias.b1[0] + body.inboard.swing;
+        s.bias.b1[0] = s.bias.b1[0] + body.inboard.velocity_bias;
         return s;
     }
     template <class Place>
-    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Body<Place> const& /*kept*/) const {
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body,
+                                                      Body<Place> const& /*kept*/) const {
         return segment(body);
     }
     /// Writes the acceleration of one bead from the forces at its two links.
     template <class Place, class Factorizer = dca::Factorizer>
-    CATENA_HD void accelerate(Body<Place> const& body, Vector<RealAt<Place>, K> const& inboard_force,
-                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out,
+    CATENA_HD void accelerate(Body<Place> const& body,
+                              Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force,
+                              AccelerationsView const& out,
                               Factorizer const& /*factors*/ = {}) const {
-        write(out.acceleration, body.k,
-              bead_acceleration(body.inverse_mass, body.force, inboard_force[0], body.inboard.direction, outboard_force[0],
-                                body.outboard.direction));
+        write(
+            out.acceleration, body.k,
+            bead_acceleration(body.inverse_mass, body.force, inboard_force[0],
+                              body.inboard.direction, outboard_force[0], body.outboard.direction));
     }
 
   private:
     /// Returns the link with the vector `d` and the relative velocity `v` of its ends.
     template <class Real, class InverseLength = dca::InverseLength>
-    CATENA_HD static Link<Real> link(Vector<Real, 3> const& d, Vector<Real, 3> const& v, InverseLength const& inverse_length = {}) {
+    CATENA_HD static Link<Real> link(Vector<Real, 3> const& d, Vector<Real, 3> const& v,
+                                     InverseLength const& inverse_length = {}) {
         Real const per_length = inverse_length(d);
         Vector<Real, 3> const u = per_length * d, across = plus_scaled(v, -dot(v, u), u);
         return {u, per_length * dot(across, across)};
@@ -203,11 +219,13 @@ struct BeadLeafFromPositions {
     /// Returns the link inboard of bead k.
     template <class Place>
     CATENA_HD Link<RealAt<Place>> link_before(Place k) const {
-        return link(read(configuration.position, k) - read(configuration.position, k - 1), read(loads.velocity, k) - read(loads.velocity, k - 1));
+        return link(read(configuration.position, k) - read(configuration.position, k - 1),
+                    read(loads.velocity, k) - read(loads.velocity, k - 1));
     }
     template <class Place>
     CATENA_HD Body<Place> between(Place k, Link<RealAt<Place>> const& inboard) const {
-        auto const force = loads.force.origin ? read(loads.force, k) : Vector<RealAt<Place>, 3>::zero();
+        auto const force =
+            loads.force.origin ? read(loads.force, k) : Vector<RealAt<Place>, 3>::zero();
         return {k, inboard, link_before(k + 1), force, read(group.inverse_mass, k)[0], K};
     }
 };

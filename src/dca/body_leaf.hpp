@@ -130,10 +130,11 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
     if constexpr (K == 6)
         if (compliance.origin) {
             auto const c = as_symmetric(read(compliance, k));
-    CATENA_UNROLL
-            for (int i = 0; i < 3; ++i)
+            CATENA_UNROLL
+            for (int i = 0; i < 3; ++i) {
                 CATENA_UNROLL
                 for (int j = 0; j <= i; ++j) s.z11(3 + i, 3 + j) = s.z11(3 + i, 3 + j) + c(i, j);
+            }
         }
 }
 
@@ -145,7 +146,8 @@ class JointFrameHandles {
     // Properties of handles. `any_forces`: directions may combine forces and torques. `in_joints`:
     // joint coordinates. `on_links`: handles along links.
     static constexpr bool any_forces = sliding, in_joints = true, on_links = false;
-    explicit JointFrameHandles(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
+    explicit JointFrameHandles(GroupView const& group)
+        : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
         compliance_ = c.compliance;
@@ -172,18 +174,21 @@ class JointFrameHandles {
     CATENA_HD Vector<RealAt<Place>, 3> r2(Place k, Reader&& by) const {
         return by(r2_, k);
     }
-    /// Returns the axes of the inboard handle in B. `turn` is the matrix of the body's rotation.
+    /// Returns the axes of the inboard handle in B. `rotation` is the matrix of the body's
+    /// rotation.
     template <class Real>
-    CATENA_HD static Matrix<Real, 3, 3> inboard_axes(State<Real> const& state, Matrix<Real, 3, 3> const& turn) {
-        return transposed_times(turn, axes_of(state.axes1));
+    CATENA_HD static Matrix<Real, 3, 3> inboard_axes(State<Real> const& state,
+                                                     Matrix<Real, 3, 3> const& rotation) {
+        return transposed_times(rotation, axes_of(state.axes1));
     }
-    /// Returns the two handles of body k. `turn` is the matrix of the body's rotation.
+    /// Returns the two handles of body k. `rotation` is the matrix of the body's rotation.
     template <class Place>
-    CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(State<RealAt<Place>> const& state, Place k,
-                                                                    Mat3At<Place> const& turn) const {
+    CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(
+        State<RealAt<Place>> const& state, Place k, Mat3At<Place> const& rotation) const {
         using Real = RealAt<Place>;
-        auto const e1 = inboard_axes(state, turn), e2 = axes_of(state.axes2);
-        HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1), make_handle<K, sliding>(state.r2, e2, e2)};
+        auto const e1 = inboard_axes(state, rotation), e2 = axes_of(state.axes2);
+        HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1),
+                                                  make_handle<K, sliding>(state.r2, e2, e2)};
         if constexpr (sliding) {
             auto const s1 = read(group_.screw, k);
             turn_to_screw(Screw<Real>{s1[0], s1[1]}, state.r1, e1, e1, pair.h1);
@@ -196,7 +201,7 @@ class JointFrameHandles {
     }
     /// Adds the compliance of body k's inboard joint to its segment.
     template <class Place>
-    CATENA_HD void yield(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
+    CATENA_HD void add_joint_compliance(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
         add_compliance(compliance_, k, s);
     }
 
@@ -221,7 +226,7 @@ class GroundFrames {
     }
     /// Adds the compliance of body k's inboard joint to its segment.
     template <class Place>
-    CATENA_HD void yield(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
+    CATENA_HD void add_joint_compliance(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
         add_compliance(compliance_, k, s);
     }
     // Data of one body that its handles are computed from: r1 and r2 from the centre of mass (B),
@@ -236,10 +241,11 @@ class GroundFrames {
         return {by(r1_, k), by(r2_, k), by(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD TurnedHandlePair<GroundHandle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/,
-                                                                                      Mat3At<Place> const& turn) const {
-        Mat3At<Place> const to_body = transpose(turn);
-        return {make_ground_handle<K>(state.r1, to_body), make_ground_handle<K>(state.r2, to_body), turn};
+    CATENA_HD TurnedHandlePair<GroundHandle<RealAt<Place>, K>, RealAt<Place>> handles(
+        State<RealAt<Place>> const& state, Place /*k*/, Mat3At<Place> const& rotation) const {
+        Mat3At<Place> const to_body = transpose(rotation);
+        return {make_ground_handle<K>(state.r1, to_body), make_ground_handle<K>(state.r2, to_body),
+                rotation};
     }
 
   private:
@@ -268,14 +274,15 @@ class LinkFrames {
     };
     template <class Place, class Reader = ReadHere>
     CATENA_HD State<RealAt<Place>> state(Place k, Reader&& by = {}) const {
-        return {by(group_.r1, k), by(group_.r2, k), read(direction_, k), outboard_direction(group_, direction_, tip_direction_, k),
-                by(rotation_, k)};
+        return {by(group_.r1, k), by(group_.r2, k), read(direction_, k),
+                outboard_direction(group_, direction_, tip_direction_, k), by(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD TurnedHandlePair<Handle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/,
-                                                                                Mat3At<Place> const& turn) const {
+    CATENA_HD TurnedHandlePair<Handle<RealAt<Place>, K>, RealAt<Place>> handles(
+        State<RealAt<Place>> const& state, Place /*k*/, Mat3At<Place> const& rotation) const {
         Mat3At<Place> const e1 = axes(state.inboard), e2 = axes(state.outboard);
-        return {make_handle<K>(state.r1, transposed_times(turn, e1), e1), make_handle<K>(state.r2, transposed_times(turn, e2), e2), turn};
+        return {make_handle<K>(state.r1, transposed_times(rotation, e1), e1),
+                make_handle<K>(state.r2, transposed_times(rotation, e2), e2), rotation};
     }
 
   private:
@@ -302,7 +309,8 @@ class BodyLeaf {
   public:
     static constexpr int K = K_;
     using Frames = Frames_;
-    static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
+    static constexpr bool beads = false, in_joints = Frames::in_joints,
+                          projected = Frames::on_links ? K == 1 : K < 6;
     // True if the leaf reads bodies other than its own, or must find out whether there are any.
     static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;
     /// True if runs of bodies on revolute joints alone are computed by articulated-body inertias
@@ -337,20 +345,22 @@ class BodyLeaf {
     /// takes longer than storing them.
     template <class Place>
     struct Turning {
-        RealAt<Place> scale;  // Value of matrix_scale() of the body's rotation.
+        RealAt<Place> scale;   // Value of matrix_scale() of the body's rotation.
         Vec3At<Place> torque;  // Torque on the body in B, gyroscopic torque included.
     };
     /// `Turning` with the rotation expanded to a matrix.
     template <class Place>
     struct Turned {
-        Mat3At<Place> turn;  // Matrix of the body's rotation, to_matrix().
+        Mat3At<Place> rotation;  // Matrix of the body's rotation, to_matrix().
         Vec3At<Place> torque;
     };
     /// Computes what the segment and the accelerations of a body both need.
     template <class Place, class Factorizer = dca::Factorizer>
-    CATENA_HD Turning<Place> turning(LoadsView const& loads, Body<Place> const& body, Factorizer const& factors = {}) const {
+    CATENA_HD Turning<Place> turning(LoadsView const& loads, Body<Place> const& body,
+                                     Factorizer const& factors = {}) const {
         return factors.with_inverse([&](auto const& inverse) {
-            return Turning<Place>{matrix_scale(as_quaternion(body.state.rotation), inverse), applied_torque(loads, body, inverse)};
+            return Turning<Place>{matrix_scale(as_quaternion(body.state.rotation), inverse),
+                                  applied_torque(loads, body, inverse)};
         });
     }
     template <class Place>
@@ -363,23 +373,28 @@ class BodyLeaf {
     }
     /// Returns the segment of a body, its matrices and its bias.
     template <class Place>
-    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads, Body<Place> const& body, Turned<Place> const& t) const {
-        auto const h = frames_.handles(body.state, body.k, t.turn);
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads,
+                                                      Body<Place> const& body,
+                                                      Turned<Place> const& t) const {
+        auto const h = frames_.handles(body.state, body.k, t.rotation);
         return {matrix(body, h), bias(loads, body, t, h)};
     }
     CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
         auto const at_k = body(LoadsView{}, k);
-        return matrix(at_k, frames_.handles(at_k.state, k, to_matrix(as_quaternion(at_k.state.rotation))));
+        return matrix(
+            at_k, frames_.handles(at_k.state, k, to_matrix(as_quaternion(at_k.state.rotation))));
     }
     CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
         auto const at_k = body(loads, k);
         auto const t = turned(loads, at_k);
-        return bias(loads, at_k, t, frames_.handles(at_k.state, k, t.turn));
+        return bias(loads, at_k, t, frames_.handles(at_k.state, k, t.rotation));
     }
     /// Writes the acceleration of body k from the forces at its two joints, if it is requested.
     template <class Place>
-    CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
-                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
+    CATENA_HD void accelerate(LoadsView const& loads, Place k,
+                              Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force,
+                              AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         auto const at_k = body(loads, k);
         accelerate(at_k, turned(loads, at_k), inboard_force, outboard_force, out);
@@ -387,10 +402,12 @@ class BodyLeaf {
     /// Writes the acceleration of a body whose data were read before. Precondition: accelerations
     /// are requested.
     template <class Place>
-    CATENA_HD void accelerate(Body<Place> const& at_k, Turned<Place> const& t, Vector<RealAt<Place>, K> const& inboard_force,
-                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
+    CATENA_HD void accelerate(Body<Place> const& at_k, Turned<Place> const& t,
+                              Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force,
+                              AccelerationsView const& out) const {
         Place const k = at_k.k;
-        auto const h = frames_.handles(at_k.state, k, t.turn);
+        auto const h = frames_.handles(at_k.state, k, t.rotation);
         auto const torque = t.torque + (moment(h.h1, inboard_force) - moment(h.h2, outboard_force));
         auto const force = at_k.force + (push(h.h1, inboard_force) - push(h.h2, outboard_force));
         write(out.alpha, k, at_k.inverse_inertia * torque);
@@ -417,7 +434,8 @@ class BodyLeaf {
     /// Returns body k for run_kinematics.hpp. Precondition: `loads.revolutes` and
     /// `loads.revolute_rate` are given.
     template <class Place, class Reader = ReadHere>
-    CATENA_HD BodyOnRevolute<RealAt<Place>> on_revolute(LoadsView const& loads, Place k, Reader&& by = {}) const {
+    CATENA_HD BodyOnRevolute<RealAt<Place>> on_revolute(LoadsView const& loads, Place k,
+                                                        Reader&& by = {}) const {
         return {rotation_on_revolute(loads, k, by),
                 by(group_.axes1.template components<3>(3), k),
                 by(group_.r1, k),
@@ -448,13 +466,15 @@ class BodyLeaf {
     }
     /// Returns body k without velocity terms and gyroscopic torque.
     template <class Place>
-    CATENA_HD ArticulatedBody<RealAt<Place>> revolute_at_rest(LoadsView const& loads, Place k) const {
-        return {frame_at_rest(k), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)), read_or_zero(loads.torque, k),
-                read_or_zero(loads.force, k)};
+    CATENA_HD ArticulatedBody<RealAt<Place>> revolute_at_rest(LoadsView const& loads,
+                                                              Place k) const {
+        return {frame_at_rest(k), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)),
+                read_or_zero(loads.torque, k), read_or_zero(loads.force, k)};
     }
     /// Sets the velocity terms of body k from its angular velocity `omega` (B).
     template <class Place>
-    CATENA_HD void set_moving(LoadsView const& loads, Place k, Vec3At<Place> const& omega, RevoluteFrame<RealAt<Place>>& f) const {
+    CATENA_HD void set_moving(LoadsView const& loads, Place k, Vec3At<Place> const& omega,
+                              RevoluteFrame<RealAt<Place>>& f) const {
         f.inward1 = cross(omega, cross(omega, f.r1));
         f.inward2 = cross(omega, cross(omega, f.r2));
         if (loads.revolute_rate.origin) {
@@ -465,24 +485,27 @@ class BodyLeaf {
     }
     /// Adds the gyroscopic torque -omega x J omega, unless the loads contain it.
     template <class Real>
-    CATENA_HD void add_gyroscopic(LoadsView const& loads, Vector<Real, 3> const& omega, ArticulatedBody<Real>& b) const {
+    CATENA_HD void add_gyroscopic(LoadsView const& loads, Vector<Real, 3> const& omega,
+                                  ArticulatedBody<Real>& b) const {
         if (loads.gyroscopic) b.torque = b.torque - cross(omega, b.inertia * omega);
     }
 
   private:
     template <class Place, class Handles>
-    CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body, Handles const& h) const {
+    CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body,
+                                                     Handles const& h) const {
         auto s = leaf_matrix(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);
-        if constexpr (!Frames::on_links) frames_.yield(body.k, s);
+        if constexpr (!Frames::on_links) frames_.add_joint_compliance(body.k, s);
         return s;
     }
     template <class Place, class Handles>
-    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body, Turned<Place> const& t,
-                                                 Handles const& h) const {
+    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body,
+                                                 Turned<Place> const& t, Handles const& h) const {
         using Real = RealAt<Place>;
         Vector<Real, 3> a1 = body.inverse_mass * body.force, a2 = a1;
-        Vector<Real, 3> const alpha =
-            loads.torque.origin || loads.gyroscopic ? body.inverse_inertia * t.torque : Vector<Real, 3>::zero();
+        Vector<Real, 3> const alpha = loads.torque.origin || loads.gyroscopic
+                                          ? body.inverse_inertia * t.torque
+                                          : Vector<Real, 3>::zero();
         if (loads.omega.origin) {
             Vector<Real, 3> const& w = body.omega;
             a1 = a1 + h.in_force_axes(cross(w, cross(w, body.state.r1)));
@@ -495,20 +518,28 @@ class BodyLeaf {
     /// Returns the torque on a body in B, gyroscopic torque included. The inertia is recovered from
     /// its inverse unless it is stored (`by_inertia`).
     template <class Place, class Inverse>
-    CATENA_HD Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body, Inverse const& inverse) const {
+    CATENA_HD Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads,
+                                                      Body<Place> const& body,
+                                                      Inverse const& inverse) const {
         if (!loads.gyroscopic) return body.torque;
-        if constexpr (by_inertia) return body.torque - cross(body.omega, as_symmetric(read(group_.inertia, body.k)) * body.omega);
-        return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega, inverse));
+        if constexpr (by_inertia)
+            return body.torque -
+                   cross(body.omega, as_symmetric(read(group_.inertia, body.k)) * body.omega);
+        return body.torque -
+               cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega, inverse));
     }
 
     /// Returns the rotation of body k to the axes of the body before.
     template <class Reader>
-    CATENA_HD static Quat rotation_on_revolute(LoadsView const& loads, std::int64_t k, Reader&& by) {
+    CATENA_HD static Quat rotation_on_revolute(LoadsView const& loads, std::int64_t k,
+                                               Reader&& by) {
         return as_quaternion(by(loads.revolutes.rotation, k));
     }
     template <SeveralBodies Place, class Reader>
-    CATENA_HD QuatAt<Place> rotation_on_revolute(LoadsView const& loads, Place const& several, Reader&& by) const {
-        return as_quaternion(by(loads.revolutes.frame, several)) * as_quaternion(frames_.rotation(several, by));
+    CATENA_HD QuatAt<Place> rotation_on_revolute(LoadsView const& loads, Place const& several,
+                                                 Reader&& by) const {
+        return as_quaternion(by(loads.revolutes.frame, several)) *
+               as_quaternion(frames_.rotation(several, by));
     }
 
     GroupView group_;

@@ -158,7 +158,7 @@ struct FusedSweep {
     static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);
     static constexpr bool takes_whole_runs = Leaf::by_inertia;
     /// True if short chains can be processed as a whole (tree_sweeps.hpp).
-    static constexpr bool goes_short = !takes_whole_runs;
+    static constexpr bool supports_short_chains = !takes_whole_runs;
     /// True if parts are always processed in rolled loops: with larger handles, unrolled code
     /// overflows a processor's instruction cache.
     static constexpr bool in_loops = K > 3;
@@ -187,7 +187,7 @@ struct FusedSweep {
         bool revolutes =
             run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
         if (run.count == longest_run) {  // The unrolled loop issues all reads together.
-        CATENA_UNROLL
+            CATENA_UNROLL
             for (int i = 1; i < longest_run; ++i) revolutes &= s.restricted[run.body + i] == K;
             return revolutes;
         }
@@ -207,19 +207,23 @@ struct FusedSweep {
                 [&](int i) { return loaded.torque_about(i); }, kept);
         } else {
             auto const body = [&](int i) { return s.leaf.revolute(bodies.loads, run.body + i); };
-            segment = climb_revolutes<double>(count, BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; }, kept);
+            segment = climb_revolutes<double>(
+                count, BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; },
+                kept);
         }
         s.note(kept.lost());
         return segment;
     }
     /// Outward pass of a run on revolute joints. `first` is the force at its first joint, `next`
     /// that at the joint after it.
-    CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
+    CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first,
+                                    Directions const& next) const {
         RunWorkspace<Sweeps> const kept(s, run, goes_by_all());
         typename RunWithLoads<Leaf>::PassedOn passed{next};
         Directions& outboard = passed.force;
         descend_revolutes<double>(
-            static_cast<int>(run.count), goes_by_all(), [&](int i) { return frame(run, kept, i); }, kept, first, next,
+            static_cast<int>(run.count), goes_by_all(), [&](int i) { return frame(run, kept, i); },
+            kept, first, next,
             [&](int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) {
                 std::int64_t const k = run.body + i;
                 accelerate(run, i, frame, a);
@@ -232,54 +236,66 @@ struct FusedSweep {
                     outboard = inboard_force(s.leaf.revolute(bodies.loads, k), a, outboard);
                 write_directions<K>(out.joint_force, k, outboard);
             },
-            [](int, BodyAcceleration<double>&) {}, [&](int i, double of_revolute) { turn(run, i, of_revolute); });
+            [](int, BodyAcceleration<double>&) {},
+            [&](int i, double of_revolute) { joint_acceleration(run, i, of_revolute); });
     }
     /// True if velocities within runs are computed along the run (RevoluteLoads).
     CATENA_HD bool follows() const { return bodies.loads.revolutes.given; }
     /// Returns the run together with its loads.
-    CATENA_HD RunWithLoads<Leaf> with_loads(Run const& run) const { return {s.leaf, bodies.loads, run}; }
+    CATENA_HD RunWithLoads<Leaf> with_loads(Run const& run) const {
+        return {s.leaf, bodies.loads, run};
+    }
     // Returns the kinematics of body i for the outward pass.
-    CATENA_HD RevoluteFrame<double> frame(Run const& run, RunWorkspace<Sweeps> const& kept, int i) const {
-        return follows() ? with_loads(run).frame(i, kept) : s.leaf.revolute_frame(bodies.loads, run.body + i);
+    CATENA_HD RevoluteFrame<double> frame(Run const& run, RunWorkspace<Sweeps> const& kept,
+                                          int i) const {
+        return follows() ? with_loads(run).frame(i, kept)
+                         : s.leaf.revolute_frame(bodies.loads, run.body + i);
     }
     /// True if results of every body of a run are requested.
     CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }
     /// Writes the requested results of body i of a run on revolute joints. `a` is its acceleration
     /// in its own axes.
-    CATENA_HD void accelerate(Run const& run, int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) const {
+    CATENA_HD void accelerate(Run const& run, int i, RevoluteFrame<double> const& frame,
+                              BodyAcceleration<double> const& a) const {
         std::int64_t const k = run.body + i;
         if (out.revolute_acceleration.origin) {
             bool const begins = i == 0, ends = i == static_cast<int>(run.count) - 1;
             if (begins) out.revolute_acceleration.at(k, 0) = about_inboard_revolute(frame, a);
             if (ends) out.revolute_acceleration.at(k + 1, 1) = about_outboard_revolute(frame, a);
-            if (!(begins && begins_chain(s.leaf.group(), k)) && !(ends && comes_before_one(s.leaf.group(), k))) return;
+            if (!(begins && begins_chain(s.leaf.group(), k)) &&
+                !(ends && comes_before_one(s.leaf.group(), k)))
+                return;
         }
         if (!out.acceleration.origin) return;
         write(out.alpha, k, a.alpha);
         write(out.acceleration, k, a.a);
     }
     /// Writes the joint acceleration of the revolute joint inboard of body i.
-    CATENA_HD void turn(Run const& run, int i, double of_revolute) const {
-        if (out.revolute_acceleration.origin) out.revolute_acceleration.at(run.body + i, 0) = of_revolute;
+    CATENA_HD void joint_acceleration(Run const& run, int i, double of_revolute) const {
+        if (out.revolute_acceleration.origin)
+            out.revolute_acceleration.at(run.body + i, 0) = of_revolute;
     }
 
     /// Reads the bodies [begin, end) of one part.
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
-    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {},
+    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end,
+                                 InverseLength const& inverse_length = {},
                                  Reader const& by = {}) const {
         return bodies.part(begin, end, inverse_length, by);
     }
     /// Returns the segment of part `p`. `factors` factorizes joint matrices as factorize() does,
     /// but may fail; the part is then computed again without it.
     template <class AnyPart, class Factorizer = dca::Factorizer>
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factorizer const& factors = {}) const {
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part,
+                                    Factorizer const& factors = {}) const {
         std::int64_t const begin = begin_of(run, p);
         int const count = static_cast<int>(end_of(run, p) - begin);
         PivotFailure found;
         Segment segment = bodies.segment(bodies.body(part, 0), factors);
         each_body<unrolled<K>>(1, count, [&](int i) {
             Body const body = bodies.body(part, i);
-            pass_up(segment, i, bodies.segment(body, factors), {begin + i, body.restricted}, Forgotten{}, found, factors);
+            pass_up(segment, i, bodies.segment(body, factors), {begin + i, body.restricted},
+                    Forgotten{}, found, factors);
         });
         if constexpr (Factorizer::may_fail)
             if (!found.none()) return this->part(run, p, part);
@@ -292,11 +308,13 @@ struct FusedSweep {
     /// kept.put(i, OneSided) gets what the outward pass needs of each joint. For the first body,
     /// whose joint is not eliminated here, that is z12 and the biases.
     template <class Restricted, class Kept>
-    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept) const {
+    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count,
+                                           Restricted const& restricted, Kept&& kept) const {
         Segment segment = first_of(kept.template get<Segment>(0), kept);
         PivotFailure found;
         each_body<unrolled<K>>(1, count, [&](int i) {
-            pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, Factorizer{});
+            pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept,
+                    found, Factorizer{});
         });
         s.note(found);
         return segment;
@@ -304,7 +322,8 @@ struct FusedSweep {
     /// Joins bodies as join_bodies() does, without branches. Missing bodies have zero() segments
     /// and joints without restricted directions. `factors` records pivot failures itself.
     template <class Restricted, class Kept, class Factorizer>
-    CATENA_HD_IN_PLACE Segment join_bodies_at_once(int count, Restricted const& restricted, Kept&& kept, Factorizer const& factors) const {
+    CATENA_HD_IN_PLACE Segment join_bodies_at_once(int count, Restricted const& restricted,
+                                                   Kept&& kept, Factorizer const& factors) const {
         Segment own[part_length];
         CATENA_UNROLL
         for (int i = 0; i < part_length; ++i) own[i] = kept.template get<Segment>(i);
@@ -319,7 +338,8 @@ struct FusedSweep {
         return segment;
     }
     /// Merges two segments at joint `at` and stores the joint's node.
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard,
+                             JointAt const& at) const {
         Node node;
         Segment const segment = joined(inboard, outboard, at, node);
         keep(at.k, node);
@@ -327,8 +347,8 @@ struct FusedSweep {
     }
     /// Merges two segments at joint `at`. The joint's node is returned in `node`, not stored.
     template <class Factorizer = dca::Factorizer>
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
-                             Factorizer const& factors = {}) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at,
+                             Node& node, Factorizer const& factors = {}) const {
         PivotFailure found;
         Segment segment = inboard;
         append(segment, outboard, at, node.joint, node.offset, found, factors);
@@ -341,8 +361,8 @@ struct FusedSweep {
     /// tip, `outboard` may be zero() at a joint without restricted directions. The inboard handle
     /// then stays as it was, except that a zero of the bias may change its sign.
     template <class Factorizer>
-    CATENA_HD Segment joined_at_once(Segment const& inboard, Segment const& outboard, int restricted, Node& node,
-                                     Factorizer const& factors) const {
+    CATENA_HD Segment joined_at_once(Segment const& inboard, Segment const& outboard,
+                                     int restricted, Node& node, Factorizer const& factors) const {
         PivotFailure found;
         Segment segment = inboard;
         append(segment, outboard, {0, restricted}, node.joint, node.offset, found, factors);
@@ -353,7 +373,9 @@ struct FusedSweep {
         s.joints.store(k, node.joint);
         s.offsets.store(k, node.offset);
     }
-    CATENA_HD Segment load(std::int64_t slot) const { return {s.matrices.load(slot), s.biases.load(slot)}; }
+    CATENA_HD Segment load(std::int64_t slot) const {
+        return {s.matrices.load(slot), s.biases.load(slot)};
+    }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
         s.matrices.store(slot, segment.matrix);
         s.biases.store(slot, segment.bias);
@@ -362,7 +384,8 @@ struct FusedSweep {
     CATENA_HD void store_row(std::int64_t slot, int i, SegmentRow<double, K> const& row) const {
         constexpr int at_z22 = Symmetric<double, K>::size, at_z12 = 2 * at_z22;
         using Matrices = SegmentMatrix<double, K>;
-        static_assert(offsetof(Matrices, z22) == at_z22 * sizeof(double) && offsetof(Matrices, z12) == at_z12 * sizeof(double));
+        static_assert(offsetof(Matrices, z22) == at_z22 * sizeof(double) &&
+                      offsetof(Matrices, z12) == at_z12 * sizeof(double));
         int const begin = i * (i + 1) / 2;
         CATENA_UNROLL
         for (int j = 0; j < K; ++j) {
@@ -377,12 +400,15 @@ struct FusedSweep {
     }
     /// Closes a chain at its root: computes the forces at its two ends.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
-        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
-        s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
+        Segment const held = root.tip == TipTo::ground
+                                 ? joined(floating, Segment::zero(), s.at(root.next))
+                                 : floating;
+        s.close(root, s.factorize_closing_joint(root, floating.matrix, held.matrix), held.bias);
     }
     /// Closes a chain whose tip is free, as close() does. `factors` must not fail.
     template <class Factorizer>
-    CATENA_HD void close_free(JointAt const& first, Segment const& floating, Factorizer const& factors) const {
+    CATENA_HD void close_free(JointAt const& first, Segment const& floating,
+                              Factorizer const& factors) const {
         static_assert(!Factorizer::may_fail);
         Joint joint{};
         s.forces.store(first.k, first_force(first, floating, factors, joint.factor));
@@ -390,21 +416,26 @@ struct FusedSweep {
     }
     /// Returns the force at the first joint of a whole chain whose tip is free.
     template <class Factorizer = dca::Factorizer>
-    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factorizer const& factors = {}) const {
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating,
+                                     Factorizer const& factors = {}) const {
         Symmetric<double, K> factor;
         return first_force(at, floating, factors, factor);
     }
 
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     /// Returns the force at an eliminated joint from those at its segment's two ends.
-    CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
+    CATENA_HD Directions force(Node const& node, Directions const& first,
+                               Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
-    CATENA_HD static Directions force(Passage const& passed, Directions const& next) { return passed.gain * next + passed.offset; }
+    CATENA_HD static Directions force(Passage const& passed, Directions const& next) {
+        return passed.gain * next + passed.offset;
+    }
     /// Outward pass of part `p`, with the passages in registers. `first` is the force at its first
     /// joint, `next` that at the joint after it.
     template <bool unroll>
-    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
+    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first,
+                                 Directions next) const {
         PassagesHere passages;
         down<unroll && !in_loops>(run, p, part, first, next, passages);
     }
@@ -424,10 +455,12 @@ struct FusedSweep {
     /// `most`. The last joint's passage is kept apart if there is no room for it. If `passages` has
     /// `keeps_turnings`, it also has keep(i, Bodies::Turning) and turning(i), i < part_length.
     template <bool unroll, class Passages, class Factorizer = dca::Factorizer>
-    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next, Passages&& passages,
+    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first,
+                                 Directions next, Passages&& passages,
                                  Factorizer const& factors = {}) const {
         static_assert(!Factorizer::may_fail);
-        constexpr bool unrolled_here = unroll || unrolled<K>, last_apart = std::remove_reference_t<Passages>::most < part_length - 1;
+        constexpr bool unrolled_here = unroll || unrolled<K>,
+                       last_apart = std::remove_reference_t<Passages>::most < part_length - 1;
         std::int64_t const k = begin_of(run, p);
         int const last = static_cast<int>(end_of(run, p) - k) - 1;
         Directions at_last = first;
@@ -437,16 +470,20 @@ struct FusedSweep {
         each_body<unrolled_here>(1, last + 1, [&](int i) {
             Body const body = body_of<Passages>(part, i);
             Segment const segment = segment_of(body, i, passages, factors);
-            Passage const passed = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted, factors);
+            Passage const passed =
+                eliminate(z22, b2, segment.matrix, segment.bias, body.restricted, factors);
             if (last_apart && i == last)
                 at_last = force(passed, next);
             else
                 passages.put(i - 1, passed);
         });
         each_body_back<unrolled_here>(0, last + 1, [&](int i) {
-            Directions const at_i = i == 0 ? first : last_apart && i == last ? at_last : force(passages.get(i - 1), next);
+            Directions const at_i = i == 0                    ? first
+                                    : last_apart && i == last ? at_last
+                                                              : force(passages.get(i - 1), next);
             if constexpr (turnings_kept<Passages>)
-                bodies.accelerate(bodies.body(part, i, ReadLast{}), passages.turning(i), at_i, next, out);
+                bodies.accelerate(bodies.body(part, i, ReadLast{}), passages.turning(i), at_i, next,
+                                  out);
             else
                 bodies.accelerate(part, i, at_i, next, out, factors);
             store_forces(s.leaf.group(), out, k + i, at_i, next);
@@ -457,7 +494,8 @@ struct FusedSweep {
     /// Outward pass from data that the inward pass kept: calls action(i, inboard force, outboard
     /// force) from the last body to the first.
     template <class Kept, class Action>
-    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
+    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next,
+                                   Action const& action) const {
         Directions b2{};
         each_body<unrolled<K>>(0, count, [&](int i) {
             Passed const joint = kept.template get<Passed>(i);
@@ -475,12 +513,16 @@ struct FusedSweep {
     /// Outward pass as forces(), where kept.gain(i) is known for every joint but the first.
     /// put_offset(i) and offset(i) store the offsets.
     template <class Kept, class Action>
-    CATENA_HD_IN_PLACE void forces_by_gains(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
+    CATENA_HD_IN_PLACE void forces_by_gains(int count, Kept&& kept, Directions const& first,
+                                            Directions next, Action const& action) const {
         Passed const begins = kept.template get<Passed>(0);
         Directions b2 = begins.bias.b2 + transposed_times(begins.outboard, first);
-        each_body<unrolled<K>>(1, count, [&](int i) { kept.put_offset(i, pass_bias(b2, kept.template get<Passed>(i))); });
+        each_body<unrolled<K>>(1, count, [&](int i) {
+            kept.put_offset(i, pass_bias(b2, kept.template get<Passed>(i)));
+        });
         each_body_back<unrolled<K>>(0, count, [&](int i) {
-            Directions const at_i = i > 0 ? force(Passage{kept.gain(i), kept.offset(i)}, next) : first;
+            Directions const at_i =
+                i > 0 ? force(Passage{kept.gain(i), kept.offset(i)}, next) : first;
             action(i, at_i, next);
             next = at_i;
         });
@@ -488,14 +530,16 @@ struct FusedSweep {
     /// Writes the results of body `k` from the forces at its joints and the intermediate results of
     /// its segment.
     template <class Turning>
-    CATENA_HD_IN_PLACE void accelerate_turned(std::int64_t k, Body const& body, Turning const& turning, Directions const& inboard,
+    CATENA_HD_IN_PLACE void accelerate_turned(std::int64_t k, Body const& body,
+                                              Turning const& turning, Directions const& inboard,
                                               Directions const& outboard) const {
         bodies.accelerate(body, turning, inboard, outboard, out);
         store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
     /// Writes the results of body `k` from the forces at its joints.
     template <class Factorizer>
-    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard,
+    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard,
+                                       Directions const& outboard,
                                        Factorizer const& factors) const {
         bodies.accelerate(body, inboard, outboard, out, factors);
         store_forces(s.leaf.group(), out, k, inboard, outboard);
@@ -503,7 +547,8 @@ struct FusedSweep {
 
   private:
     template <class Factorizer>
-    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factorizer const& factors,
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating,
+                                     Factorizer const& factors,
                                      Symmetric<double, K>& factor) const {
         PivotFailure found;
         factor = factors(floating.matrix.z11, at.restricted);
@@ -515,7 +560,8 @@ struct FusedSweep {
     }
     // True if `Passages` stores the intermediate results of each body.
     template <class Passages>
-    static constexpr bool turnings_kept = requires { requires std::remove_reference_t<Passages>::keeps_turnings; };
+    static constexpr bool turnings_kept =
+        requires { requires std::remove_reference_t<Passages>::keeps_turnings; };
     template <class Passages>
     CATENA_HD_IN_PLACE Body body_of(Part const& part, int i) const {
         if constexpr (turnings_kept<Passages>)
@@ -524,7 +570,8 @@ struct FusedSweep {
             return bodies.body(part, i);
     }
     template <class Passages, class Factorizer>
-    CATENA_HD_IN_PLACE Segment segment_of(Body const& body, [[maybe_unused]] int i, [[maybe_unused]] Passages& passages,
+    CATENA_HD_IN_PLACE Segment segment_of(Body const& body, [[maybe_unused]] int i,
+                                          [[maybe_unused]] Passages& passages,
                                           Factorizer const& factors) const {
         if constexpr (turnings_kept<Passages>) {
             auto const turning = bodies.turning(body, factors);
@@ -544,7 +591,8 @@ struct FusedSweep {
         return own;
     }
     template <class Kept, class Factorizer>
-    CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at, Kept&& kept, PivotFailure& found,
+    CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at,
+                                    Kept&& kept, PivotFailure& found,
                                     Factorizer const& factors) const {
         Joint joint;
         Directions offset;
@@ -552,7 +600,8 @@ struct FusedSweep {
         kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
     }
     template <class Factorizer>
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, PivotFailure& found,
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at,
+                          Joint& joint, Directions& offset, PivotFailure& found,
                           Factorizer const& factors) const {
         dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
         s.watch(at, joint.factor, found);

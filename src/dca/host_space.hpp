@@ -42,11 +42,11 @@ class HostSpace : public HostAccess {
     Direct connect(dca::Schedule const&, int /*width*/, int /*beside*/) const { return {}; }
     template <class Numbers, class... Beside>
     void exchange(Direct const&, Numbers const&, Beside const&...) const {}
-    /// Executes a sweep over a shared tree as FrontierExchange::turn() specifies. Returns false if
-    /// the space cannot.
+    /// Executes a sweep over a shared tree as FrontierExchange::both_passes() specifies. Returns
+    /// false if the space cannot.
     template <class Numbers, class AnyTree, class Sweep, class... Beside>
-    bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const& /*top*/,
-                     Sweep const&, Beside const&...) const {
+    bool shared_passes(Direct const&, Numbers const&, AnyTree const&, AnyTree const& /*top*/,
+                       Sweep const&, Beside const&...) const {
         return false;
     }
     using HostAccess::exchange;

@@ -38,7 +38,10 @@ CATENA_HD void move_point(SpatialInertia<Real>& all, Vector<Real, 3> const& r) {
     Matrix<Real, 3, 3> moved;
     CATENA_UNROLL
     for (int j = 0; j < 3; ++j)
-        moved.set_column(j, all.coupling.column(j) - cross(r, Vector<Real, 3>{{all.moving(0, j), all.moving(1, j), all.moving(2, j)}}));
+        moved.set_column(
+            j,
+            all.coupling.column(j) -
+                cross(r, Vector<Real, 3>{{all.moving(0, j), all.moving(1, j), all.moving(2, j)}}));
     CATENA_UNROLL
     for (int i = 0; i < 3; ++i) {
         Vector<Real, 3> const before{{all.coupling(i, 0), all.coupling(i, 1), all.coupling(i, 2)}};
@@ -67,7 +70,8 @@ struct AddedBody {
 };
 /// Returns a body to be added; `inertia` is about its centre of mass.
 template <class Real>
-CATENA_HD AddedBody<Real> added_body(Real const& mass, Symmetric<Real, 3> const& inertia, Vector<Real, 3> const& centre) {
+CATENA_HD AddedBody<Real> added_body(Real const& mass, Symmetric<Real, 3> const& inertia,
+                                     Vector<Real, 3> const& centre) {
     AddedBody<Real> body{mass, centre, mass * centre, inertia};
     Real const square = dot(body.moment, centre);
     CATENA_UNROLL
@@ -81,7 +85,9 @@ CATENA_HD void add_body(SpatialInertia<Real>& all, AddedBody<Real> const& body) 
     CATENA_UNROLL
     for (int i = 0; i < 3; ++i) {
         CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) all.turning(i, j) = less_product(moment[i], body.centre[j], all.turning(i, j) + body.turning(i, j));
+        for (int j = 0; j <= i; ++j)
+            all.turning(i, j) =
+                less_product(moment[i], body.centre[j], all.turning(i, j) + body.turning(i, j));
         all.moving(i, i) = all.moving(i, i) + body.mass;
     }
     all.coupling(1, 0) = all.coupling(1, 0) + moment[2];
@@ -108,21 +114,23 @@ CATENA_HD Symmetric<Real, 3> turned(Matrix<Real, 3, 3> const& q, Symmetric<Real,
     Matrix<Real, 3, 3> const half = q * full(s);
     Symmetric<Real, 3> t;
     CATENA_UNROLL
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
         CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) t(i, j) = fused(half(i, 2), q(j, 2), fused(half(i, 1), q(j, 1), half(i, 0) * q(j, 0)));
+        for (int j = 0; j <= i; ++j)
+            t(i, j) = fused(half(i, 2), q(j, 2), fused(half(i, 1), q(j, 1), half(i, 0) * q(j, 0)));
+    }
     return t;
 }
 /// Transforms an inertia to other axes by the rotation matrix q.
 template <class Real>
-CATENA_HD void turn_axes(SpatialInertia<Real>& all, Matrix<Real, 3, 3> const& q) {
+CATENA_HD void rotate_axes(SpatialInertia<Real>& all, Matrix<Real, 3, 3> const& q) {
     all.turning = turned(q, all.turning);
     all.moving = turned(q, all.moving);
     all.coupling = q * all.coupling * transpose(q);
 }
 /// Transforms a wrench to other axes by the rotation matrix q.
 template <class Real>
-CATENA_HD void turn_axes(Wrench<Real>& w, Matrix<Real, 3, 3> const& q) {
+CATENA_HD void rotate_axes(Wrench<Real>& w, Matrix<Real, 3, 3> const& q) {
     w = {q * w.torque, q * w.force};
 }
 /// Effect of a released revolute joint, per unit of a wrench's component along it: `turning` and
@@ -134,19 +142,22 @@ struct Release {
 /// Releases the joint about `axis` through the reference point of I: no torque acts about it from
 /// here on. Sets all of `h` but `bias` and `first`, which belong to the wrenches.
 template <class Real>
-CATENA_HD Release<Real> release_revolute(SpatialInertia<Real>& all, Vector<Real, 3> const& axis, ReleasedRevolute<Real>& h) {
+CATENA_HD Release<Real> release_revolute(SpatialInertia<Real>& all, Vector<Real, 3> const& axis,
+                                         ReleasedRevolute<Real>& h) {
     h.turning = all.turning * axis;
     h.moving = transposed_times(all.coupling, axis);
     h.inverse = Real(1) / dot(axis, h.turning);
     Release<Real> const r{axis, h.inverse * h.turning, h.inverse * h.moving};
     CATENA_UNROLL
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
         CATENA_UNROLL
         for (int j = 0; j < 3; ++j) {
-            if (j <= i) all.turning(i, j) = less_product(h.turning[i], r.turning[j], all.turning(i, j));
+            if (j <= i)
+                all.turning(i, j) = less_product(h.turning[i], r.turning[j], all.turning(i, j));
             if (j <= i) all.moving(i, j) = less_product(h.moving[i], r.moving[j], all.moving(i, j));
             all.coupling(i, j) = less_product(h.turning[i], r.moving[j], all.coupling(i, j));
         }
+    }
     return r;
 }
 /// Subtracts the effect of `along`, a wrench's component along the released joint.

@@ -58,7 +58,8 @@ CATENA_HD Handle<Real, K, any_forces> make_handle(Vector<Real, 3> const& r,
 /// Returns the directions along the force axes at a point `r` from the centre of mass (body axes).
 /// `angular` is the rotation matrix from the force axes to body axes.
 template <int K, class Real>
-CATENA_HD GroundHandle<Real, K> make_ground_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular) {
+CATENA_HD GroundHandle<Real, K> make_ground_handle(Vector<Real, 3> const& r,
+                                                   Matrix<Real, 3, 3> const& angular) {
     return {make_handle<K>(r, angular, Matrix<Real, 3, 3>{}).torque, r, angular};
 }
 
@@ -74,10 +75,12 @@ struct Screw {
 /// Combines directions 2 and 5 of a handle made for a revolute joint, a force and a torque along
 /// the same axis, into those of a screw.
 template <int K, class Real>
-CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular,
-                             Matrix<Real, 3, 3> const& linear, Handle<Real, K, true>& h) {
+CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r,
+                             Matrix<Real, 3, 3> const& angular, Matrix<Real, 3, 3> const& linear,
+                             Handle<Real, K, true>& h) {
     static_assert(K >= 5);
-    Vector<Real, 3> const arm = cross(r, angular.column(2)), axis = angular.column(2), along = linear.column(2);
+    Vector<Real, 3> const arm = cross(r, angular.column(2)), axis = angular.column(2),
+                          along = linear.column(2);
     h.torque.set_column(2, screw.c * arm - screw.s * axis);
     h.force.set_column(2, screw.c * along);
     if constexpr (K == 6) {
@@ -88,13 +91,14 @@ CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r,
 
 /// Returns the contribution of the torques to leaf_matrix().
 template <class Real, int K>
-CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& inverse_inertia, Matrix<Real, 3, K> const& torque1,
+CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& inverse_inertia,
+                                                Matrix<Real, 3, K> const& torque1,
                                                 Matrix<Real, 3, K> const& torque2) {
     Matrix<Real, 3, K> const j1 = full(inverse_inertia) * torque1;
     Matrix<Real, 3, K> const j2 = full(inverse_inertia) * torque2;
     SegmentMatrix<Real, K> s;
     CATENA_UNROLL
-    for (int a = 0; a < K; ++a)
+    for (int a = 0; a < K; ++a) {
         CATENA_UNROLL
         for (int b = 0; b < K; ++b) {
             if (b <= a) {
@@ -103,13 +107,16 @@ CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& invers
             }
             s.z12(a, b) = dot(torque1.column(a), j2.column(b));
         }
+    }
     return s;
 }
 /// Returns the matrices of a body along the directions of its two handles. Precondition:
 /// inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite.
 template <class Real, int K, bool any_forces>
-CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia,
-                                             Handle<Real, K, any_forces> const& h1, Handle<Real, K, any_forces> const& h2) {
+CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass,
+                                             Symmetric<Real, 3> const& inverse_inertia,
+                                             Handle<Real, K, any_forces> const& h1,
+                                             Handle<Real, K, any_forces> const& h2) {
     constexpr int forces = Handle<Real, K, any_forces>::forces;
     SegmentMatrix<Real, K> s = turning_matrix(inverse_inertia, h1.torque, h2.torque);
     CATENA_UNROLL
@@ -117,21 +124,27 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
         if constexpr (any_forces) {
             CATENA_UNROLL
             for (int b = 0; b <= a; ++b) {
-                s.z11(a, b) = fused(inverse_mass, dot(h1.force.column(a), h1.force.column(b)), s.z11(a, b));
-                s.z22(a, b) = fused(inverse_mass, dot(h2.force.column(a), h2.force.column(b)), s.z22(a, b));
+                s.z11(a, b) =
+                    fused(inverse_mass, dot(h1.force.column(a), h1.force.column(b)), s.z11(a, b));
+                s.z22(a, b) =
+                    fused(inverse_mass, dot(h2.force.column(a), h2.force.column(b)), s.z22(a, b));
             }
         } else {
             s.z11(a, a) = s.z11(a, a) + inverse_mass;
             s.z22(a, a) = s.z22(a, a) + inverse_mass;
         }
         CATENA_UNROLL
-        for (int b = 0; b < forces; ++b) s.z12(a, b) = fused(inverse_mass, dot(h1.force.column(a), h2.force.column(b)), s.z12(a, b));
+        for (int b = 0; b < forces; ++b)
+            s.z12(a, b) =
+                fused(inverse_mass, dot(h1.force.column(a), h2.force.column(b)), s.z12(a, b));
     }
     return s;
 }
 /// Returns the matrices of a body whose handles lie along the force axes.
 template <class Real, int K>
-CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, GroundHandle<Real, K> const& h1,
+CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass,
+                                             Symmetric<Real, 3> const& inverse_inertia,
+                                             GroundHandle<Real, K> const& h1,
                                              GroundHandle<Real, K> const& h2) {
     static_assert(K == 3 || K == 6);
     SegmentMatrix<Real, K> s = turning_matrix(inverse_inertia, h1.torque, h2.torque);
@@ -147,7 +160,8 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
 /// Returns the acceleration along the handle's directions, without velocity terms. The body has
 /// angular acceleration `alpha` (body axes), its centre of mass has acceleration `a`.
 template <class Real, int K, bool any_forces>
-CATENA_HD Vector<Real, K> along(Handle<Real, K, any_forces> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
+CATENA_HD Vector<Real, K> along(Handle<Real, K, any_forces> const& h, Vector<Real, 3> const& alpha,
+                                Vector<Real, 3> const& a) {
     Vector<Real, K> v = transposed_times(h.torque, alpha);
     auto const pushed = transposed_times(h.force, a);
     CATENA_UNROLL
@@ -155,7 +169,8 @@ CATENA_HD Vector<Real, K> along(Handle<Real, K, any_forces> const& h, Vector<Rea
     return v;
 }
 template <class Real, int K>
-CATENA_HD Vector<Real, K> along(GroundHandle<Real, K> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
+CATENA_HD Vector<Real, K> along(GroundHandle<Real, K> const& h, Vector<Real, 3> const& alpha,
+                                Vector<Real, 3> const& a) {
     Vector<Real, K> v = transposed_times(h.torque, alpha);
     CATENA_UNROLL
     for (int i = 0; i < 3; ++i) v[i] = v[i] + a[i];
@@ -190,7 +205,8 @@ CATENA_HD Vector<Real, 3> moment(GroundHandle<Real, K> const& h, Vector<Real, K>
 
 /// Returns A x from the inverse of A, which is symmetric and positive definite.
 template <class Real, class Inverse = Quotient>
-CATENA_HD Vector<Real, 3> times_inverse_of(Symmetric<Real, 3> const& inverse, Vector<Real, 3> const& x, Inverse const& quotient = {}) {
+CATENA_HD Vector<Real, 3> times_inverse_of(Symmetric<Real, 3> const& inverse,
+                                           Vector<Real, 3> const& x, Inverse const& quotient = {}) {
     Symmetric<Real, 3> const factor = factorize(inverse, 3, quotient);
     return solve_upper(factor, solve_lower(factor, x));
 }
@@ -213,7 +229,8 @@ CATENA_HD Matrix<Real, 3, 3> triple(Vector<Real, 3> const& axis) {
 /// neighbour to it) and u2 (from it to its outboard neighbour). Projected handles give T of the
 /// link chain (src/dca/README.md, "Link chains"). A missing link has direction 0.
 template <class Real>
-CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 1>) {
+CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1,
+                                             Vector<Real, 3> const& u2, Vector<Real, 1>) {
     SegmentMatrix<Real, 1> s;
     s.z11(0, 0) = inverse_mass;
     s.z22(0, 0) = inverse_mass;
@@ -222,7 +239,8 @@ CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> 
 }
 /// Returns the matrices for full handles: all three directions, the link's first.
 template <class Real>
-CATENA_HD SegmentMatrix<Real, 3> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 3>) {
+CATENA_HD SegmentMatrix<Real, 3> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1,
+                                             Vector<Real, 3> const& u2, Vector<Real, 3>) {
     SegmentMatrix<Real, 3> s;
     s.z11 = Symmetric<Real, 3>::zero();
     CATENA_UNROLL
@@ -235,25 +253,29 @@ CATENA_HD SegmentMatrix<Real, 3> bead_matrix(Real inverse_mass, Vector<Real, 3> 
 }
 /// Returns the components of a vector along the directions of a bead's handle.
 template <class Real>
-CATENA_HD Vector<Real, 1> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 1>) {
+CATENA_HD Vector<Real, 1> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a,
+                                     Vector<Real, 1>) {
     return {{dot(u, a)}};
 }
 template <class Real>
-CATENA_HD Vector<Real, 3> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 3>) {
+CATENA_HD Vector<Real, 3> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a,
+                                     Vector<Real, 3>) {
     return transposed_times(triple(u), a);
 }
 /// Returns the bias of a bead between the links u1 and u2 under the external force `force`.
 template <class Real, int K>
-CATENA_HD SegmentBias<Real, K> bead_bias(Real inverse_mass, Vector<Real, 3> const& force, Vector<Real, 3> const& u1,
-                                         Vector<Real, 3> const& u2, Vector<Real, K> kind) {
+CATENA_HD SegmentBias<Real, K> bead_bias(Real inverse_mass, Vector<Real, 3> const& force,
+                                         Vector<Real, 3> const& u1, Vector<Real, 3> const& u2,
+                                         Vector<Real, K> kind) {
     Vector<Real, 3> const a = inverse_mass * force;
     return {along_link(u1, a, kind), along_link(u2, a, kind)};
 }
 /// Returns the acceleration of a bead on which its links act with `inboard` along u1 and `outboard`
 /// against u2.
 template <class Real>
-CATENA_HD Vector<Real, 3> bead_acceleration(Real inverse_mass, Vector<Real, 3> const& force, Real inboard, Vector<Real, 3> const& u1,
-                                            Real outboard, Vector<Real, 3> const& u2) {
+CATENA_HD Vector<Real, 3> bead_acceleration(Real inverse_mass, Vector<Real, 3> const& force,
+                                            Real inboard, Vector<Real, 3> const& u1, Real outboard,
+                                            Vector<Real, 3> const& u2) {
     return inverse_mass * plus_scaled(plus_scaled(force, inboard, u1), -outboard, u2);
 }
 

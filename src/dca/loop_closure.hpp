@@ -16,9 +16,11 @@ template <class Real, int K>
 CATENA_HD Symmetric<Real, K> ring_matrix(SegmentMatrix<Real, K> const& s) {
     Symmetric<Real, K> z;
     CATENA_UNROLL
-    for (int i = 0; i < K; ++i)
+    for (int i = 0; i < K; ++i) {
         CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) z(i, j) = (s.z11(i, j) + s.z22(i, j)) - (s.z12(i, j) + s.z12(j, i));
+        for (int j = 0; j <= i; ++j)
+            z(i, j) = (s.z11(i, j) + s.z22(i, j)) - (s.z12(i, j) + s.z12(j, i));
+    }
     return z;
 }
 
@@ -40,10 +42,12 @@ CATENA_HD Vector<Real, K> open_response(SegmentMatrix<Real, K> const& s, bool ri
 /// True if a pivot is so small that the matrix may be singular. `factor` is factorize() of its
 /// leading `restricted` rows.
 template <class Real, int K>
-CATENA_HD bool is_nearly_singular(Symmetric<Real, K> const& factor, Vector<Real, K> const& size, int restricted) {
+CATENA_HD bool is_nearly_singular(Symmetric<Real, K> const& factor, Vector<Real, K> const& size,
+                                  int restricted) {
     bool small = false;
     CATENA_UNROLL
-    for (int i = 0; i < K; ++i) small = small || (i < restricted && Real(1) / factor(i, i) < lost_digits<Real> * size[i]);
+    for (int i = 0; i < K; ++i)
+        small = small || (i < restricted && Real(1) / factor(i, i) < lost_digits<Real> * size[i]);
     return small;
 }
 
@@ -65,8 +69,10 @@ CATENA_HD_APART Spectrum<Real, K> spectrum_of(Symmetric<Real, K> a) {
         for (int p = 0; p < K; ++p)
             for (int q = p + 1; q < K; ++q) {
                 if (a(p, q) == Real(0)) continue;
-                Real const slope = (a(q, q) - a(p, p)) / (Real(2) * a(p, q)), root = sqrt(fused(slope, slope, Real(1)));
-                Real const t = slope < Real(0) ? Real(-1) / (root - slope) : Real(1) / (root + slope);
+                Real const slope = (a(q, q) - a(p, p)) / (Real(2) * a(p, q)),
+                           root = sqrt(fused(slope, slope, Real(1)));
+                Real const t =
+                    slope < Real(0) ? Real(-1) / (root - slope) : Real(1) / (root + slope);
                 Real const c = Real(1) / sqrt(fused(t, t, Real(1))), sine = t * c, moved = a(p, q);
                 a(p, p) = fused(-t, moved, a(p, p));
                 a(q, q) = fused(t, moved, a(q, q));
@@ -90,21 +96,26 @@ CATENA_HD_APART Spectrum<Real, K> spectrum_of(Symmetric<Real, K> a) {
 /// z^+ b then have the least x^T D x. The result is NaN if z has an eigenvalue below
 /// -`lost_digits` in this metric.
 template <class Real, int K>
-CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& z, Vector<Real, K> const& size, int restricted) {
+CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& z,
+                                                      Vector<Real, K> const& size, int restricted) {
     using std::sqrt;
     Vector<Real, K> scale;
     for (int i = 0; i < K; ++i) scale[i] = i < restricted ? Real(1) / sqrt(size[i]) : Real(0);
     Symmetric<Real, K> scaled;
     for (int i = 0; i < K; ++i)
-        for (int j = 0; j <= i; ++j) scaled(i, j) = i < restricted ? (scale[i] * z(i, j)) * scale[j] : Real(0);
+        for (int j = 0; j <= i; ++j)
+            scaled(i, j) = i < restricted ? (scale[i] * z(i, j)) * scale[j] : Real(0);
     Spectrum<Real, K> const s = spectrum_of(scaled);
     Matrix<Real, K, K> inverse = Matrix<Real, K, K>::zero();
     for (int e = 0; e < K; ++e) {
         bool const nothing = s.values[e] < lost_digits<Real> && s.values[e] > -lost_digits<Real>;
-        Real const weight = nothing ? Real(0) : s.values[e] > Real(0) ? Real(1) / s.values[e] : Real(__builtin_nan(""));
+        Real const weight = nothing                 ? Real(0)
+                            : s.values[e] > Real(0) ? Real(1) / s.values[e]
+                                                    : Real(__builtin_nan(""));
         for (int i = 0; i < K; ++i)
             for (int j = 0; j < K; ++j)
-                inverse(i, j) = fused((weight * (scale[i] * s.vectors(i, e))) * scale[j], s.vectors(j, e), inverse(i, j));
+                inverse(i, j) = fused((weight * (scale[i] * s.vectors(i, e))) * scale[j],
+                                      s.vectors(j, e), inverse(i, j));
     }
     return inverse;
 }
@@ -112,8 +123,10 @@ CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& 
 /// Returns the joint that closes a loop. Its factor is that of any joint; if it is nearly singular,
 /// its factor is zero and `inboard` holds the pseudo-inverse, which is zero otherwise.
 template <class Real, int K>
-CATENA_HD JointMatrix<Real, K> closing_joint(Symmetric<Real, K> const& z, Vector<Real, K> const& size, int restricted) {
-    JointMatrix<Real, K> joint{factorize(z, restricted), Matrix<Real, K, K>::zero(), Matrix<Real, K, K>::zero()};
+CATENA_HD JointMatrix<Real, K> closing_joint(Symmetric<Real, K> const& z,
+                                             Vector<Real, K> const& size, int restricted) {
+    JointMatrix<Real, K> joint{factorize(z, restricted), Matrix<Real, K, K>::zero(),
+                               Matrix<Real, K, K>::zero()};
     if (!is_nearly_singular(joint.factor, size, restricted)) return joint;
     joint.inboard = least_norm_inverse(z, size, restricted);
     joint.factor = Symmetric<Real, K>::zero();
@@ -130,7 +143,8 @@ CATENA_HD bool has_least_norm(JointMatrix<Real, K> const& joint) {
 /// Returns the closing joint's force. It cancels `apart`, the acceleration of the joint's inboard
 /// side relative to its outboard side.
 template <class Real, int K>
-CATENA_HD Vector<Real, K> closing_force(JointMatrix<Real, K> const& joint, Vector<Real, K> const& apart) {
+CATENA_HD Vector<Real, K> closing_force(JointMatrix<Real, K> const& joint,
+                                        Vector<Real, K> const& apart) {
     return solve_upper(joint.factor, solve_lower(joint.factor, apart)) + joint.inboard * apart;
 }
 

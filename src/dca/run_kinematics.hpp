@@ -14,14 +14,14 @@ struct FollowedBody {
     LoadedBodyInRun<Real> in_run;
     Vector<Real, 3> omega, inward2;
 };
-/// Computes a body's velocity terms from the angular velocity of the body before. `turn` is the
+/// Computes a body's velocity terms from the angular velocity of the body before. `rotation` is the
 /// rotation matrix from the body's axes to the run's. External loads are not included yet.
 template <class Real>
 CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
-                                             Matrix<Real, 3, 3> const& turn,
+                                             Matrix<Real, 3, 3> const& rotation,
                                              Vector<Real, 3> const& omega_before) {
     using Vector3 = Vector<Real, 3>;
-    Vector3 const axis = turn * body.axis, r1 = turn * body.r1, r2 = turn * body.r2;
+    Vector3 const axis = rotation * body.axis, r1 = rotation * body.r1, r2 = rotation * body.r2;
     Vector3 const angular = body.rate * cross(omega_before, axis),
                   omega = plus_scaled(omega_before, body.rate, axis);
     // The expression for omega x (omega x r) needs fewer operations.
@@ -29,7 +29,7 @@ CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
     auto const inward = [&](Vector3 const& r) {
         return plus_scaled(dot(omega, r) * omega, -square, r);
     };
-    Symmetric<Real, 3> const inertia = turned(turn, body.inertia);
+    Symmetric<Real, 3> const inertia = turned(rotation, body.inertia);
     return {{{axis, r2 - r1},
              {angular, -inward(r1)},
              -r2,
@@ -43,7 +43,7 @@ CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnRevolute<Real> const& body,
 /// State of the recursion at the current body.
 template <class Real>
 struct FollowedState {
-    Quaternion<Real> turn;  // Rotation from the body's axes to the run's.
+    Quaternion<Real> rotation;  // Rotation from the body's axes to the run's.
     // Angular velocity, and omega x (omega x r) at the body's handle 2, in the run's axes.
     Vector<Real, 3> omega, inward;
 
@@ -102,13 +102,13 @@ class RunWithLoads {
     CATENA_HD ArticulatedBody<Real> last(Mat3 const& axes, Vec3 const& omega, Kept&& kept) const {
         int const i = count() - 1;
         ArticulatedBody<Real> body = at_rest(i);
-        Mat3 const turn = axes * transpose(body.e1);
-        Vec3 const own = omega_beyond(turn, omega, body);
+        Mat3 const rotation = axes * transpose(body.e1);
+        Vec3 const own = omega_beyond(rotation, omega, body);
         set_moving(i, own, body);
         kept.put_omega(i, own);
         Mat3 from_ground = Mat3::identity();
         if (has_wrenches()) {
-            from_ground = transposed_times(turn, first_from_ground());
+            from_ground = transposed_times(rotation, first_from_ground());
             kept.put_orientation(from_ground);
         }
         push(i, from_ground, body);
@@ -172,9 +172,9 @@ class RunWithLoads {
     }
     /// Returns the last body's angular velocity in its own axes, from that of the body before in
     /// the run's axes.
-    CATENA_HD Vec3 omega_beyond(Mat3 const& turn, Vec3 const& omega,
+    CATENA_HD Vec3 omega_beyond(Mat3 const& rotation, Vec3 const& omega,
                                 RevoluteFrame<Real> const& last) const {
-        return transposed_times(turn, omega) +
+        return transposed_times(rotation, omega) +
                loads_.revolute_rate.at(run_.body + count() - 1, 0) * last.e1.column(2);
     }
     /// Returns the rotation matrix from the second of two bodies to the first.
@@ -221,11 +221,12 @@ class FollowedBodies {
     }
     CATENA_HD_IN_PLACE LoadedBodyInRun<double> next(int i) {
         BodyOnRevolute<double> const here = run_.on_revolute(i);
-        state.turn = state.turn * here.turn;
-        Mat3 const turn = to_matrix_of_unit(state.turn);
-        LoadedBodyInRun<double> body = state.go_on(follow(here, turn, state.omega));
+        state.rotation = state.rotation * here.rotation;
+        Mat3 const rotation = to_matrix_of_unit(state.rotation);
+        LoadedBodyInRun<double> body = state.go_on(follow(here, rotation, state.omega));
         run_.add_wrench(i, body);
-        if (all_ || i == run_.count() - 2) kept_.put_omega(i, transposed_times(turn, state.omega));
+        if (all_ || i == run_.count() - 2)
+            kept_.put_omega(i, transposed_times(rotation, state.omega));
         return body;
     }
     /// Returns the last body. Precondition: before_last() was called.
@@ -233,7 +234,7 @@ class FollowedBodies {
         return run_.last(axes_, state.omega, kept_);
     }
     CATENA_HD_IN_PLACE OutboardHandle<double> before_last() {
-        axes_ = to_matrix_of_unit(state.turn) * run_.axes2(run_.count() - 2);
+        axes_ = to_matrix_of_unit(state.rotation) * run_.axes2(run_.count() - 2);
         return {axes_, state.inward};
     }
     FollowedState<double> state;

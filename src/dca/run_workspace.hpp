@@ -10,8 +10,8 @@
 namespace catena::dca {
 
 /// Data of a run on revolute joints for its outward pass, stored in the nodes of its inner joints.
-/// Precondition: end(), revolute(), body(), omega() and swing() are called only for what was put.
-/// axes(), omega(), swing() and orientation() need a run of three bodies or more.
+/// Precondition: end(), revolute(), body(), omega() and velocity_bias() are called only for what
+/// was put. axes(), omega(), velocity_bias() and orientation() need a run of three bodies or more.
 template <class Sweeps>
 class RunWorkspace {
     using Revolute = ReleasedRevolute<double>;
@@ -26,9 +26,9 @@ class RunWorkspace {
                          of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
     static constexpr int of_end = sizeof(End) / sizeof(double),
                          most = sizeof(typename Sweeps::Node) / sizeof(double);
-    // Velocity bias of a body, FloatingRun::swing.
-    using Swing = BodyAcceleration<double>;
-    static constexpr int of_swing = sizeof(Swing) / sizeof(double);
+    // Velocity bias of a body, FloatingRun::velocity_bias.
+    using VelocityBias = BodyAcceleration<double>;
+    static constexpr int of_swing = sizeof(VelocityBias) / sizeof(double);
     static constexpr int at_axes = of_revolute + of_body, at_swing = at_axes + of_axes,
                          at_omega = at_swing + of_swing, at_last_omega = at_omega + of_omega,
                          at_orientation = at_last_omega + of_omega;
@@ -39,11 +39,11 @@ class RunWorkspace {
 
   public:
     /// Data with which the outward pass begins, in a run of three bodies or more: end(), axes() and
-    /// swing(last - 1).
+    /// velocity_bias(last - 1).
     struct Tail {
         End end;
         Mat3 axes;
-        Swing swing;
+        VelocityBias velocity_bias;
     };
     /// `all`: the outward pass needs the velocity bias of every body.
     CATENA_HD RunWorkspace(Sweeps const& sweeps, Run const& run, bool all)
@@ -52,13 +52,14 @@ class RunWorkspace {
         store(i, 0, revolute);
         watch(i, revolute.inverse);
     }
-    CATENA_HD void put(int i, Revolute const& revolute, Body const& body, Swing const& swing) {
+    CATENA_HD void put(int i, Revolute const& revolute, Body const& body,
+                       VelocityBias const& velocity_bias) {
         put(i, revolute);
-        put(i, body, swing);
+        put(i, body, velocity_bias);
     }
-    CATENA_HD void put(int i, Body const& body, Swing const& swing) {
+    CATENA_HD void put(int i, Body const& body, VelocityBias const& velocity_bias) {
         store(i, of_revolute, body);
-        if (all_ || i == last() - 1) store(i, at_swing, swing);
+        if (all_ || i == last() - 1) store(i, at_swing, velocity_bias);
     }
     CATENA_HD void put(End const& end) {
         put(end.factor);
@@ -92,15 +93,19 @@ class RunWorkspace {
     }
     CATENA_HD Revolute revolute(int i) const { return load<Revolute>(i, 0); }
     CATENA_HD Body body(int i) const { return load<Body>(i, of_revolute); }
-    CATENA_HD Swing swing(int i) const { return load<Swing>(i, at_swing); }
+    CATENA_HD VelocityBias velocity_bias(int i) const { return load<VelocityBias>(i, at_swing); }
     CATENA_HD End end() const { return load<End>(last(), of_revolute); }
     CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, at_axes); }
-    CATENA_HD Vec3 omega(int i) const { return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega); }
+    CATENA_HD Vec3 omega(int i) const {
+        return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega);
+    }
     CATENA_HD Mat3 orientation() const { return load<Mat3>(last() - 1, at_orientation); }
     /// Returns number n of Tail.
     CATENA_HD double tail(int n) const {
-        static_assert(at_swing == at_axes + of_axes && sizeof(Tail) == (of_end + of_axes + of_swing) * sizeof(double));
-        return n < of_end ? number(last(), of_revolute + n) : number(last() - 1, at_axes + n - of_end);
+        static_assert(at_swing == at_axes + of_axes &&
+                      sizeof(Tail) == (of_end + of_axes + of_swing) * sizeof(double));
+        return n < of_end ? number(last(), of_revolute + n)
+                          : number(last() - 1, at_axes + n - of_end);
     }
     /// Returns the first joint of the run with a pivot failure.
     CATENA_HD PivotFailure const& lost() const { return lost_; }
@@ -122,7 +127,9 @@ class RunWorkspace {
         for (int n = 0; n < count; ++n) numbers[n] = number(i, at + n);
         return __builtin_bit_cast(T, numbers);
     }
-    CATENA_HD double& number(int i, int n) const { return sweeps_.number_of_node(run_.body + i, n); }
+    CATENA_HD double& number(int i, int n) const {
+        return sweeps_.number_of_node(run_.body + i, n);
+    }
     CATENA_HD void watch(int i, double inverse) {
         if (!is_good(inverse)) lost_.add(run_.body + i);
     }

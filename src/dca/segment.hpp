@@ -102,9 +102,10 @@ struct Factorizer {
 template <class Real, int K>
 CATENA_HD Vector<Real, K> solve_lower(Symmetric<Real, K> const& f, Vector<Real, K> b) {
     CATENA_UNROLL
-    for (int i = 1; i < K; ++i)
+    for (int i = 1; i < K; ++i) {
         CATENA_UNROLL
         for (int j = 0; j < i; ++j) b[i] = less_product(f(i, j), b[j], b[i]);
+    }
     return b;
 }
 
@@ -112,11 +113,13 @@ CATENA_HD Vector<Real, K> solve_lower(Symmetric<Real, K> const& f, Vector<Real, 
 template <class Real, int K>
 CATENA_HD Matrix<Real, K, K> solve_lower(Symmetric<Real, K> const& f, Matrix<Real, K, K> b) {
     CATENA_UNROLL
-    for (int i = 1; i < K; ++i)
+    for (int i = 1; i < K; ++i) {
         CATENA_UNROLL
-        for (int j = 0; j < i; ++j)
+        for (int j = 0; j < i; ++j) {
             CATENA_UNROLL
             for (int c = 0; c < K; ++c) b(i, c) = less_product(f(i, j), b(j, c), b(i, c));
+        }
+    }
     return b;
 }
 
@@ -133,9 +136,10 @@ template <class Real, int K>
 CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, K> y) {
     y = scaled(f, y);
     CATENA_UNROLL
-    for (int i = K - 1; i > 0; --i)
+    for (int i = K - 1; i > 0; --i) {
         CATENA_UNROLL
         for (int j = 0; j < i; ++j) y[j] = less_product(f(i, j), y[i], y[j]);
+    }
     return y;
 }
 
@@ -148,7 +152,8 @@ CATENA_HD Real less_products(Real z, Vector<Real, K> const& a, Vector<Real, K> c
 }
 /// Returns z - m^T S^-1 m.
 template <class Real, int K>
-CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Real, K, K> const& m, Symmetric<Real, K> const& factor) {
+CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Real, K, K> const& m,
+                                         Symmetric<Real, K> const& factor) {
     Symmetric<Real, K> s;
     CATENA_UNROLL
     // One column at a time, because the operands of a column fit the registers.
@@ -163,8 +168,8 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
 /// (src/dca/README.md, "Assembly and disassembly", with W = D (D^T Z D)^-1 D^T). Precondition: z22
 /// of `segment` + z11 of `outboard` is positive definite on these directions.
 template <class Real, int K, class Factorizer = dca::Factorizer>
-CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint,
-                      Factorizer const& factors = {}) {
+CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard,
+                      int restricted, JointMatrix<Real, K>& joint, Factorizer const& factors = {}) {
     joint.factor = factors(segment.z22 + outboard.z11, restricted);
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
@@ -173,7 +178,9 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
     for (int j = 0; j < K; ++j) {
         Vector<Real, K> const of_column = scaled(joint.factor, joint.outboard.column(j));
         CATENA_UNROLL
-        for (int i = j; i < K; ++i) segment.z22(i, j) = less_products(outboard.z22(i, j), joint.outboard.column(i), of_column);
+        for (int i = j; i < K; ++i)
+            segment.z22(i, j) =
+                less_products(outboard.z22(i, j), joint.outboard.column(i), of_column);
         segment.z12.set_column(j, transposed_times(joint.inboard, of_column));
     }
     segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
@@ -181,8 +188,8 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
 /// Joins the biases at the same joint. `offset` keeps L^-1 (b2 - b1 of `outboard`) for the
 /// disassembly (Y of the chapter).
 template <class Real, int K>
-CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const& outboard, JointMatrix<Real, K> const& joint,
-                      Vector<Real, K>& offset) {
+CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const& outboard,
+                      JointMatrix<Real, K> const& joint, Vector<Real, K>& offset) {
     offset = solve_lower(joint.factor, segment.b2 - outboard.b1);
     Vector<Real, K> const y = scaled(joint.factor, offset);
     segment.b1 = segment.b1 - transposed_times(joint.inboard, y);
@@ -190,15 +197,18 @@ CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const&
 }
 /// Returns the merged segment's matrices.
 template <class Real, int K>
-CATENA_HD SegmentMatrix<Real, K> assemble(SegmentMatrix<Real, K> inboard, SegmentMatrix<Real, K> const& outboard, int restricted,
+CATENA_HD SegmentMatrix<Real, K> assemble(SegmentMatrix<Real, K> inboard,
+                                          SegmentMatrix<Real, K> const& outboard, int restricted,
                                           JointMatrix<Real, K>& joint) {
     append(inboard, outboard, restricted, joint);
     return inboard;
 }
 /// Returns the merged segment's biases.
 template <class Real, int K>
-CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> inboard, SegmentBias<Real, K> const& outboard,
-                                        JointMatrix<Real, K> const& joint, Vector<Real, K>& offset) {
+CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> inboard,
+                                        SegmentBias<Real, K> const& outboard,
+                                        JointMatrix<Real, K> const& joint,
+                                        Vector<Real, K>& offset) {
     append(inboard, outboard, joint, offset);
     return inboard;
 }
@@ -207,7 +217,8 @@ CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> inboard, SegmentBia
 /// segment's own two joints. `first` acts on its first body, `next` on the body that follows its
 /// last one (so that f1 = first, f2 = -next).
 template <class Real, int K>
-CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint, Vector<Real, K> const& offset, Vector<Real, K> const& first,
+CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint,
+                                      Vector<Real, K> const& offset, Vector<Real, K> const& first,
                                       Vector<Real, K> const& next) {
     return solve_upper(joint.factor, joint.inboard * first + (joint.outboard * next + offset));
 }
@@ -232,7 +243,8 @@ template <class Real, int K>
 CATENA_HD Matrix<Real, K, K> gain(OneSided<Real, K> const& joint) {
     Matrix<Real, K, K> g;
     CATENA_UNROLL
-    for (int j = 0; j < K; ++j) g.set_column(j, solve_upper(joint.factor, joint.outboard.column(j)));
+    for (int j = 0; j < K; ++j)
+        g.set_column(j, solve_upper(joint.factor, joint.outboard.column(j)));
     return g;
 }
 /// Returns `offset` of a joint's Elimination, given the force on the first body. Updates `b2` from
@@ -244,7 +256,8 @@ CATENA_HD Vector<Real, K> pass_bias(Vector<Real, K>& b2, OneSided<Real, K> const
     for (int i = 0; i < K; ++i) {
         Real b = joint.bias.b2[i];
         CATENA_UNROLL
-        for (int k = 0; k < K; ++k) b = fused(joint.factor(k, k) * offset[k], joint.outboard(k, i), b);
+        for (int k = 0; k < K; ++k)
+            b = fused(joint.factor(k, k) * offset[k], joint.outboard(k, i), b);
         b2[i] = b;
     }
     return solve_upper(joint.factor, offset);
@@ -259,21 +272,26 @@ CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const
 /// the segment so far matters: `z22`, and `b2` with that force's contribution. Both are updated to
 /// the merged segment's.
 template <class Real, int K, class Factorizer = dca::Factorizer>
-CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,
-                                         SegmentBias<Real, K> const& bias, int restricted, Factorizer const& factors = {}) {
+CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2,
+                                         SegmentMatrix<Real, K> const& outboard,
+                                         SegmentBias<Real, K> const& bias, int restricted,
+                                         Factorizer const& factors = {}) {
     OneSided<Real, K> joint;
     joint.factor = factors(z22 + outboard.z11, restricted);
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     joint.bias = bias;
     CATENA_UNROLL
-    for (int i = 0; i < K; ++i)
+    for (int i = 0; i < K; ++i) {
         CATENA_UNROLL
         for (int j = 0; j <= i; ++j) {
             Real z = outboard.z22(i, j);
             CATENA_UNROLL
-            for (int k = 0; k < K; ++k) z = less_product(joint.outboard(k, i), joint.factor(k, k) * joint.outboard(k, j), z);
+            for (int k = 0; k < K; ++k)
+                z = less_product(joint.outboard(k, i), joint.factor(k, k) * joint.outboard(k, j),
+                                 z);
             z22(i, j) = z;
         }
+    }
     return pass(b2, joint);
 }
 

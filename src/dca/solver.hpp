@@ -46,7 +46,8 @@ using ConstDirectionsView = BasicDirectionsView<double const>;
 class DirectionsField {
   public:
     DirectionsField() = default;
-    DirectionsField(std::int64_t size, int directions) : pitch_(size | 1), data_(static_cast<std::size_t>(pitch_ * directions)) {}
+    DirectionsField(std::int64_t size, int directions)
+        : pitch_(size | 1), data_(static_cast<std::size_t>(pitch_ * directions)) {}
     DirectionsView view() { return {data_.data(), pitch_}; }
     ConstDirectionsView view() const { return {data_.data(), pitch_}; }
 
@@ -57,11 +58,13 @@ class DirectionsField {
 
 /// The part of one chain in absolute coordinates that this rank owns.
 struct LocalPiece {
-    std::int64_t first = 0;  // Local index of its first body.
+    std::int64_t first = 0;     // Local index of its first body.
     std::int64_t in_scene = 0;  // Index of that body in the scene.
     Vec3 anchor;  // Anchor of a chain that begins at the ground, on a link or a joint there; W.
     /// Returns the index in the scene of local body k. Its random numbers depend on this index.
-    CATENA_HD std::uint64_t body_of(std::int64_t k) const { return static_cast<std::uint64_t>(in_scene + k - first); }
+    CATENA_HD std::uint64_t body_of(std::int64_t k) const {
+        return static_cast<std::uint64_t>(in_scene + k - first);
+    }
 };
 /// Returns the piece that local body k belongs to. `piece` is an array of `pieces` pieces, ordered
 /// by their first bodies.
@@ -104,9 +107,9 @@ struct ConfigurationView {
     std::int64_t pieces = 0;
 };
 
-/// Loads for a solver that goes_by_revolutes(). In runs of two bodies or more, omega is known of
-/// the first bodies only, and these views replace torque and force. A view without origin means
-/// zero.
+/// Loads for a solver that eliminates_revolute_joints(). In runs of two bodies or more, omega is
+/// known of the first bodies only, and these views replace torque and force. A view without origin
+/// means zero.
 struct RevoluteLoads {
     bool given = false;
     /// Rotation of bodies on revolute joints: quaternion of B in the axes of the body before.
@@ -141,9 +144,9 @@ struct LoadsView {
     /// directions.
     ConstView<3> velocity{};
     bool gyroscopic = false;  // True if `torque` lacks -omega x J omega; the solver then adds it.
-    /// Rates of the revolute joints, for assemble_and_solve() of a solver that goes_by_revolutes().
-    /// The solver computes the joints' velocity terms from them. `bias` is then needed only for
-    /// bodies that begin a chain or form a run of one body.
+    /// Rates of the revolute joints, for assemble_and_solve() of a solver that
+    /// eliminates_revolute_joints(). The solver computes the joints' velocity terms from them.
+    /// `bias` is then needed only for bodies that begin a chain or form a run of one body.
     ConstView<1> revolute_rate{};
     RevoluteLoads revolutes{};
 };
@@ -155,7 +158,7 @@ struct InverseView {
     /// all pivots, those of tips included, is det T.
     View<1> pivot;
     View<1> tip_pivot;  // Pivot of the link from last body k to the ground.
-    View<1> beside;  // Entry (T^-1)_k,k+1 of the two links of body k; 0 if it does not have two.
+    View<1> beside;     // Entry (T^-1)_k,k+1 of the two links of body k; 0 if it does not have two.
 };
 
 /// Results of a solver. Each view may be absent (without origin) if its values are not requested.
@@ -166,9 +169,9 @@ struct AccelerationsView {
     /// Constraint force on body k along the directions of its inboard joint; [0, size].
     DirectionsView joint_force;
     DirectionsView tip_force;  // Constraint force on the ground at the jointed tip of last body k.
-    /// Joint accelerations, for assemble_and_solve() of a solver that goes_by_revolutes(); [0,
-    /// size]. They replace alpha and acceleration of most bodies. These two are then computed only
-    /// for bodies that begin a chain, form a run of one body, precede such a body, or are this
+    /// Joint accelerations, for assemble_and_solve() of a solver that eliminates_revolute_joints();
+    /// [0, size]. They replace alpha and acceleration of most bodies. These two are then computed
+    /// only for bodies that begin a chain, form a run of one body, precede such a body, or are this
     /// rank's last.
     ///
     /// In runs of two bodies or more, component 0 is the angular acceleration of body k about its
@@ -233,7 +236,8 @@ class ChainSolver {
     virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
     /// Computes both, where no other work could be overlapped. The matrices are not kept for
     /// solve(), and the last bits may differ. Collective.
-    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads,
+                                    AccelerationsView const& out) {
         assemble_matrices(configuration);
         solve(loads, out);
     }
@@ -243,13 +247,13 @@ class ChainSolver {
     /// True if the solver computes runs on revolute joints by articulated-body inertias. It then
     /// needs less input: LoadsView::revolute_rate, RevoluteLoads,
     /// AccelerationsView::revolute_acceleration.
-    virtual bool goes_by_revolutes() const { return false; }
+    virtual bool eliminates_revolute_joints() const { return false; }
     /// True if several runs are processed side by side in SIMD lanes (deal_out_runs()).
     virtual bool has_runs_side_by_side() const { return false; }
     /// Returns `repeat` times in seconds. Each is the mean of `chained` consecutive calls of
     /// assemble_and_solve(), whose views are already in the solver's memory. Collective.
-    virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,
-                                                 int repeat);
+    virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&,
+                                                 AccelerationsView const&, int chained, int repeat);
     /// Throws ComputationError if a joint's matrix on this rank has not been positive definite
     /// since the last call.
     virtual void check() {}
@@ -274,6 +278,7 @@ void add_tree(ChainGroup const&, Communicator const&, SolverReport&);
 
 /// Returns the divide-and-conquer solver over a group's canonical tree on the host. The group,
 /// executor and communicator must outlive it.
-std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Executor const&, Communicator const&);
+std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Executor const&,
+                                              Communicator const&);
 
 }  // namespace catena

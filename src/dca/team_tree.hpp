@@ -90,7 +90,9 @@ struct PartTree {
                 return assemble(inboard, outboard, joint[i], of_joint);
             },
             [&](Biases const& floating) {
-                team.put_force(team.slot(), solve_upper(joint[0].factor, solve_lower(joint[0].factor, -floating.b1)));
+                team.put_force(
+                    team.slot(),
+                    solve_upper(joint[0].factor, solve_lower(joint[0].factor, -floating.b1)));
             });
         descend(accelerate);
     }
@@ -98,17 +100,20 @@ struct PartTree {
   private:
     // True if this thread's first joint is eliminated by a merge of this level.
     CATENA_HD_IN_PLACE bool merges(int level) const {
-        return place.count > 0 && team.part() == 0 && place.run != 0 && (place.run & ((2 << level) - 1)) == 1 << level;
+        return place.count > 0 && team.part() == 0 && place.run != 0 &&
+               (place.run & ((2 << level) - 1)) == 1 << level;
     }
     /// Returns the force at the inboard joint of the run that is `ahead` runs further in the chain;
     /// zero beyond the chain's end.
     CATENA_HD_IN_PLACE Directions force_ahead(int ahead) const {
-        return place.run + ahead < place.runs ? team.template force<K>(team.slot() + ahead) : Directions::zero();
+        return place.run + ahead < place.runs ? team.template force<K>(team.slot() + ahead)
+                                              : Directions::zero();
     }
     /// Inward pass. join(inboard, outboard, i, kept[i]) stores the data of joint i in `kept`.
     CATENA_EITHER_SIDE
     template <class Segment, class Kept, class Leaf, class Join, class Close>
-    CATENA_HD_IN_PLACE void climb(Kept (&kept)[part_length], Leaf const& leaf, Join const& join, Close const& close) {
+    CATENA_HD_IN_PLACE void climb(Kept (&kept)[part_length], Leaf const& leaf, Join const& join,
+                                  Close const& close) {
         Segment own = leaf(0);
         CATENA_UNROLL
         for (int i = 1; i < part_length; ++i) {
@@ -130,7 +135,8 @@ struct PartTree {
             team.sync();
             if (!merges(level)) continue;
             int const inboard = team.slot() - (1 << level);
-            team.put(inboard, join(team.template get<Segment>(inboard), team.template get<Segment>(team.slot()), 0, kept[0]));
+            team.put(inboard, join(team.template get<Segment>(inboard),
+                                   team.template get<Segment>(team.slot()), 0, kept[0]));
         }
         team.sync();
         if (place.starts_chain(team.part())) close(team.template get<Segment>(team.slot()));
@@ -143,7 +149,9 @@ struct PartTree {
             team.sync();
             if (!merges(level)) continue;
             int const width = 1 << level;
-            team.put_force(team.slot(), disassemble(joint[0], offset[0], team.template force<K>(team.slot() - width), force_ahead(width)));
+            team.put_force(team.slot(), disassemble(joint[0], offset[0],
+                                                    team.template force<K>(team.slot() - width),
+                                                    force_ahead(width)));
         }
         team.sync();
         Directions const first = team.template force<K>(team.slot());

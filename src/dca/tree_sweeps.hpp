@@ -17,7 +17,7 @@
 //
 // A sweep that `keeps_nodes` has joined(..., node) and keep(joint, node) as well.
 //
-// A sweep that `goes_short` serves short chains (cuda/short/short_chain.cuh,
+// A sweep that `supports_short_chains` serves short chains (cuda/short/short_chain.cuh,
 // cuda/sweeps/group_lanes.cuh). Its bodies are read one by one (body_at). It has join_bodies() or
 // join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(), and
 // accelerate() or accelerate_turned(). Its joints, forces and slots are not read afterwards, so
@@ -111,17 +111,20 @@ struct TreeSweeps {
         Joint joint;
         Directions offset;
     };
-    CATENA_HD Node node(std::int64_t k) const { return {joints.load_last(k), offsets.load_last(k)}; }
+    CATENA_HD Node node(std::int64_t k) const {
+        return {joints.load_last(k), offsets.load_last(k)};
+    }
     /// Returns number n of a joint's node.
     CATENA_HD double& number_of_node(std::int64_t k, int n) const {
         constexpr int of_joint = sizeof(Joint) / sizeof(double);
         return n < of_joint ? joints.number(k, n) : offsets.number(k, n - of_joint);
     }
     /// Computes the forces at a chain's ends (chapter, eqs 2.10-2.11) from the bias of the chain
-    /// held at its tip. `first` is what fasten() returned.
+    /// held at its tip. `first` is what factorize_closing_joint() returned.
     CATENA_HD void close(Root const& root, Joint const& first, Biases const& held) const {
         if (root.tip == TipTo::nothing)
-            return forces.store(root.first, solve_upper(first.factor, solve_lower(first.factor, -held.b1)));
+            return forces.store(root.first,
+                                solve_upper(first.factor, solve_lower(first.factor, -held.b1)));
         bool const ring = root.tip == TipTo::first_body;
         Directions const force = closing_force(first, ring ? held.b2 - held.b1 : -held.b1);
         forces.store(root.first, force);
@@ -132,7 +135,8 @@ struct TreeSweeps {
     /// Factorizes and returns the joint that is closed last: between a chain's first body and the
     /// ground, or in a ring between its first and its last body. `floating` belongs to the chain
     /// with a free tip, `held` to the chain with its tip on the ground.
-    CATENA_HD Joint fasten(Root const& root, Matrices const& floating, Matrices const& held) const {
+    CATENA_HD Joint factorize_closing_joint(Root const& root, Matrices const& floating,
+                                            Matrices const& held) const {
         PivotFailure found;
         JointAt const at_first = at(root.first);
         Joint first{};
@@ -140,10 +144,12 @@ struct TreeSweeps {
             first.factor = factorize(held.z11, at_first.restricted);
         } else {
             bool const ring = root.tip == TipTo::first_body;
-            first = closing_joint(ring ? ring_matrix(floating) : held.z11, open_response(floating, ring), at_first.restricted);
+            first = closing_joint(ring ? ring_matrix(floating) : held.z11,
+                                  open_response(floating, ring), at_first.restricted);
         }
         joints.store(root.first, first);
-        if (root.tip == TipTo::nothing || !has_least_norm(first)) watch(at_first, first.factor, found);
+        if (root.tip == TipTo::nothing || !has_least_norm(first))
+            watch(at_first, first.factor, found);
         note(found);
         return first;
     }
@@ -184,7 +190,7 @@ struct NothingRead {};
 /// The matrix sweep: matrices of every segment and joint.
 template <class Leaf>
 struct MatrixSweep {
-    static constexpr bool descends = false, keeps_nodes = false, goes_short = false;
+    static constexpr bool descends = false, keeps_nodes = false, supports_short_chains = false;
     using Sweeps = TreeSweeps<Leaf>;
     using Joint = typename Sweeps::Joint;
     using Segment = typename Sweeps::Matrices;
@@ -206,7 +212,8 @@ struct MatrixSweep {
         return segment;
     }
     /// Returns the merged segment and stores its joint.
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard,
+                             JointAt const& at) const {
         PivotFailure found;
         Segment segment = inboard;
         append(segment, outboard, at, found);
@@ -214,14 +221,20 @@ struct MatrixSweep {
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
-    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
+        s.matrices.store(slot, segment);
+    }
     /// Closes a chain at its root: factorizes the joint that is closed last.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
-        s.fasten(root, floating, root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating);
+        s.factorize_closing_joint(root, floating,
+                                  root.tip == TipTo::ground
+                                      ? joined(floating, Segment::zero(), s.at(root.next))
+                                      : floating);
     }
 
   private:
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, PivotFailure& found) const {
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at,
+                          PivotFailure& found) const {
         Joint joint;
         dca::append(segment, outboard, at.restricted, joint);
         s.joints.store(at.k, joint);
@@ -232,7 +245,7 @@ struct MatrixSweep {
 /// The bias sweep: biases, joint forces and accelerations, with the matrices assembled last.
 template <class Leaf>
 struct BiasSweep {
-    static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
+    static constexpr bool descends = true, keeps_nodes = false, supports_short_chains = false;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = typename Sweeps::Biases;
     using ShownNumbers = RecordNumbers<Segment>;
@@ -255,27 +268,34 @@ struct BiasSweep {
         return segment;
     }
     /// Returns the merged bias and stores the joint's offset.
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard,
+                             JointAt const& at) const {
         Segment segment = inboard;
         append(segment, outboard, at.k);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
-    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
+        s.biases.store(slot, segment);
+    }
     /// Closes a chain at its root. The ground is a segment with zeta = 0; its acceleration is
     /// contained in the biases of the joints to it.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
-        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
+        Segment const held = root.tip == TipTo::ground
+                                 ? joined(floating, Segment::zero(), s.at(root.next))
+                                 : floating;
         s.close(root, s.joints.load(root.first), held);
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
-    CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
+    CATENA_HD Directions force(Node const& node, Directions const& first,
+                               Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
     /// Outward pass of part p from the forces at its two ends: writes joint forces and
     /// accelerations.
     template <bool /*unroll*/>
-    CATENA_HD void down(Run const& run, int p, Part, Directions const& first, Directions next) const {
+    CATENA_HD void down(Run const& run, int p, Part, Directions const& first,
+                        Directions next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
         each_body<unrolled<Leaf::K>>(0, static_cast<int>(end - begin), [&](int passed) {
             std::int64_t const k = end - 1 - passed;
@@ -317,18 +337,23 @@ CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
     if constexpr (takes_whole_runs<Sweep>)
         if (sweep.takes(run)) return sweep.store(run.slot, sweep.climb(run));
     climb_parts(
-        sweep, run, [&](int p) { return sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p))); },
-        [&](auto const& inboard, auto const& outboard, JointAt const& at) { return sweep.joined(inboard, outboard, at); });
+        sweep, run,
+        [&](int p) { return sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p))); },
+        [&](auto const& inboard, auto const& outboard, JointAt const& at) {
+            return sweep.joined(inboard, outboard, at);
+        });
 }
 /// Inward pass of one merge: stores the merged segment.
 template <class Sweep>
 CATENA_HD void climb_merge(Sweep const& sweep, Merge const& m) {
-    sweep.store(m.slot, sweep.joined(sweep.load(m.inboard), sweep.load(m.outboard), sweep.s.at(m.joint)));
+    sweep.store(m.slot,
+                sweep.joined(sweep.load(m.inboard), sweep.load(m.outboard), sweep.s.at(m.joint)));
 }
 /// Outward pass of one merge: stores the state of its joint.
 template <class Sweep>
 CATENA_HD void descend_merge(Sweep const& sweep, Merge const& m, typename Sweep::Node const& node) {
-    sweep.s.forces.store(m.joint, sweep.force(node, sweep.s.forces.load(m.first), sweep.s.forces.load(m.next)));
+    sweep.s.forces.store(
+        m.joint, sweep.force(node, sweep.s.forces.load(m.first), sweep.s.forces.load(m.next)));
 }
 /// Closes one chain at its root.
 template <class Sweep>
@@ -343,8 +368,10 @@ CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     if constexpr (takes_whole_runs<Sweep>)
         if (sweep.takes(run)) return sweep.descend(run, first, next);
     for (int p = parts_of(run) - 1; p >= 0; --p) {
-        auto const at_begin = p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next);
-        sweep.template down<true>(run, p, sweep.read(begin_of(run, p), end_of(run, p)), at_begin, next);
+        auto const at_begin =
+            p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next);
+        sweep.template down<true>(run, p, sweep.read(begin_of(run, p), end_of(run, p)), at_begin,
+                                  next);
         next = at_begin;
     }
 }
@@ -369,7 +396,9 @@ struct ForceOfNextRank {
     Sweeps s;
     DirectionsView out;
     std::int64_t from, to;
-    CATENA_HD void operator()(std::int64_t) const { out.template store<Sweeps::K>(to, force_of(s.forces.load(from))); }
+    CATENA_HD void operator()(std::int64_t) const {
+        out.template store<Sweeps::K>(to, force_of(s.forces.load(from)));
+    }
 };
 
 }  // namespace catena::dca

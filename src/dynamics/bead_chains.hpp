@@ -145,12 +145,12 @@ struct BeadChainsIn {
     /// Velocity bias of the link of bead k at the observed velocities.
     CATENA_HD_IN_PLACE double swing_of(std::int64_t k) const {
         Vec3 const v = observed.load(k) - (to_ground(k) ? Vec3::zero() : observed.load(k - 1));
-        return swing(v, direction.load(k), length.at(k, 0));
+        return velocity_bias(v, direction.load(k), length.at(k, 0));
     }
     /// Velocity bias of the link of tip i at the observed velocities.
     CATENA_HD_IN_PLACE double tip_swing(std::int64_t i) const {
-        return swing(beyond_tip(i, observed, Vec3::zero()) - at_tip(i, observed),
-                     tip_direction.load(tip[i].body), tip[i].length);
+        return velocity_bias(beyond_tip(i, observed, Vec3::zero()) - at_tip(i, observed),
+                             tip_direction.load(tip[i].body), tip[i].length);
     }
     /// Sets the bias of the link of bead k for accelerations.
     CATENA_HD_IN_PLACE void set_swing(std::int64_t k) const {

@@ -71,7 +71,7 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         Vector<double, 7> const b = beyond[group.tip_index(tip.body)];
         Vec3 const u = tip_direction.load(tip.body), there{{b[0], b[1], b[2]}};
         double const turning =
-            swing(Vec3{{b[4], b[5], b[6]}} - velocity.load(tip.body), u, tip.length);
+            velocity_bias(Vec3{{b[4], b[5], b[6]}} - velocity.load(tip.body), u, tip.length);
         worst = larger(worst, relative(turning + dot(u, there - acceleration.load(tip.body)),
                                        terms[tip.body][3] + b[3] + turning));
     }
@@ -83,7 +83,8 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
         Vec3 const apart =
             velocity.load(k) - (group.is_first[k] ? Vec3::zero() : velocity.load(k - 1));
-        double const turning = swing(apart, direction.load(k), group.length.view().at(k, 0));
+        double const turning =
+            velocity_bias(apart, direction.load(k), group.length.view().at(k, 0));
         worst = larger(worst, relative(dot(direction.load(k), across) + turning,
                                        mine[3] + before[3] + turning));
     }

@@ -127,7 +127,7 @@ class BeadPart {
             CATENA_NO_UNROLL
             for (int i = 0; i < length; ++i) {
                 auto const made = make(i);
-            CATENA_UNROLL
+                CATENA_UNROLL
                 for (int j = 0; j < length; ++j)
                     if (j == i) take(j, made);
             }
@@ -141,9 +141,13 @@ class BeadPart {
         template <class Action>
         CATENA_HD_IN_PLACE void each_tip(Action const&) const {}
         CATENA_EITHER_SIDE
-        CATENA_HD_IN_PLACE void from_inboard() const { part->position_[0] = part->team_.from_before(part->position_[length]); }
+        CATENA_HD_IN_PLACE void from_inboard() const {
+            part->position_[0] = part->team_.from_before(part->position_[length]);
+        }
         CATENA_EITHER_SIDE
-        CATENA_HD_IN_PLACE void from_outboard() const { part->position_[length + 1] = part->team_.from_after(part->position_[1]); }
+        CATENA_HD_IN_PLACE void from_outboard() const {
+            part->position_[length + 1] = part->team_.from_after(part->position_[1]);
+        }
         CATENA_EITHER_SIDE
         CATENA_HD_IN_PLACE void assemble() const { part->assemble(); }
         CATENA_EITHER_SIDE
@@ -193,19 +197,25 @@ class BeadPart {
         dca::PivotFailure lost;
         tree_.assemble_matrices(
             [&](int i) {
-                return dca::bead_matrix(inverse_mass_[i + 1][0], direction_[i + 1], outboard_direction(i), Directions{});
+                return dca::bead_matrix(inverse_mass_[i + 1][0], direction_[i + 1],
+                                        outboard_direction(i), Directions{});
             },
             [&](int i) { return sweeps_.restricted[place_.body_there(i)]; },
-            [&](int i, Symmetric<double, K> const& factor) { sweeps_.watch(sweeps_.at(place_.body + i), factor, lost); });
+            [&](int i, Symmetric<double, K> const& factor) {
+                sweeps_.watch(sweeps_.at(place_.body + i), factor, lost);
+            });
         sweeps_.note(lost);
     }
     /// Biases of bead i under `force` along its two links.
     CATENA_HD_IN_PLACE dca::SegmentBias<double, K> bias_of(Vec3 const& force, int i) const {
-        return dca::bead_bias(inverse_mass_[i + 1][0], force, direction_[i + 1], outboard_direction(i), Directions{});
+        return dca::bead_bias(inverse_mass_[i + 1][0], force, direction_[i + 1],
+                              outboard_direction(i), Directions{});
     }
     /// Acceleration of bead i from `force` and the forces of its two links.
-    CATENA_HD_IN_PLACE Vec3 acceleration(Vec3 const& force, Directions const& inboard, Directions const& outboard, int i) const {
-        return dca::bead_acceleration(inverse_mass_[i + 1][0], force, inboard[0], direction_[i + 1], outboard[0], outboard_direction(i));
+    CATENA_HD_IN_PLACE Vec3 acceleration(Vec3 const& force, Directions const& inboard,
+                                         Directions const& outboard, int i) const {
+        return dca::bead_acceleration(inverse_mass_[i + 1][0], force, inboard[0], direction_[i + 1],
+                                      outboard[0], outboard_direction(i));
     }
 
     Team const& team_;
@@ -213,9 +223,12 @@ class BeadPart {
     dca::TreeSweeps<Leaf> const& sweeps_;
     BeadChains const& chains_;
     dca::PartTree<Team, K> tree_;
-    Vector<double, 1> mass_[length + 2] = {}, inverse_mass_[length + 2] = {}, length_[length + 2] = {}, half_over_length_[length + 2] = {}, bias_[length + 2] = {};
-    Vec3 position_[length + 2] = {}, velocity_[length + 2] = {}, force_[length + 2] = {}, momentum_[length + 2] = {},
-         change_[length + 2] = {}, direction_[length + 2] = {};
+    Vector<double, 1> mass_[length + 2] = {}, inverse_mass_[length + 2] = {},
+                                     length_[length + 2] = {}, half_over_length_[length + 2] = {},
+                                     bias_[length + 2] = {};
+    Vec3 position_[length + 2] = {}, velocity_[length + 2] = {}, force_[length + 2] = {},
+                            momentum_[length + 2] = {}, change_[length + 2] = {},
+                            direction_[length + 2] = {};
 };
 
 /// One thread's share of `step` (StepOfChains). The team's threads hold the chains' parts

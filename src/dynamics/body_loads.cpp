@@ -86,8 +86,8 @@ BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
     return loads;
 }
 
-double spherical_spring_energy(Vec3 const& stiffness, Quat const& rest, Quat const& turn) {
-    Vec3 const theta = rotation_vector(conjugate(rest) * turn);
+double spherical_spring_energy(Vec3 const& stiffness, Quat const& rest, Quat const& rotation) {
+    Vec3 const theta = rotation_vector(conjugate(rest) * rotation);
     return 0.5 * (stiffness[0] * theta[0] * theta[0] + stiffness[1] * theta[1] * theta[1] +
                   stiffness[2] * theta[2] * theta[2]);
 }

@@ -65,12 +65,13 @@ inline double radius_of_gyration(Sym3 const& inertia, double mass) {
     return std::sqrt(0.5 * (inertia.data[0] + inertia.data[2] + inertia.data[5]) / mass);
 }
 
-/// Torque of a spherical joint's spring on the outboard body, B. `turn` is the rotation of B in the
-/// joint frame. The energy is 1/2 sum k_i theta_i^2, with theta the rotation vector of B from
+/// Torque of a spherical joint's spring on the outboard body, B. `rotation` is the rotation of B in
+/// the joint frame. The energy is 1/2 sum k_i theta_i^2, with theta the rotation vector of B from
 /// `rest`. Its gradient contains the inverse right Jacobian of SO(3) (Sola et al., "A micro Lie
 /// theory", 2018, eq 144).
-CATENA_HD Vec3 spherical_spring_torque(Vec3 const& stiffness, Quat const& rest, Quat const& turn) {
-    Vec3 const theta = rotation_vector(conjugate(rest) * turn);
+CATENA_HD Vec3 spherical_spring_torque(Vec3 const& stiffness, Quat const& rest,
+                                       Quat const& rotation) {
+    Vec3 const theta = rotation_vector(conjugate(rest) * rotation);
     Vec3 const k_theta{{stiffness[0] * theta[0], stiffness[1] * theta[1], stiffness[2] * theta[2]}};
     double const angle = norm(theta);
     CosSin const half = cos_sin(0.5 * angle);
@@ -82,6 +83,6 @@ CATENA_HD Vec3 spherical_spring_torque(Vec3 const& stiffness, Quat const& rest, 
     return -1.0 * (k_theta - 0.5 * t1 + c * t2);
 }
 /// Energy of a spherical joint's spring: 1/2 sum k_i theta_i^2.
-double spherical_spring_energy(Vec3 const& stiffness, Quat const& rest, Quat const& turn);
+double spherical_spring_energy(Vec3 const& stiffness, Quat const& rest, Quat const& rotation);
 
 }  // namespace catena

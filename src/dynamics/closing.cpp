@@ -21,7 +21,7 @@ constexpr int in_vain_at_rounding = 5;
          << sweeps << " sweeps (error " << error
          << "): the step is too long for how fast bodies move here: choose a smaller "
             "dynamics.step, or look at the start and the forces";
-    throw StaysOpen(line.str());
+    throw ClosingFailure(line.str());
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ struct Closing {
     double rounding = 1e-7;
 
     /// Calls sweep() while error() requires it; `done` sweeps were made before. Returns the number
-    /// of calls. Throws StaysOpen (a ComputationError) if the joints stay open after `most` sweeps
-    /// or the error is not finite.
+    /// of calls. Throws ClosingFailure (a ComputationError) if the joints stay open after `most`
+    /// sweeps or the error is not finite.
     int close(int done, std::function<double()> const& error,
               std::function<void()> const& sweep) const;
 };

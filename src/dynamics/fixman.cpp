@@ -32,7 +32,7 @@ FixmanPotential::FixmanPotential(ChainGroup const& group, Scene const& scene,
       tip_pivot_(group.size),
       beside_(group.size),
       pull_(group.size),
-      turn_(group.size) {}
+      across_(group.size) {}
 
 Vec3 FixmanPotential::outboard(ConfigurationView const& at, std::int64_t k) const {
     if (group_.has_jointed_tip(k)) return at.tip_direction.load(k);
@@ -45,24 +45,24 @@ void FixmanPotential::add_forces(ConfigurationView const& at, View<3> force) {
     solver_.invert({pivot_.view(), tip_pivot_.view(), beside_.view()});
     View<1> const beside = beside_.view();
     ConstView<1> const inverse_mass = group_.inverse_mass.view(), length = group_.length.view();
-    View<3> const pull = pull_.view(), turn = turn_.view();
+    View<3> const pull = pull_.view(), across = across_.view();
     auto const weight = [=](std::int64_t k) { return beside.at(k, 0) * inverse_mass.at(k, 0); };
     executor_.for_each(group_.size,
                        [&](std::int64_t k) { pull.store(k, weight(k) * at.direction.load(k)); });
     exchange_from_inboard(communicator_, group_, pull);
     executor_.for_each(group_.size, [&](std::int64_t k) {
-        if (!has_link(k)) return turn.store(k, Vec3::zero());
+        if (!has_link(k)) return across.store(k, Vec3::zero());
         Vec3 const before =
             group_.is_first[static_cast<std::size_t>(k)] ? Vec3::zero() : pull.load(k - 1);
-        turn.store(k,
-                   turning(kt_ / length.at(k, 0), plus_scaled(before, weight(k), outboard(at, k)),
-                           at.direction.load(k)));
+        across.store(k,
+                     turning(kt_ / length.at(k, 0), plus_scaled(before, weight(k), outboard(at, k)),
+                             at.direction.load(k)));
     });
-    exchange_from_outboard(communicator_, group_, turn);
+    exchange_from_outboard(communicator_, group_, across);
     executor_.for_each(group_.size, [&](std::int64_t k) {
         Vec3 const after =
-            group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : turn.load(k + 1);
-        force.store(k, force.load(k) + (turn.load(k) - after));
+            group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : across.load(k + 1);
+        force.store(k, force.load(k) + (across.load(k) - after));
     });
     for (HeldTip const& tip : tips_) {
         Vec3 const of_tip =

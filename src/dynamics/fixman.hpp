@@ -40,7 +40,7 @@ class FixmanPotential {
     /// Entries of T^-1 and its pivots, as InverseView.
     Field<1> pivot_, tip_pivot_, beside_;
     /// Weighted link directions, and the forces that rotate each link.
-    Field<3> pull_, turn_;
+    Field<3> pull_, across_;
 };
 
 }  // namespace catena

@@ -53,9 +53,9 @@ struct JointRotors {
     CATENA_HD void set_compliance(std::int64_t k) const {
         auto c = Symmetric<double, 3>::zero();
         if (has(k)) {
-            Mat3 const turn = axes(k);
+            Mat3 const rotation = axes(k);
             for (int i = 0; i < 3; ++i) {
-                Vec3 const p = turn.column(i);
+                Vec3 const p = rotation.column(i);
                 double const yields = 1 / inertia(k, i);
                 for (int row = 0; row < 3; ++row)
                     for (int column = 0; column <= row; ++column)

@@ -100,9 +100,9 @@ struct RigidChains {
     // Geometry of joints and links.
 
     /// Sets the positions of both handles of body k at the given pose.
-    CATENA_HD void set_ends(std::int64_t k, Vec3 const& centre, Mat3 const& turn) const {
-        inboard_end.store(k, centre + turn * r1.load(k));
-        outboard_end.store(k, centre + turn * r2.load(k));
+    CATENA_HD void set_ends(std::int64_t k, Vec3 const& centre, Mat3 const& rotation) const {
+        inboard_end.store(k, centre + rotation * r1.load(k));
+        outboard_end.store(k, centre + rotation * r2.load(k));
     }
     CATENA_HD void set_ends(std::int64_t k) const { set_ends(k, position.load(k), axes(k)); }
     /// Handle 1 of body k from handle 2 of its inboard neighbour, or from its anchor on the ground.
@@ -176,7 +176,7 @@ struct RigidChains {
     /// Velocity bias of a joint for accelerations, without the bodies' centripetal terms, which the
     /// solver adds. It is nonzero for links only.
     CATENA_HD Vec3 turning(Vec3 const& v, Link const& l) const {
-        return linked ? Vec3{{swing(v, l.direction, l.length), 0, 0}} : Vec3::zero();
+        return linked ? Vec3{{velocity_bias(v, l.direction, l.length), 0, 0}} : Vec3::zero();
     }
     /// Sets the velocity biases of body k's joints. Precondition for links: handles hold
     /// velocities.
@@ -199,11 +199,11 @@ struct RigidChains {
             if (given.springs) {
                 Quat const inboard =
                     is_first[k] ? Quat::identity() : as_quaternion(orientation.load(k - 1));
-                Quat const turn = turn_of_joint(inboard, as_quaternion(joint_frame.load(k)),
-                                                as_quaternion(orientation.load(k)));
-                torque_on_body = torque_on_body +
-                                 spherical_spring_torque(given.stiffness.load(k),
-                                                         as_quaternion(given.rest.load(k)), turn);
+                Quat const rotation = turn_of_joint(inboard, as_quaternion(joint_frame.load(k)),
+                                                    as_quaternion(orientation.load(k)));
+                torque_on_body = torque_on_body + spherical_spring_torque(
+                                                      given.stiffness.load(k),
+                                                      as_quaternion(given.rest.load(k)), rotation);
             }
         }
         if (rotors.has(k)) {
@@ -232,10 +232,10 @@ struct RigidChains {
     CATENA_HD void put_beads(std::int64_t k) const { beads.put(k, position.load(k), axes(k)); }
     /// Adds the wrench of the beads on body k to its force and torque.
     CATENA_HD void take_bead_forces(std::int64_t k) const {
-        Mat3 const turn = axes(k);
-        Wrench const w = beads.on_body(k, turn);
+        Mat3 const rotation = axes(k);
+        Wrench const w = beads.on_body(k, rotation);
         force.store(k, force.load(k) + w.force);
-        torque.store(k, torque.load(k) + transposed_times(turn, w.torque));
+        torque.store(k, torque.load(k) + transposed_times(rotation, w.torque));
     }
 
     // Parts of a step.

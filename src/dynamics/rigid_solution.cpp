@@ -12,10 +12,10 @@ PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given,
         if (group.joint[k] != JointType::spherical) continue;
         Quat const inboard =
             group.is_first[k] ? Quat::identity() : as_quaternion(orientation[k - 1]);
-        Quat const turn = turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]),
-                                        as_quaternion(orientation[k]));
+        Quat const rotation = turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]),
+                                            as_quaternion(orientation[k]));
         e.springs[static_cast<std::size_t>(k)] =
-            spherical_spring_energy(given.stiffness[k], as_quaternion(given.rest[k]), turn);
+            spherical_spring_energy(given.stiffness[k], as_quaternion(given.rest[k]), rotation);
     }
     return e;
 }

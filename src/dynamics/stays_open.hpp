@@ -6,7 +6,7 @@
 namespace catena {
 
 /// Thrown on all ranks alike if no number of sweeps closes a drift's joints.
-class StaysOpen : public ComputationError {
+class ClosingFailure : public ComputationError {
   public:
     using ComputationError::ComputationError;
 };

@@ -94,7 +94,7 @@ class HaloForces final : public RankForces, public Halo {
     /// Context whose GPU context all others share. It is declared before them, so it outlives them,
     /// also those in `share_`.
     std::unique_ptr<ForceContext> home_;
-    SplitShare share_;
+    DomainShare share_;
     BeadPieces pieces_;
     GhostLists ghosts_;
     bool audit_;

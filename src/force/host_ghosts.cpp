@@ -93,7 +93,7 @@ class SplitForces final : public RankForces {
     /// Spare particles of a new Context: one for every `spare_part` particles, plus `least_spares`.
     static std::int64_t constexpr spare_part = 16, least_spares = 16;
 
-    SplitShare share_;
+    DomainShare share_;
     bool audit_;
     std::int64_t beads_;  // number of beads of all ranks
     GhostExchange ghosts_;

@@ -25,7 +25,7 @@ std::vector<std::int64_t> all_but(std::vector<std::int64_t> beads, std::int64_t 
 
 }  // namespace
 
-SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
+DomainShare::DomainShare(RankPlan const& plan, double skin_of_reach)
     : model_(plan.model),
       platform_(plan.platform),
       beads_(plan.beads),
@@ -49,18 +49,18 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
     std::sort(partners_.begin(), partners_.end());
 }
 
-GhostLists::Plan SplitShare::lists(std::vector<std::uint8_t> pieces) const {
+GhostLists::Plan DomainShare::lists(std::vector<std::uint8_t> pieces) const {
     return {beads_.first_of_rank, beads_.by_rank,    partners_,    ranges_, skin_, box_,
             beads_.threads,       std::move(pieces), beads_.number};
 }
 
-std::vector<int> SplitShare::particles_of(std::span<std::int64_t const> beads) const {
+std::vector<int> DomainShare::particles_of(std::span<std::int64_t const> beads) const {
     std::vector<int> particles;
     for (std::int64_t const bead : beads) particles.push_back(particle_of_bead_[bead]);
     return particles;
 }
 
-Subset SplitShare::subset_of(std::span<std::int64_t const> ghosts) const {
+Subset DomainShare::subset_of(std::span<std::int64_t const> ghosts) const {
     Subset subset{particles_of(own_), static_cast<int>(own_.size()), 0};
     auto const particles = particles_of(ghosts);
     subset.particles.insert(subset.particles.end(), particles.begin(), particles.end());

@@ -1,4 +1,4 @@
-// SplitShare: one rank's share of a split System, that is its own beads and all that acts on them.
+// DomainShare: one rank's share of a split System, that is its own beads and all that acts on them.
 // Only files that see OpenMM's headers include this one.
 #pragma once
 
@@ -18,10 +18,10 @@
 namespace catena {
 
 /// The rank's share under domain decomposition, on any path.
-class SplitShare {
+class DomainShare {
   public:
     /// `skin_of_reach`: skin of the lists of ghosts as a fraction of the forces' reach.
-    SplitShare(RankPlan const& plan, double skin_of_reach);
+    DomainShare(RankPlan const& plan, double skin_of_reach);
 
     /// Own beads in the order of BeadSystem::by_rank.
     std::vector<std::int64_t> const& own() const { return own_; }

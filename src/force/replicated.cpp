@@ -11,9 +11,9 @@ namespace catena {
 namespace {
 
 /// Forces on one rank's own beads, from a Context of all beads.
-class WholeForces final : public RankForces {
+class ReplicatedForces final : public RankForces {
   public:
-    explicit WholeForces(RankPlan const& plan)
+    explicit ReplicatedForces(RankPlan const& plan)
         : model_(plan.model),
           platform_(plan.platform),
           communicator_(plan.communicator),
@@ -118,7 +118,7 @@ void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> b
 }
 
 std::unique_ptr<RankForces> make_whole_forces(RankPlan const& plan) {
-    return std::make_unique<WholeForces>(plan);
+    return std::make_unique<ReplicatedForces>(plan);
 }
 
 }  // namespace catena

@@ -88,7 +88,7 @@ void ClosedSteps::repeat(std::int64_t n, std::function<void()> const& prepare) {
             if (m < n) take(m, prepare);
         } catch (SharedError const& error) {
             throw SharedError(failure_in_step(m, error.what(), system_.scene(), true));
-        } catch (StaysOpen const& error) {
+        } catch (ClosingFailure const& error) {
             throw SharedError(failure_in_step(m, error.what(), system_.scene(), true));
         } catch (ComputationError const& error) {
             throw ComputationError(failure_in_step(m, error.what(), system_.scene(), true));
@@ -110,7 +110,7 @@ void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {
             most_sweeps_ = std::max(most_sweeps_,
                                     integrator_.sweeps() + integrator_.step_closing(n, rounding));
             break;
-        } catch (StaysOpen const&) {
+        } catch (ClosingFailure const&) {
             if (times == most_times) throw;
         }
     }

@@ -105,7 +105,8 @@ class DormandPrinceSteps final : public JointIntegrator {
     /// failure only one rank would see.
     bool is_wild(double length) {
         double worst = 0;
-        for (JointDynamics* const group : groups_) worst = larger(worst, group->wildness(length));
+        for (JointDynamics* const group : groups_)
+            worst = larger(worst, group->stage_divergence(length));
         return !(system_.communicator().max(worst) < 1);
     }
     /// Returns the largest error of a coordinate, divided by the allowed error. Maxima are exact in

@@ -66,10 +66,10 @@ void add_carried(BeadSystem& system, ChainSpec const& chain) {
 /// Adds the positions of a body's carried beads, W.
 void add_positions(std::vector<Vec3>& positions, CarriedBeads const& carried, std::size_t body,
                    scene::Pose const& pose) {
-    Mat3 const turn = to_matrix(pose.orientation);
+    Mat3 const rotation = to_matrix(pose.orientation);
     for (auto b = static_cast<std::size_t>(carried.offset[body]);
          b < static_cast<std::size_t>(carried.offset[body + 1]); ++b)
-        positions.push_back(pose.origin + turn * carried.position[b]);
+        positions.push_back(pose.origin + rotation * carried.position[b]);
 }
 
 }  // namespace

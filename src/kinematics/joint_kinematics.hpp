@@ -202,7 +202,8 @@ class JointKinematics {
             return space_.climb_and_descend(tree_, scan, runs_, last);
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
         dca::ScanThen const all{scan, runs_, last};
-        if (shared_.turn(space_, communicator_, shown(scan), tree_, top_, all, meeting, loads))
+        if (shared_.both_passes(space_, communicator_, shown(scan), tree_, top_, all, meeting,
+                                loads))
             return;
         pass(scan, tree_, meeting, loads);
         space_.over(runs_, last);
@@ -257,7 +258,8 @@ class JointKinematics {
     template <class Scan>
     void pass(Scan const& scan, typename Space::ScanTree const& tree,
               MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
-        if (shared_.turn(space_, communicator_, shown(scan), tree, top_, scan, meeting, loads))
+        if (shared_.both_passes(space_, communicator_, shown(scan), tree, top_, scan, meeting,
+                                loads))
             return;
         space_.climb(tree, scan);
         shared_.show(space_, shown(scan));

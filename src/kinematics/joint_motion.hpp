@@ -256,18 +256,18 @@ struct JointsView {
         }
     }
     /// Motion of body k relative to its inboard body; on a free base, relative to the ground.
-    /// `turn` must be turn_of().
+    /// `rotation` must be turn_of().
     template <class Place>
     CATENA_HD MotionOf<RealAt<Place>> motion(StateView const& state, Place k,
-                                             QuatAt<Place> const& turn) const {
+                                             QuatAt<Place> const& rotation) const {
         using Vector3 = Vec3At<Place>;
         if constexpr (is_one_body<Place>)
             if (joint[k] == JointType::free) {
                 std::int64_t const p = piece_of(k);
-                return {turn, state.qd.load(k), state.base_position.load(p),
-                        transposed_times(to_matrix(turn), state.base_velocity.load(p))};
+                return {rotation, state.qd.load(k), state.base_position.load(p),
+                        transposed_times(to_matrix(rotation), state.base_velocity.load(p))};
             }
-        MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * turn, Vector3::zero(),
+        MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * rotation, Vector3::zero(),
                                   meeting_point(state, k), Vector3::zero()};
         switch (type(k)) {
             case JointType::spherical:
@@ -279,7 +279,7 @@ struct JointsView {
             case JointType::weld:
                 break;
             default:
-                Mat3At<Place> const to_meeting = to_matrix(turn);
+                Mat3At<Place> const to_meeting = to_matrix(rotation);
                 auto const r = rate(state, k);
                 m.omega = transposed_times(to_meeting, r.angular);
                 m.velocity = transposed_times(to_meeting, r.linear);

@@ -48,7 +48,8 @@ CATENA_HD MotionNumbers<positions> numbers_at(MotionRecords const& records, std:
 }
 /// Stores the components of slot `slot`.
 template <bool positions>
-CATENA_HD void put_numbers(MotionRecords const& records, std::int64_t slot, MotionNumbers<positions> const& numbers) {
+CATENA_HD void put_numbers(MotionRecords const& records, std::int64_t slot,
+                           MotionNumbers<positions> const& numbers) {
     CATENA_UNROLL
     for (int i = 0; i < numbers_of_motion<positions>; ++i) records.number(slot, i) = numbers[i];
 }
@@ -75,7 +76,8 @@ struct JointScan {
     template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> load(Place k) const {
         using Vector3 = Vec3At<Place>;
-        MotionOf<RealAt<Place>> m{as_quaternion(read(rotation, k)), read(omega, k), Vector3::zero(), Vector3::zero()};
+        MotionOf<RealAt<Place>> m{as_quaternion(read(rotation, k)), read(omega, k), Vector3::zero(),
+                                  Vector3::zero()};
         if constexpr (positions) {
             m.translation = read(translation, k);
             m.velocity = read(velocity, k);
@@ -96,9 +98,9 @@ struct JointScan {
     /// MotionView::joint_turn.
     template <bool positions, class Place>
     CATENA_HD void set_relative(Place k) const {
-        QuatAt<Place> const turn = joints.turn_of(state, k);
-        write(motion.joint_turn, k, as_vector(turn));
-        store<positions>(k, joints.motion(state, k, turn));
+        QuatAt<Place> const of_joint = joints.turn_of(state, k);
+        write(motion.joint_turn, k, as_vector(of_joint));
+        store<positions>(k, joints.motion(state, k, of_joint));
     }
     /// Composes the motions along a run, stores them relative to the body before the run, and
     /// returns the last one. Four bodies are loaded at a time so that their loads overlap.
@@ -111,7 +113,7 @@ struct JointScan {
         for (; k + few <= end; k += few) {
             Motion next[few];
             Vec3 normal[few];
-        CATENA_UNROLL
+            CATENA_UNROLL
             for (int i = 0; i < few; ++i) {
                 next[i] = load<positions>(k + i);
                 normal[i] = joints.normal(k + i);
@@ -125,7 +127,8 @@ struct JointScan {
     }
     /// Motion of body k from that of the body before it; stores and returns it.
     template <bool positions>
-    CATENA_HD Motion go_on(Motion const& before_it, Motion const& next, Vec3 const& normal, std::int64_t k) const {
+    CATENA_HD Motion go_on(Motion const& before_it, Motion const& next, Vec3 const& normal,
+                           std::int64_t k) const {
         Motion m = compose<positions>(before_it, next);
         m.omega = joints.kept_in_plane(normal, m.omega);
         store<positions>(k, m);
@@ -138,16 +141,19 @@ struct JointScan {
     }
     template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> before_run(Place const& several) const {
-        return as_motion(pick<MotionRecords::numbers>(before.origin, slot, several, Vector<RealAt<Place>, MotionRecords::numbers>{}));
+        return as_motion(pick<MotionRecords::numbers>(
+            before.origin, slot, several, Vector<RealAt<Place>, MotionRecords::numbers>{}));
     }
     /// Angular velocity of before_run().
     CATENA_HD Vec3 omega_before_run(std::int64_t k) const {
         std::int64_t const s = slot[k];
-        return {{before.number(s, first_of_omega), before.number(s, first_of_omega + 1), before.number(s, first_of_omega + 2)}};
+        return {{before.number(s, first_of_omega), before.number(s, first_of_omega + 1),
+                 before.number(s, first_of_omega + 2)}};
     }
     template <class Place>
     CATENA_HD Vec3At<Place> omega_before_run(Place const& several) const {
-        return pick<MotionRecords::numbers>(before.origin + first_of_omega, slot, several, Vec3At<Place>{});
+        return pick<MotionRecords::numbers>(before.origin + first_of_omega, slot, several,
+                                            Vec3At<Place>{});
     }
     /// Computes the motion of body k relative to the ground, and its handle 2 where that moves.
     template <bool positions, class Place>
@@ -164,7 +170,8 @@ struct JointScan {
                 write(motion.velocity, k, m.velocity);
             }
         } else {
-            write(motion.omega, k, joints.kept_in_plane(joints.normal(k), compose(omega_before, own)));
+            write(motion.omega, k,
+                  joints.kept_in_plane(joints.normal(k), compose(omega_before, own)));
         }
         if (motion.axes2.origin && !joints.ends_chain(k)) set_meeting(k);
     }
@@ -182,9 +189,12 @@ struct JointScan {
     /// Sets r2 and axes2 of a body from its outboard joint. After this rank's last body they come
     /// from the outboard neighbour.
     CATENA_HD void set_meeting(std::int64_t inboard_body) const {
-        if (inboard_body + 1 < joints.size) return put_meeting(inboard_body, joints.meeting(state, inboard_body + 1));
+        if (inboard_body + 1 < joints.size)
+            return put_meeting(inboard_body, joints.meeting(state, inboard_body + 1));
         Vector<double, 9> const n = next_meeting.load(1);
-        put_meeting(inboard_body, {{{n[0], n[1], n[2]}}, axes_of(Vector<double, 6>{{n[3], n[4], n[5], n[6], n[7], n[8]}})});
+        put_meeting(inboard_body,
+                    {{{n[0], n[1], n[2]}},
+                     axes_of(Vector<double, 6>{{n[3], n[4], n[5], n[6], n[7], n[8]}})});
     }
     template <class Place>
     CATENA_HD void set_meeting(Place const& inboard_bodies) const {
@@ -205,14 +215,23 @@ struct MotionScan {
     using Value = MotionNumbers<positions>;
     JointScan s;
 
-    CATENA_HD Value of_run(dca::Run const& run) const { return packed<positions>(s.follow<positions>(run)); }
+    CATENA_HD Value of_run(dca::Run const& run) const {
+        return packed<positions>(s.follow<positions>(run));
+    }
     CATENA_HD Value joined(Value const& inboard, Value const& outboard) const {
-        return packed<positions>(compose<positions>(unpacked<positions>(inboard), unpacked<positions>(outboard)));
+        return packed<positions>(
+            compose<positions>(unpacked<positions>(inboard), unpacked<positions>(outboard)));
     }
     CATENA_HD Value whole(std::int64_t slot) const { return numbers_at<positions>(s.whole, slot); }
-    CATENA_HD void set_whole(std::int64_t slot, Value const& value) const { put_numbers<positions>(s.whole, slot, value); }
-    CATENA_HD Value before(std::int64_t slot) const { return numbers_at<positions>(s.before, slot); }
-    CATENA_HD void set_before(std::int64_t slot, Value const& value) const { put_numbers<positions>(s.before, slot, value); }
+    CATENA_HD void set_whole(std::int64_t slot, Value const& value) const {
+        put_numbers<positions>(s.whole, slot, value);
+    }
+    CATENA_HD Value before(std::int64_t slot) const {
+        return numbers_at<positions>(s.before, slot);
+    }
+    CATENA_HD void set_before(std::int64_t slot, Value const& value) const {
+        put_numbers<positions>(s.before, slot, value);
+    }
     CATENA_HD MotionScan const& motions() const { return *this; }
 };
 

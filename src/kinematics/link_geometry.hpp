@@ -31,7 +31,7 @@ CATENA_HD double excess(Vec3 const& d, double length, double half_over_length) {
 
 /// Velocity bias |v_rel, perpendicular|^2 / length of a link along u whose ends separate with
 /// velocity v (src/dca/README.md, "Link chains": -c).
-CATENA_HD double swing(Vec3 const& v, Vec3 const& u, double length) {
+CATENA_HD double velocity_bias(Vec3 const& v, Vec3 const& u, double length) {
     Vec3 const across = plus_scaled(v, -dot(v, u), u);
     return dot(across, across) / length;
 }

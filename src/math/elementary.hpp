@@ -43,7 +43,8 @@ CATENA_HD double log_of_uniform(double u) {
 /// Returns cosine and sine of 2 pi u, for u in [0, 1]. The function sums the Taylor series within
 /// pi/4 of the nearest multiple of pi/2.
 CATENA_HD CosSin cos_sin_of_turns(double u) {
-    double const quarter = std::floor(4 * u + 0.5), x = (4 * u - quarter) * 1.57079632679489662, z = -x * x;
+    double const quarter = std::floor(4 * u + 0.5), x = (4 * u - quarter) * 1.57079632679489662,
+                 z = -x * x;
     double c = 1, s = 1;
     CATENA_UNROLL
     for (int k = 18; k > 0; k -= 2) {
@@ -60,10 +61,12 @@ CATENA_HD CosSin cos_sin_of_turns(double u) {
 /// first two are exact. The rounding error of the remainder is carried along.
 CATENA_HD CosSin cos_sin(double x) {
     if (std::fabs(x) > 1e5) {
-        double const turn = 0x1.921fb54442d18p+2, turn_low = 0x1.1a62633145c07p-52, left = std::fmod(x, turn);
+        double const turn = 0x1.921fb54442d18p+2, turn_low = 0x1.1a62633145c07p-52,
+                     left = std::fmod(x, turn);
         x = fused(-std::floor((x - left) / turn + 0.5), turn_low, left);
     }
-    double const quarters = std::floor(fused(x, 0.63661977236758134, 0.5)), second = quarters * 0x1.0b4611a600000p-34;
+    double const quarters = std::floor(fused(x, 0.63661977236758134, 0.5)),
+                 second = quarters * 0x1.0b4611a600000p-34;
     double const once = fused(-quarters, 0x1.921fb54400000p+0, x), twice = once - second;
     double const low = fused(-quarters, 0x1.3198a2e037073p-69, (once - twice) - second);
     double const r = twice + low, rest = (twice - r) + low, z = r * r;
@@ -103,11 +106,13 @@ CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
         // The remainder is exact, or one period off if the quotient was rounded across an integer.
         Real left = fused(-truncated(x / turn), turn, x);
         Real const wrong = Real(0) - left * x;  // positive if one period off
-        left = where_less(Real(0), wrong, where_less(left, Real(0), left + turn, left - turn), left);
+        left =
+            where_less(Real(0), wrong, where_less(left, Real(0), left + turn, left - turn), left);
         Real const reduced = fused(-floor((x - left) / turn + Real(0.5)), turn_low, left);
         x = where_less(bound, x, reduced, where_less(x, -bound, reduced, x));
     }
-    Real const quarters = floor(fused(x, Real(0.63661977236758134), Real(0.5))), second = quarters * Real(0x1.0b4611a600000p-34);
+    Real const quarters = floor(fused(x, Real(0.63661977236758134), Real(0.5))),
+               second = quarters * Real(0x1.0b4611a600000p-34);
     Real const once = fused(-quarters, Real(0x1.921fb54400000p+0), x), twice = once - second;
     Real const low = fused(-quarters, Real(0x1.3198a2e037073p-69), (once - twice) - second);
     Real const r = twice + low, rest = (twice - r) + low, z = r * r;
@@ -132,7 +137,8 @@ CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
     // odd() returns 0 for even n and 1/2 for odd n.
     auto const odd = [](Real const& n) { return Real(0.5) * n - floor(Real(0.5) * n); };
     Real const swapped = odd(quarters), zero(0);
-    Real const along = where_less(zero, swapped, sine, cosine), across = where_less(zero, swapped, cosine, sine);
+    Real const along = where_less(zero, swapped, sine, cosine),
+               across = where_less(zero, swapped, cosine, sine);
     return {where_less(zero, odd(floor(Real(0.5) * (quarters + Real(1)))), -along, along),
             where_less(zero, odd(floor(Real(0.5) * quarters)), -across, across)};
 }

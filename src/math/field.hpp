@@ -65,15 +65,20 @@ template <class Real, int D>
 class BasicField {
   public:
     BasicField() = default;
-    explicit BasicField(std::int64_t size) : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_)) {}
+    explicit BasicField(std::int64_t size)
+        : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_)) {}
 
     std::int64_t size() const { return size_; }
     /// The allocated memory, halo and padding included.
     std::span<Real> storage() { return data_; }
     /// Returns a view of the field; its origin is null if the field is empty.
-    FieldView<Real, D> view() { return data_.empty() ? FieldView<Real, D>{} : FieldView<Real, D>{data_.data() + halo, pitch_, size_}; }
+    FieldView<Real, D> view() {
+        return data_.empty() ? FieldView<Real, D>{}
+                             : FieldView<Real, D>{data_.data() + halo, pitch_, size_};
+    }
     FieldView<Real const, D> view() const {
-        return data_.empty() ? FieldView<Real const, D>{} : FieldView<Real const, D>{data_.data() + halo, pitch_, size_};
+        return data_.empty() ? FieldView<Real const, D>{}
+                             : FieldView<Real const, D>{data_.data() + halo, pitch_, size_};
     }
     Vector<Real, D> operator[](std::int64_t k) const { return view().load(k); }
     /// True if all bodies have bitwise equal components. The halo is not compared.

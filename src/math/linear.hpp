@@ -59,7 +59,9 @@ struct Symmetric {
     static constexpr int size = N * (N + 1) / 2;
     Real data[size];
     /// Index of entry (i, j) in `data`; i and j may be swapped.
-    static CATENA_HD constexpr int at(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
+    static CATENA_HD constexpr int at(int i, int j) {
+        return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
+    }
     CATENA_HD Real& operator()(int i, int j) { return data[at(i, j)]; }
     CATENA_HD Real const& operator()(int i, int j) const { return data[at(i, j)]; }
     static CATENA_HD Symmetric zero() {
@@ -131,7 +133,8 @@ CATENA_HD Real norm(Vector<Real, N> const& a) {
 }
 template <class Real>
 CATENA_HD Vector<Real, 3> cross(Vector<Real, 3> const& a, Vector<Real, 3> const& b) {
-    return {{fused(a[1], b[2], -(a[2] * b[1])), fused(a[2], b[0], -(a[0] * b[2])), fused(a[0], b[1], -(a[1] * b[0]))}};
+    return {{fused(a[1], b[2], -(a[2] * b[1])), fused(a[2], b[0], -(a[0] * b[2])),
+             fused(a[0], b[1], -(a[1] * b[0]))}};
 }
 /// Returns the stored part of a rotation matrix: its first and last column.
 template <class Real>
@@ -178,7 +181,7 @@ template <class Real, int R, int K, int C>
 CATENA_HD Matrix<Real, R, C> operator*(Matrix<Real, R, K> const& a, Matrix<Real, K, C> const& b) {
     Matrix<Real, R, C> m;
     CATENA_UNROLL
-    for (int i = 0; i < R; ++i)
+    for (int i = 0; i < R; ++i) {
         CATENA_UNROLL
         for (int j = 0; j < C; ++j) {
             Real s = a(i, 0) * b(0, j);
@@ -186,14 +189,16 @@ CATENA_HD Matrix<Real, R, C> operator*(Matrix<Real, R, K> const& a, Matrix<Real,
             for (int k = 1; k < K; ++k) s = fused(a(i, k), b(k, j), s);
             m(i, j) = s;
         }
+    }
     return m;
 }
 /// Returns a^T b.
 template <class Real, int K, int R, int C>
-CATENA_HD Matrix<Real, R, C> transposed_times(Matrix<Real, K, R> const& a, Matrix<Real, K, C> const& b) {
+CATENA_HD Matrix<Real, R, C> transposed_times(Matrix<Real, K, R> const& a,
+                                              Matrix<Real, K, C> const& b) {
     Matrix<Real, R, C> m;
     CATENA_UNROLL
-    for (int i = 0; i < R; ++i)
+    for (int i = 0; i < R; ++i) {
         CATENA_UNROLL
         for (int j = 0; j < C; ++j) {
             Real s = a(0, i) * b(0, j);
@@ -201,15 +206,17 @@ CATENA_HD Matrix<Real, R, C> transposed_times(Matrix<Real, K, R> const& a, Matri
             for (int k = 1; k < K; ++k) s = fused(a(k, i), b(k, j), s);
             m(i, j) = s;
         }
+    }
     return m;
 }
 template <class Real, int R, int C>
 CATENA_HD Matrix<Real, C, R> transpose(Matrix<Real, R, C> const& a) {
     Matrix<Real, C, R> m;
     CATENA_UNROLL
-    for (int i = 0; i < R; ++i)
+    for (int i = 0; i < R; ++i) {
         CATENA_UNROLL
         for (int j = 0; j < C; ++j) m(j, i) = a(i, j);
+    }
     return m;
 }
 template <class Real, int N>
@@ -228,9 +235,10 @@ template <class Real, int N>
 CATENA_HD Matrix<Real, N, N> full(Symmetric<Real, N> const& a) {
     Matrix<Real, N, N> m;
     CATENA_UNROLL
-    for (int i = 0; i < N; ++i)
+    for (int i = 0; i < N; ++i) {
         CATENA_UNROLL
         for (int j = 0; j < N; ++j) m(i, j) = a(i, j);
+    }
     return m;
 }
 

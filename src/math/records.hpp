@@ -23,7 +23,9 @@ enum class Order { by_body, plain };
 
 /// Number of records for which a GPU allocates memory to hold `count`: whole rows or tiles.
 inline std::int64_t padded_on_gpu(Order order, std::int64_t count) {
-    return order == Order::by_body ? gpu_order::padded(count) : (count + gpu_order::lanes - 1) / gpu_order::lanes * gpu_order::lanes;
+    return order == Order::by_body
+               ? gpu_order::padded(count)
+               : (count + gpu_order::lanes - 1) / gpu_order::lanes * gpu_order::lanes;
 }
 
 /// Non-owning view of records in the memory of the processor that runs this code.
@@ -63,7 +65,8 @@ struct RecordsView {
         double const* const first = on_gpu(i);
         Numbers values;
         CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) values[n] = taken_number<last>(first + n * gpu_order::lanes);
+        for (int n = 0; n < numbers; ++n)
+            values[n] = taken_number<last>(first + n * gpu_order::lanes);
         return __builtin_bit_cast(T, values);
 #else
         return reinterpret_cast<T const*>(origin)[i];

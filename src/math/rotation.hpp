@@ -121,9 +121,11 @@ template <class Real>
 CATENA_HD Matrix<Real, 3, 3> orthogonal(Matrix<Real, 3, 3> const& r) {
     Symmetric<Real, 3> half;
     CATENA_UNROLL
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
         CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) half(i, j) = Real(i == j ? 1.5 : 0) - Real(0.5) * dot(r.column(i), r.column(j));
+        for (int j = 0; j <= i; ++j)
+            half(i, j) = Real(i == j ? 1.5 : 0) - Real(0.5) * dot(r.column(i), r.column(j));
+    }
     return r * full(half);
 }
 

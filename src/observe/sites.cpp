@@ -106,9 +106,10 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
         Site const& site = begin[number];
         auto const i = static_cast<std::size_t>(number);
         std::size_t const k = site.body - first;
-        Mat3 const turn = to_matrix(s.orientation[k]);
-        part.positions[i] = s.position[k] + turn * site.place;
-        if (velocities) part.velocities[i] = s.velocity[k] + turn * cross(s.omega[k], site.place);
+        Mat3 const rotation = to_matrix(s.orientation[k]);
+        part.positions[i] = s.position[k] + rotation * site.place;
+        if (velocities)
+            part.velocities[i] = s.velocity[k] + rotation * cross(s.omega[k], site.place);
         if (!bodies.joint_force.empty() && site.is_first)
             part.joint_forces[i] = bodies.joint_force[k];
     });

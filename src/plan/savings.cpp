@@ -50,11 +50,11 @@ double seconds_more(Scene const& without, Axes axes_without, Scene const& with, 
 /// To bring the inboard one of two segments into the other one's axes, with six directions a
 /// handle, at every merge.
 double seconds_of_turning(std::int64_t merges) {
-    Mat3 const turn = to_matrix(normalized(Quat{1, 2, 3, 4}));
+    Mat3 const rotation = to_matrix(normalized(Quat{1, 2, 3, 4}));
     using Block = Matrix<double, 6, 6>;
     Block both = Block::zero();
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) both(i, j) = both(3 + i, 3 + j) = turn(i, j);
+        for (int j = 0; j < 3; ++j) both(i, j) = both(3 + i, 3 + j) = rotation(i, j);
     double least = HUGE_VAL;
     for (int round = 0; round < 8; ++round) {
         Block z22 = Block::identity(), z12 = Block::identity();

@@ -17,13 +17,13 @@ int constexpr patience = 5;  // downhill steps before the step becomes longer
 
 }  // namespace
 
-Descent::Descent(std::vector<MovingChain>& chains, LoneForces& forces, std::vector<Vec3>& at)
+Descent::Descent(std::vector<MovingChain>& chains, SingleRankForces& forces, std::vector<Vec3>& at)
     : chains_(chains), forces_(forces), at_(at), step_(first_step), mixing_(first_mixing) {
     for (MovingChain const& chain : chains) velocity_.emplace_back(chain.units());
     acceleration_ = velocity_;
 }
 
-Descent::Ended Descent::run(Limits const& limits, Tell const& tell) {
+Descent::Ended Descent::run(Limits const& limits, ProgressCallback const& tell) {
     Ended ended;
     accelerate();
     ended.energy = forces_.energy();
@@ -50,7 +50,7 @@ void Descent::step() {
         for (std::size_t u = 0; u < velocity_[c].size(); ++u) {
             UnitMotion const& a = acceleration_[c][u];
             UnitMotion& v = velocity_[c][u];
-            v = {plus_scaled(v.shift, step_, a.shift), plus_scaled(v.turn, step_, a.turn)};
+            v = {plus_scaled(v.shift, step_, a.shift), plus_scaled(v.rotation, step_, a.rotation)};
         }
     if (!move()) return stop(0.3);
     if (accelerate() > 0) {
@@ -90,7 +90,7 @@ void Descent::mix() {
             UnitMotion const& a = acceleration_[c][u];
             UnitMotion& v = velocity_[c][u];
             v = {plus_scaled((1 - mixing_) * v.shift, along, a.shift),
-                 plus_scaled((1 - mixing_) * v.turn, along, a.turn)};
+                 plus_scaled((1 - mixing_) * v.rotation, along, a.rotation)};
         }
 }
 
@@ -108,12 +108,12 @@ bool Descent::move() {
         for (std::size_t u = 0; u < by.size(); ++u) {
             double const way = step_ * chains_[c].size(u, by[u]),
                          part = step_ * (way > cap ? cap / way : 1);
-            by[u] = {part * by[u].shift, part * by[u].turn};
+            by[u] = {part * by[u].shift, part * by[u].rotation};
         }
         moved = chains_[c].move(by) && moved;
         chains_[c].put_beads(at_);
         for (std::size_t u = 0; u < by.size(); ++u)
-            velocity_[c][u] = {(1 / step_) * by[u].shift, (1 / step_) * by[u].turn};
+            velocity_[c][u] = {(1 / step_) * by[u].shift, (1 / step_) * by[u].rotation};
     }
     return moved;
 }

@@ -27,10 +27,10 @@ class Descent {
     };
     /// `at`: positions of the scene's beads, nm, in the order of the forces' beads. They are
     /// updated.
-    Descent(std::vector<MovingChain>& chains, LoneForces& forces, std::vector<Vec3>& at);
+    Descent(std::vector<MovingChain>& chains, SingleRankForces& forces, std::vector<Vec3>& at);
 
     /// Callback after each window: number of evaluations so far and energy in kJ/mol.
-    using Tell = std::function<void(std::int64_t, double)>;
+    using ProgressCallback = std::function<void(std::int64_t, double)>;
     /// Result of a descent.
     struct Ended {
         std::int64_t evaluations = 0;
@@ -38,7 +38,7 @@ class Descent {
         bool at_rest = false;  // the energy fell no further
     };
     /// Moves the chains until a condition of `limits` ends the descent.
-    Ended run(Limits const&, Tell const&);
+    Ended run(Limits const&, ProgressCallback const&);
 
   private:
     /// One step: velocities from accelerations, motion, new forces, then mixing or a stop.
@@ -55,7 +55,7 @@ class Descent {
     bool move();
 
     std::vector<MovingChain>& chains_;
-    LoneForces& forces_;
+    SingleRankForces& forces_;
     std::vector<Vec3>& at_;
     std::vector<std::vector<UnitMotion>> velocity_,
         acceleration_;          // per chain and unit: nm and rad per unit of time

@@ -21,14 +21,15 @@ double constexpr push = 1e6;       // kJ/mol/nm: larger than any force on a bead
 
 }  // namespace
 
-LoneForces::LoneForces(Scene const& scene, std::optional<double> reach)
+SingleRankForces::SingleRankForces(Scene const& scene, std::optional<double> reach)
     : alone_(serial_communicator()),
       beads_(bead_system_of(scene)),
       force_(make(scene, reach)),
       position_(beads_.size()),
       force_of_bead_(beads_.size()) {}
 
-std::unique_ptr<OpenMmForce> LoneForces::make(Scene const& scene, std::optional<double> reach) {
+std::unique_ptr<OpenMmForce> SingleRankForces::make(Scene const& scene,
+                                                    std::optional<double> reach) {
     beads_.first_of_rank = {0, beads_.size()};
     OpenMmSpec spec = *scene.forces.openmm;
     spec.platform = spec.platform == "Reference" ? "Reference" : "CPU";
@@ -39,7 +40,7 @@ std::unique_ptr<OpenMmForce> LoneForces::make(Scene const& scene, std::optional<
                  : make_openmm_force(spec, beads_, *alone_);
 }
 
-std::vector<Vec3> LoneForces::forces(std::vector<Vec3> const& positions) {
+std::vector<Vec3> SingleRankForces::forces(std::vector<Vec3> const& positions) {
     for (std::int64_t i = 0; i < beads_.size(); ++i) {
         position_.set(i, positions[static_cast<std::size_t>(i)]);
         force_of_bead_.set(i, Vec3::zero());
@@ -57,7 +58,7 @@ std::vector<Vec3> LoneForces::forces(std::vector<Vec3> const& positions) {
     return finite_ ? found : pushes(positions);
 }
 
-double LoneForces::energy() {
+double SingleRankForces::energy() {
     double sum = 0;
     try {
         if (finite_)
@@ -68,13 +69,13 @@ double LoneForces::energy() {
     return finite_ && std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-LoneForces::FusedSweep LoneForces::at(std::vector<Vec3> const& positions) {
+SingleRankForces::FusedSweep SingleRankForces::at(std::vector<Vec3> const& positions) {
     std::vector<Vec3> found = forces(positions);
     double const sum = energy();
     return {sum, std::isfinite(sum) ? std::move(found) : pushes(positions)};
 }
 
-std::vector<Vec3> LoneForces::pushes(std::vector<Vec3> const& positions) const {
+std::vector<Vec3> SingleRankForces::pushes(std::vector<Vec3> const& positions) const {
     std::vector<Vec3> forces(positions.size(), Vec3::zero());
     bool any = false;
     scene::for_each_near_pair(

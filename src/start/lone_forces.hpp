@@ -13,12 +13,12 @@
 namespace catena {
 
 /// Evaluator of forces and energies outside a run, e.g. for checks and relaxation of a start.
-class LoneForces {
+class SingleRankForces {
   public:
     /// Uses OpenMM's platform Reference if the scene requests it, else CPU with a number of threads
     /// that does not depend on the cores. Forces are thus bitwise equal on any number of ranks.
     /// `reach`: cutoff of pair forces in nm (make_openmm_contacts()).
-    explicit LoneForces(Scene const&, std::optional<double> reach = std::nullopt);
+    explicit SingleRankForces(Scene const&, std::optional<double> reach = std::nullopt);
 
     /// Energy and forces at the same positions.
     struct FusedSweep {

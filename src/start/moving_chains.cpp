@@ -13,7 +13,8 @@ namespace catena {
 MovingChain::MovingChain(ChainSpec& chain, std::size_t first_bead)
     : chain_(chain), first_(first_bead) {
     stand_.at = chain.is_beads() ? chain.beads.position : chain.linked.position;
-    for (auto const& q : chain.linked.orientation) stand_.turn.push_back({q[0], q[1], q[2], q[3]});
+    for (auto const& q : chain.linked.orientation)
+        stand_.rotation.push_back({q[0], q[1], q[2], q[3]});
     weight_.assign(units(), 1), squares_.assign(units(), 0), widest_.assign(units(), 0);
     for (std::size_t u = 0; u < units() && !chain.is_beads(); ++u) {
         weight_[u] = static_cast<double>(begin_of(u + 1) - begin_of(u));
@@ -31,7 +32,7 @@ std::size_t MovingChain::begin_of(std::size_t unit) const {
 UnitMotion MovingChain::acceleration(std::size_t unit, std::vector<Vec3> const& forces) const {
     if (chain_.is_beads()) return {forces[first_ + unit], Vec3::zero()};
     if (weight_[unit] == 0) return {};
-    Mat3 const r = to_matrix(stand_.turn[unit]);
+    Mat3 const r = to_matrix(stand_.rotation[unit]);
     Vec3 force = Vec3::zero(), torque = Vec3::zero();
     for (std::size_t b = begin_of(unit); b < begin_of(unit + 1); ++b) {
         force = force + forces[first_ + b];
@@ -42,11 +43,11 @@ UnitMotion MovingChain::acceleration(std::size_t unit, std::vector<Vec3> const& 
 }
 
 double MovingChain::product(std::size_t unit, UnitMotion const& x, UnitMotion const& y) const {
-    return weight_[unit] * dot(x.shift, y.shift) + squares_[unit] * dot(x.turn, y.turn);
+    return weight_[unit] * dot(x.shift, y.shift) + squares_[unit] * dot(x.rotation, y.rotation);
 }
 
 double MovingChain::size(std::size_t unit, UnitMotion const& motion) const {
-    return std::max(norm(motion.shift), norm(motion.turn) * widest_[unit]);
+    return std::max(norm(motion.shift), norm(motion.rotation) * widest_[unit]);
 }
 
 bool MovingChain::move(std::span<UnitMotion> by) {
@@ -55,8 +56,9 @@ bool MovingChain::move(std::span<UnitMotion> by) {
         // Shifts and rotations are applied first; the projection then moves units without rotating
         // them.
         stand_.at[u] = stand_.at[u] + by[u].shift;
-        if (dot(by[u].turn, by[u].turn) > 0)
-            stand_.turn[u] = normalized(from_rotation_vector(by[u].turn) * stand_.turn[u]);
+        if (dot(by[u].rotation, by[u].rotation) > 0)
+            stand_.rotation[u] =
+                normalized(from_rotation_vector(by[u].rotation) * stand_.rotation[u]);
     }
     if (!close()) {
         stand_ = std::move(before);
@@ -72,7 +74,7 @@ void MovingChain::put_beads(std::vector<Vec3>& positions) const {
             positions[first_ + u] = stand_.at[u];
             continue;
         }
-        Mat3 const r = to_matrix(stand_.turn[u]);
+        Mat3 const r = to_matrix(stand_.rotation[u]);
         for (std::size_t b = begin_of(u); b < begin_of(u + 1); ++b)
             positions[first_ + b] = stand_.at[u] + r * chain_.linked.carried.position[b];
     }
@@ -80,15 +82,15 @@ void MovingChain::put_beads(std::vector<Vec3>& positions) const {
 
 void MovingChain::write() {
     (chain_.is_beads() ? chain_.beads.position : chain_.linked.position) = stand_.at;
-    for (std::size_t u = 0; u < stand_.turn.size(); ++u) {
-        Quat const& q = stand_.turn[u];
+    for (std::size_t u = 0; u < stand_.rotation.size(); ++u) {
+        Quat const& q = stand_.rotation[u];
         chain_.linked.orientation[u] = {q.w, q.x, q.y, q.z};
     }
 }
 
 std::vector<std::span<std::byte>> MovingChain::bytes() {
     return {std::as_writable_bytes(std::span(stand_.at)),
-            std::as_writable_bytes(std::span(stand_.turn))};
+            std::as_writable_bytes(std::span(stand_.rotation))};
 }
 
 bool MovingChain::close() {
@@ -107,7 +109,7 @@ bool MovingChain::close() {
             continue;
         }
         LinkedArrays const& linked = chain_.linked;
-        Mat3 const r = to_matrix(stand_.turn[u]);
+        Mat3 const r = to_matrix(stand_.rotation[u]);
         add(stand_.at[u], linked.length[u], 1 / std::max(1.0, weight_[u]), r * linked.inboard[u],
             r * linked.outboard[u]);
     }

@@ -14,9 +14,9 @@
 namespace catena {
 
 /// Displacement, velocity or acceleration of a unit, i.e. a bead or a rigid domain. `shift`: along
-/// the ground axes, nm; `turn`: rotation vector about the centre, rad. A bead has no rotation.
+/// the ground axes, nm; `rotation`: rotation vector about the centre, rad. A bead has no rotation.
 struct UnitMotion {
-    Vec3 shift = Vec3::zero(), turn = Vec3::zero();
+    Vec3 shift = Vec3::zero(), rotation = Vec3::zero();
 };
 
 /// Chain of beads, or of beads and domains on links. Every bead weighs 1.
@@ -49,7 +49,7 @@ class MovingChain {
     /// Positions and orientations of the units.
     struct Stand {
         std::vector<Vec3> at;
-        std::vector<Quat> turn;  // empty for chains of beads
+        std::vector<Quat> rotation;  // empty for chains of beads
     };
     /// Index of a unit's first bead in the chain.
     std::size_t begin_of(std::size_t unit) const;

@@ -213,8 +213,8 @@ void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
         std::optional<std::size_t> const straight =
             torsions ? middle_of_straight(beads, positions) : std::nullopt;
         if (!near && !straight) return;
-        LoneForces forces(scene);
-        LoneForces::FusedSweep const found = forces.at(positions);
+        SingleRankForces forces(scene);
+        SingleRankForces::FusedSweep const found = forces.at(positions);
         if (!near && !forces.are_finite()) refuse_straight(scene, beads, *straight);
         refuse_absurd(
             scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy));

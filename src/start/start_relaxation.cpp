@@ -71,11 +71,11 @@ double furthest(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
 /// all forces. Rank 0 only.
 StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains,
                             RelaxationSays const& say) {
-    LoneForces all(scene);
+    SingleRankForces all(scene);
     std::vector<Vec3> at = bead_positions_of(scene);
     std::vector<Vec3> const given = at;
     auto const look = [&] {
-        LoneForces::FusedSweep const found = all.at(at);
+        SingleRankForces::FusedSweep const found = all.at(at);
         return start_forces_of(scene, all.beads(), at, found.forces, found.energy);
     };
     StartRelaxation found;
@@ -83,7 +83,7 @@ StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains
     double const kt = scene.boltzmann() * scene.forces.openmm->temperature,
                  fall = least_fall * found.from.thermal;
     {
-        LoneForces near(scene, contact_reach(scene, at.size()));
+        SingleRankForces near(scene, contact_reach(scene, at.size()));
         Descent descent(chains, near, at);
         found.steps = descent
                           .run({most_of_contacts, window_of_contacts, fall, large_force * kt, kt},

@@ -88,9 +88,10 @@ class FrontierExchange {
     /// ScanThen. Returns false and does nothing if the space cannot fuse them. Ranks that fuse and
     /// ranks that do not can exchange with each other. Collective.
     template <class Numbers, class Tree, class Sweep, class... Beside>
-    bool turn(Space const& space, Communicator const& communicator, Numbers const& numbers,
-              Tree const& tree, Tree const& top, Sweep const& sweep, Beside const&... beside) {
-        if (!direct_ || !space.turn_shared(direct_, numbers, tree, top, sweep, beside...))
+    bool both_passes(Space const& space, Communicator const& communicator, Numbers const& numbers,
+                     Tree const& tree, Tree const& top, Sweep const& sweep,
+                     Beside const&... beside) {
+        if (!direct_ || !space.shared_passes(direct_, numbers, tree, top, sweep, beside...))
             return false;
         communicator.tally(message_with(beside...));
         return true;

@@ -88,9 +88,9 @@ void expect_notes(Opened const& opened, Start const& given) {
 }
 
 StartForces look(Scene const& scene) {
-    LoneForces forces(scene);
+    SingleRankForces forces(scene);
     std::vector<Vec3> const at = bead_positions_of(scene);
-    LoneForces::FusedSweep const found = forces.at(at);
+    SingleRankForces::FusedSweep const found = forces.at(at);
     return start_forces_of(scene, forces.beads(), at, found.forces, found.energy);
 }
 

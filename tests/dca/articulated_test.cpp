@@ -160,8 +160,8 @@ TEST(ArticulatedHandles, TurnedDirectionsAreUpperTriangular) {
                 for (int j = 0; j < 6; ++j)
                     a(i, j) = random.uniform() * (j == 2 ? size : 1) * (j < 3 ? 1 : 0);
             auto const turned = dca::turned_to_upper(a, rows);
-            Matrix<double, 6, 6> const unit = turned.turn * transpose(turned.turn),
-                                       expected = turned.turn * a;
+            Matrix<double, 6, 6> const unit = turned.orthogonal * transpose(turned.orthogonal),
+                                       expected = turned.orthogonal * a;
             EXPECT_EQ(turned.rank, std::min(rows, 3));
             for (int i = 0; i < 6; ++i)
                 for (int j = 0; j < 6; ++j) {

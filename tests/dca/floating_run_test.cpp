@@ -27,10 +27,10 @@ struct KeptRevolutes {
         revolutes[static_cast<std::size_t>(i)] = revolute;
     }
     void put(int i, ReleasedRevolute<double> const& revolute, BodyInRun<double> const& body,
-             BodyAcceleration<double> const& swing) {
+             BodyAcceleration<double> const& velocity_bias) {
         put(i, revolute);
         bodies[static_cast<std::size_t>(i)] = body;
-        swings[static_cast<std::size_t>(i)] = swing;
+        swings[static_cast<std::size_t>(i)] = velocity_bias;
     }
     void put(RunsEnd<double> const& end) { at_end = end; }
     void put_axes(Mat3 const& axes) { last_axes = axes; }
@@ -38,7 +38,7 @@ struct KeptRevolutes {
         return revolutes[static_cast<std::size_t>(i)];
     }
     BodyInRun<double> const& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
-    BodyAcceleration<double> const& swing(int i) const {
+    BodyAcceleration<double> const& velocity_bias(int i) const {
         return swings[static_cast<std::size_t>(i)];
     }
     RunsEnd<double> const& end() const { return at_end; }

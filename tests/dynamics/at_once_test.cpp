@@ -192,7 +192,7 @@ TEST(RevoluteChains, MayLeaveTheirLoadsToTheSolver) {
                     ChainSystem system(s, Axes::joint, communicator);
                     bool by_revolutes = false;  // a chain of one body is of another group
                     for (JointDynamics* const group : system.joint()) {
-                        by_revolutes = by_revolutes || group->solver().goes_by_revolutes();
+                        by_revolutes = by_revolutes || group->solver().eliminates_revolute_joints();
                         leaves ? group->update_to_solve_once() : group->update_configuration();
                         group->solve_once();
                         group->set_rates();

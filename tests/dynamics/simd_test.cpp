@@ -233,8 +233,7 @@ TEST(SimdOfSteps, DealOutBodiesOfOneType) {
         auto const executor = serial_executor(level);
         lanes.each(
             HostSpace(*executor), false,
-            [&](JointLoops const&, BodiesAbreast const& bodies, std::int64_t begin,
-                std::int64_t end) {
+            [&](JointLoops const&, BodyLanes const& bodies, std::int64_t begin, std::int64_t end) {
                 for (std::int64_t i = begin; i < end; ++i, ++several)
                     for (int j = 0; j < lanes_of(level); ++j)
                         ++seen[static_cast<std::size_t>(bodies.first[i] + j)];

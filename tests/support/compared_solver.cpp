@@ -74,10 +74,10 @@ class ComparedSolver final : public ChainSolver {
         });
     }
     bool at_once() const override { return reference_->at_once(); }
-    bool goes_by_revolutes() const override {
-        return reference_->goes_by_revolutes() &&
+    bool eliminates_revolute_joints() const override {
+        return reference_->eliminates_revolute_joints() &&
                std::all_of(others_.begin(), others_.end(), [](NamedSolver const& other) {
-                   return other.solver->goes_by_revolutes();
+                   return other.solver->eliminates_revolute_joints();
                });
     }
     SolverReport report() const override { return reference_->report(); }

@@ -90,23 +90,23 @@ class ScanSpace : public HostSpace {
     }
     static bool has_threads_for_bodies(ScanTree const& tree) { return walk(tree).is_one_block(); }
     template <class Numbers, class Scan, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
-                     ScanTree const& top, Scan const& scan,
-                     BodyExchange<D> const&... beside) const {
+    bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                       ScanTree const& top, Scan const& scan,
+                       BodyExchange<D> const&... beside) const {
         auto const show = [&] {
             if (threadIdx.x == 0) exchange(direct, numbers, beside...);
         };
-        return walk(tree).turn_shared(scan, show, Launches{top});
+        return walk(tree).shared_passes(scan, show, Launches{top});
     }
     template <class Numbers, class Scan, class T, class Action, int... D>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
-                     ScanTree const& top,
-                     dca::ScanThen<Scan, std::span<T const>, Action> const& all,
-                     BodyExchange<D> const&... beside) const {
+    bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
+                       ScanTree const& top,
+                       dca::ScanThen<Scan, std::span<T const>, Action> const& all,
+                       BodyExchange<D> const&... beside) const {
         auto const show = [&] {
             if (threadIdx.x == 0) exchange(direct, numbers, beside...);
         };
-        return walk(tree).turn_shared(
+        return walk(tree).shared_passes(
             all.scan, show, Launches{top}, std::ssize(all.items),
             cuda::kernels::OfItem<T, Action>{all.items.data(), all.action});
     }
@@ -123,7 +123,7 @@ class ScanSpace : public HostSpace {
             launch(cuda::kernels::climb_scan<Scan>, i, scan);
         }
         template <class Scan>
-        void turn(std::size_t i, Scan const& scan) const {
+        void both_passes(std::size_t i, Scan const& scan) const {
             launch(cuda::kernels::turn_scan<Scan>, i, scan);
         }
         template <class Scan>
@@ -142,16 +142,16 @@ class ScanSpace : public HostSpace {
             return true;
         }
         template <class Scan, class Exchange>
-        void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
+        void shared_passes(Scan const& scan, Exchange const& exchange, Launches const& top) const {
             auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
             ++shared_turns;
             cuda_on_host::launch(
                 {1, cuda::kernels::most_of_scan, numbers<Scan>(own) + numbers<Scan>(above)},
-                cuda::kernels::turn_shared_scan<Scan, Exchange>, own, above, exchange, scan);
+                cuda::kernels::shared_passes_of_scan<Scan, Exchange>, own, above, exchange, scan);
         }
         template <class Scan, class Exchange, class Action>
-        bool turn_shared_then(Scan const& scan, Exchange const& exchange, Launches const& top,
-                              std::int64_t count, Action const& action) const {
+        bool shared_passes_then(Scan const& scan, Exchange const& exchange, Launches const& top,
+                                std::int64_t count, Action const& action) const {
             auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
             unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(own, count);
             ++shared_turns;
@@ -159,8 +159,8 @@ class ScanSpace : public HostSpace {
             cuda_on_host::launch(
                 {blocks, cuda::kernels::most_of_scan,
                  cuda::kernels::numbers_of_turn<Scan>(own, blocks) + numbers<Scan>(above), blocks},
-                cuda::kernels::turn_shared_scan_then<Scan, Exchange, Action>, own, above, exchange,
-                scan, count, action);
+                cuda::kernels::shared_passes_of_scan_then<Scan, Exchange, Action>, own, above,
+                exchange, scan, count, action);
             return true;
         }
 

@@ -136,7 +136,7 @@ class StageSpace : public HostSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.plan_.stages.empty()) return;
-        if constexpr (Sweep::goes_short) {
+        if constexpr (Sweep::supports_short_chains) {
             forget_earlier_sweeps(tree, sweep);
             if (tree.short_.warps > 0 && turn_short(tree, sweep)) return;
         }
@@ -144,9 +144,9 @@ class StageSpace : public HostSpace {
     }
 
     template <class Numbers, class Sweep>
-    bool turn_shared(Direct const& direct, Numbers const& numbers, Tree const& tree,
-                     Tree const& top, Sweep const& sweep) const {
-        return walk(tree).turn_shared(sweep, Exchange<Numbers>{direct, numbers}, Launches{top});
+    bool shared_passes(Direct const& direct, Numbers const& numbers, Tree const& tree,
+                       Tree const& top, Sweep const& sweep) const {
+        return walk(tree).shared_passes(sweep, Exchange<Numbers>{direct, numbers}, Launches{top});
     }
 
   private:
@@ -223,27 +223,27 @@ class StageSpace : public HostSpace {
             return first + 1 == stages() || *tree.together_;
         }
         template <class Sweep>
-        void turn(std::size_t first, Sweep const& sweep) const {
+        void both_passes(std::size_t first, Sweep const& sweep) const {
             bool const together = first + 1 < stages();
             if (together)
                 seen.blocks_that_turn.insert(view(tree, stage(first)).blocks);
             else
                 ++seen.turns_alone;
-            turn(first, sweep, kernels::NoExchange{}, nullptr);
+            both_passes(first, sweep, kernels::NoExchange{}, nullptr);
         }
         /// As DeviceTree's.
         template <class Sweep, class Exchange>
         bool can_turn(std::size_t first, Sweep const& sweep, Exchange const&,
                       Launches const& top) const {
-            return can_turn(first, sweep) && grid_of_turn<Sweep>(first, &top).numbers <=
+            return can_turn(first, sweep) && grid_of_both_passes<Sweep>(first, &top).numbers <=
                                                  cuda_on_host::most_shared_bytes / sizeof(double);
         }
         template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
-                  Launches const& top) const {
+        void both_passes(std::size_t first, Sweep const& sweep, Exchange const& exchange,
+                         Launches const& top) const {
             seen.blocks_that_turn_shared.insert(
                 first + 1 < stages() ? view(tree, stage(first)).blocks : 0);
-            turn(first, sweep, exchange, &top);
+            both_passes(first, sweep, exchange, &top);
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
@@ -296,7 +296,7 @@ class StageSpace : public HostSpace {
       private:
         dca::Stage const& stage(std::size_t i) const { return tree.plan_.stages[i]; }
         template <class Sweep>
-        cuda_on_host::Launch grid_of_turn(std::size_t first, Launches const* top) const {
+        cuda_on_host::Launch grid_of_both_passes(std::size_t first, Launches const* top) const {
             bool const together = first + 1 < stages();
             dca::Stage const &lower = stage(first), &upper = tree.plan_.stages.back();
             auto const of = [&](dca::Stage const& one) {
@@ -315,8 +315,8 @@ class StageSpace : public HostSpace {
         }
         /// `top`: null where nothing is above.
         template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange,
-                  Launches const* top) const {
+        void both_passes(std::size_t first, Sweep const& sweep, Exchange const& exchange,
+                         Launches const* top) const {
             see_stages();
             bool const together = first + 1 < stages();
             kernels::DeviceStage const here = view(tree, tree.plan_.stages.back()),
@@ -329,8 +329,9 @@ class StageSpace : public HostSpace {
                 letters = {{tree.up_.data(), here.layout.items},
                            {tree.down_.data(), here.forces},
                            tree.launches_.data()};
-            cuda_on_host::launch(grid_of_turn<Sweep>(first, top), kernels::turn<Sweep, Exchange>,
-                                 below, here, above, letters, exchange, sweep);
+            cuda_on_host::launch(grid_of_both_passes<Sweep>(first, top),
+                                 kernels::both_passes<Sweep, Exchange>, below, here, above, letters,
+                                 exchange, sweep);
         }
         int threads_for(dca::Stage const& stage) const {
             int const wanted = dca::threads_for(stage, tree.sizes_);

@@ -7,14 +7,14 @@
 
 namespace catena::dca {
 
-/// The bodies [first, first + lanes). `asks_ahead`: reads and writes also prefetch.
+/// The bodies [first, first + lanes). `prefetches`: reads and writes also prefetch.
 template <class Real_>
 struct Abreast {
     using Real = Real_;
     std::int64_t first = 0;
-    bool asks_ahead = false;
-    friend Abreast operator+(Abreast a, int by) { return {a.first + by, a.asks_ahead}; }
-    friend Abreast operator-(Abreast a, int by) { return {a.first - by, a.asks_ahead}; }
+    bool prefetches = false;
+    friend Abreast operator+(Abreast a, int by) { return {a.first + by, a.prefetches}; }
+    friend Abreast operator-(Abreast a, int by) { return {a.first - by, a.prefetches}; }
 };
 
 /// Prefetch distance of loops over the bodies, in bodies.
@@ -24,7 +24,7 @@ inline constexpr int ahead_of_bodies = 64;
 template <class T, int D, class Real>
 Real read(FieldView<T, D> const& view, Abreast<Real> const& bodies, int component) {
     auto const* const place = view.origin + component * view.pitch + bodies.first;
-    if (bodies.asks_ahead) prefetch<Real>(place, ahead_of_bodies);
+    if (bodies.prefetches) prefetch<Real>(place, ahead_of_bodies);
     return Real::load_anywhere(place);
 }
 /// Reads D numbers of the bodies.
@@ -41,20 +41,23 @@ void write(View<D> const& view, Abreast<Real> const& bodies, Vector<Real, D> con
     CATENA_UNROLL
     for (int i = 0; i < D; ++i) {
         double* const place = view.origin + i * view.pitch + bodies.first;
-        if (bodies.asks_ahead) prefetch_to_write<Real>(place, ahead_of_bodies);
+        if (bodies.prefetches) prefetch_to_write<Real>(place, ahead_of_bodies);
         value[i].store_anywhere(place);
     }
 }
 template <int K, class Real>
-void write_directions(DirectionsView const& view, Abreast<Real> const& bodies, Vector<Real, K> const& value) {
+void write_directions(DirectionsView const& view, Abreast<Real> const& bodies,
+                      Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, bodies, value);
 }
 /// Returns the first N numbers of every body's record; body k has record index[k], and records are
 /// `apart` numbers apart. Bodies with the same record are contiguous.
 template <int apart, int N, class Real>
-Vector<Real, N> pick(double const* records, std::int32_t const* index, Abreast<Real> const& bodies, Vector<Real, N> v) {
+Vector<Real, N> pick(double const* records, std::int32_t const* index, Abreast<Real> const& bodies,
+                     Vector<Real, N> v) {
     if (index[bodies.first] == index[bodies.first + Real::lanes - 1]) {
-        for (int i = 0; i < N; ++i) v[i] = Real(records[std::int64_t{apart} * index[bodies.first] + i]);
+        for (int i = 0; i < N; ++i)
+            v[i] = Real(records[std::int64_t{apart} * index[bodies.first] + i]);
         return v;
     }
     std::int64_t at[Real::lanes];

@@ -72,7 +72,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
             Node node;
             append(whole, part, node, runs, p * part_length);
             double* const kept = place_of_node(item, p);
-            if (work_.asks_ahead) prefetch_to_write<Real>(kept, numbers_of_node, numbers_of_node);
+            if (work_.prefetches) prefetch_to_write<Real>(kept, numbers_of_node, numbers_of_node);
             store_vectors<Real>(kept, node);
         }
         scatter<Real>(whole.matrix, work_.sweeps.matrices, runs.slot);
@@ -90,7 +90,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
             if (p > 0) {
                 Node node;
                 double const* const kept = place_of_node(item, p);
-                if (work_.asks_ahead) prefetch<Real>(kept, -numbers_of_node, numbers_of_node);
+                if (work_.prefetches) prefetch<Real>(kept, -numbers_of_node, numbers_of_node);
                 load_vectors<Real>(kept, node);
                 at_begin = node.force(first, next);
             }
@@ -249,10 +249,10 @@ template <class Real, class Leaf>
 [[gnu::flatten]] void climb_merges(MergeWork<Leaf> const& work, std::int64_t begin,
                                    std::int64_t end) {
     constexpr int K = Leaf::K, numbers_of_node = node_numbers<K> * Real::lanes;
-    auto const& [sweeps, merges, nodes, asks_ahead] = work;
+    auto const& [sweeps, merges, nodes, prefetches] = work;
     for (std::int64_t item = begin; item < end; ++item) {
         MergesInLanes const& m = merges[item];
-        if (asks_ahead && item + 1 < end) prefetch_merge<Real>(work, item + 1);
+        if (prefetches && item + 1 < end) prefetch_merge<Real>(work, item + 1);
         BiasedSegment<Real, K> segment, outboard;
         gather<Real>(sweeps.matrices, m.inboard, segment.matrix);
         gather<Real>(sweeps.biases, m.inboard, segment.bias);
@@ -271,7 +271,7 @@ template <class Real, class Leaf>
 [[gnu::flatten]] void descend_merges(MergeWork<Leaf> const& work, std::int64_t begin,
                                      std::int64_t end) {
     constexpr int K = Leaf::K;
-    auto const& [sweeps, merges, nodes, asks_ahead] = work;
+    auto const& [sweeps, merges, nodes, prefetches] = work;
     for (std::int64_t item = begin; item < end; ++item) {
         MergesInLanes const& m = merges[item];
         NodeInLanes<Real, K> node;

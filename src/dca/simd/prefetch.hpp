@@ -1,5 +1,5 @@
 // Prefetch of data that a sweep will need: it streams through more arrays than the hardware
-// prefetcher follows. It is used only for data that do not stay in the caches (asks_ahead());
+// prefetcher follows. It is used only for data that do not stay in the caches (prefetches());
 // otherwise it costs a tenth of the time.
 //
 // Functions that only prefetch are force-inlined: GCC considers them free of effects and may drop

@@ -97,7 +97,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             },
             [&](int i, Real const& of_revolute) {
                 ask(runs, i, -1);
-                turn(runs, i, of_revolute);
+                joint_acceleration(runs, i, of_revolute);
             });
     }
 
@@ -114,19 +114,19 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             double* const kept = of_revolute(i);
             int const further =
                 ahead * numbers_of_revolute + (i + ahead < count ? 0 : numbers_of_end);
-            if (asks_ahead()) prefetch_to_write<Real>(kept, further, numbers_of_revolute);
-            if (asks_ahead() && i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
+            if (prefetches()) prefetch_to_write<Real>(kept, further, numbers_of_revolute);
+            if (prefetches() && i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
             store_vectors<Real>(kept, revolute);
             watch(i, revolute.inverse.not_positive());
         }
         /// Stores joint i and the body outboard of it. The velocity bias is stored only if the
         /// outward pass reads it.
         void put(int i, ReleasedRevolute<Real> const& revolute, BodyInRun<Real> const& body,
-                 BodyAcceleration<Real> const& swing) {
+                 BodyAcceleration<Real> const& velocity_bias) {
             put(i, revolute);
             store_vectors<Real>(of_revolute(i) + released_numbers * lanes, body);
             if (i == count - 2 || all.out_.by_all_bodies())
-                store_vectors<Real>(of_revolute(i) + at_swing, swing);
+                store_vectors<Real>(of_revolute(i) + at_swing, velocity_bias);
         }
         /// Stores the angular velocity of the body outboard of joint i, in the body's axes.
         void put_omega(int i, Vector3 const& omega) {
@@ -141,7 +141,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             store_vectors<Real>(place + at_orientation, from_ground);
         }
         Vector3 omega(int i) const { return load<Vector3>(of_revolute(i) + at_omega); }
-        BodyAcceleration<Real> swing(int i) const {
+        BodyAcceleration<Real> velocity_bias(int i) const {
             return load<BodyAcceleration<Real>>(of_revolute(i) + at_swing);
         }
         Matrix3 axes() const { return load<Matrix3>(place + met_numbers * lanes); }
@@ -155,7 +155,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         /// outward pass.
         ReleasedRevolute<Real> revolute(int i) const {
             double const* const kept = of_revolute(i);
-            if (asks_ahead())
+            if (prefetches())
                 prefetch<Real>(kept,
                                -ahead * numbers_of_revolute - (i > ahead ? 0 : numbers_of_end),
                                numbers_of_revolute);
@@ -165,7 +165,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             return load<BodyInRun<Real>>(of_revolute(i) + released_numbers * lanes);
         }
         RunsEnd<Real> end() const {
-            if (asks_ahead())
+            if (prefetches())
                 prefetch<Real>(place, -kept_of_revolute_run * lanes, met_numbers * lanes);
             return load<RunsEnd<Real>>(place);
         }
@@ -183,7 +183,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             load_vectors<Real>(from, record);
             return record;
         }
-        bool asks_ahead() const { return all.work_.asks_ahead; }
+        bool prefetches() const { return all.work_.prefetches; }
         /// Returns the storage of joint i and the body outboard of it.
         double* of_revolute(int i) const {
             return place + end_numbers * lanes + (i - 1) * numbers_of_revolute;
@@ -221,9 +221,9 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
             BodyOnRevolute<Real> const on_revolute = leaf().on_revolute(all_.bodies_.loads, here);
-            state.turn = state.turn * on_revolute.turn;
-            turn_ = to_matrix_of_unit(state.turn);
-            LoadedBodyInRun<Real> body = state.go_on(follow(on_revolute, turn_, state.omega));
+            state.rotation = state.rotation * on_revolute.rotation;
+            rotation_ = to_matrix_of_unit(state.rotation);
+            LoadedBodyInRun<Real> body = state.go_on(follow(on_revolute, rotation_, state.omega));
             all_.add_wrench(here, from_ground_, body.torque, body.force);
             if (i >= count - 2 || all_.out_.by_all_bodies()) keep_omega(i);
             return body;
@@ -233,15 +233,15 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
             auto body = leaf().revolute_at_rest(all_.bodies_.loads, here);
-            Matrix3 const turn = axes_ * transpose(body.e1);
+            Matrix3 const rotation = axes_ * transpose(body.e1);
             Vector3 const omega =
-                transposed_times(turn, state.omega) +
+                transposed_times(rotation, state.omega) +
                 read(all_.bodies_.loads.revolute_rate, here)[0] * body.e1.column(2);
             all_.set_moving(runs_, i, omega, body);
             leaf().add_gyroscopic(all_.bodies_.loads, omega, body);
             Matrix3 from_ground;
             if (all_.has_wrenches()) {
-                from_ground = transposed_times(turn, from_ground_);
+                from_ground = transposed_times(rotation, from_ground_);
                 kept_.put_orientation(from_ground);
             }
             all_.push(runs_, i, from_ground, body);
@@ -250,7 +250,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         /// Returns the outboard handle of the last body but one.
         OutboardHandle<Real> before_last() {
-            axes_ = turn_ *
+            axes_ = rotation_ *
                     axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
             return {axes_, state.inward};
         }
@@ -262,7 +262,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         Leaf const& leaf() const { return all_.bodies_.leaf; }
         /// Stores the angular velocity of the current body in the body's axes.
         void keep_omega(int i) {
-            Vector3 omega = transposed_times(turn_, state.omega);
+            Vector3 omega = transposed_times(rotation_, state.omega);
             if (runs_.begins[i] != 0) choose<Real>(runs_.begins[i], first_omega(), omega);
             kept_.put_omega(i, omega);
         }
@@ -272,7 +272,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         Kept kept_;
         // Rotation matrix from the current body to the run's axes, axes of the last revolute joint
         // in the run's axes, and rotation matrix from W to the run's axes.
-        Matrix3 turn_, axes_, from_ground_;
+        Matrix3 rotation_, axes_, from_ground_;
     };
     /// Inward pass for any supplier of bodies. In the lanes of shorter runs, it restarts where
     /// their first bodies begin.
@@ -404,7 +404,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
         scatter_accelerations(runs.body, 0, a,
                               [&](int j) { return group().is_first[runs.body[j]] != 0; });
         Real const about = about_inboard_revolute(frame, a);
-        turn(runs, 0, about);
+        joint_acceleration(runs, 0, about);
         if (runs.late != 0)
             scatter(component<Real>(work_.out.revolute_acceleration, 0), runs.body, 0,
                     Vector<Real, 1>{{about}});
@@ -429,7 +429,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
     }
     /// Writes the joint acceleration of body i of the runs, the last result for this body. At the
     /// first body of a part, the part's results leave the tile.
-    void turn(RunsInLanes const& runs, int i, Real const& of_revolute) {
+    void joint_acceleration(RunsInLanes const& runs, int i, Real const& of_revolute) {
         View<2> const& to = out_.revolute_acceleration;
         if (to.origin)
             write(component<Real>(to, 0), Column<Real>{i % part_length},

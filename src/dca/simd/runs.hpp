@@ -100,7 +100,7 @@ struct RunWork {
     /// True if `nodes` has the data of all bodies. Otherwise it has only the joints between parts,
     /// and the outward pass eliminates the others again.
     bool keeps_all = false;
-    bool asks_ahead = false;  // True if the kernels prefetch, see asks_ahead().
+    bool prefetches = false;  // True if the kernels prefetch, see prefetches().
 };
 /// Number of vectors for a joint between segments.
 template <int K>
@@ -146,7 +146,7 @@ struct MergeWork {
     TreeSweeps<Leaf> const& sweeps;
     MergesInLanes const* merges;
     double* nodes;  // Storage of node_numbers<K> vectors per item between inward and outward pass.
-    bool asks_ahead;
+    bool prefetches;
 };
 
 /// Kernels of one vector type for the items [begin, end) of RunWork::runs and MergeWork::merges.

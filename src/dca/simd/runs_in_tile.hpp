@@ -144,7 +144,7 @@ class RunsInTile {
     /// Prefetches with body i, which is called for every body in order. The bodies of the next item
     /// usually follow; in the outward pass they come before.
     [[gnu::always_inline]] void ask(RunsInLanes const& runs, int i, int way) const {
-        if (!work_.asks_ahead) return;
+        if (!work_.prefetches) return;
         // A whole run is read at once when the next item begins, so that prefetches shortly before
         // would come too late.
         std::int64_t const ahead = (by_runs ? 2 : 1) * way * bodies_of_item;

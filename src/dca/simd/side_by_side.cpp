@@ -49,7 +49,7 @@ constexpr std::size_t few_merges = 3;
 
 }  // namespace
 
-bool asks_ahead(ChainGroup const& group) {
+bool prefetches(ChainGroup const& group) {
     // Estimated bytes per body and per bead, and bytes that stay in the caches. Measured with a
     // cache of 32 MiB: without prefetching, 16,384 bodies take a tenth less time, 32,768 bodies
     // half as much again.

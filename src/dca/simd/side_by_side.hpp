@@ -18,7 +18,7 @@ struct RunsDealtOut {
     std::vector<Run> others;
 };
 /// True if the data of this rank's bodies exceed the caches, so that sweeps should prefetch.
-bool asks_ahead(ChainGroup const&);
+bool prefetches(ChainGroup const&);
 
 /// Selection of runs to be processed side by side.
 struct RunsTaken {
@@ -104,7 +104,7 @@ class SideBySide {
         if (level == SimdLevel::off) return;
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
-        asks_ahead_ = asks_ahead(group);
+        asks_ahead_ = prefetches(group);
         runs_ = deal_out_runs(group, lanes_, {Leaf::by_inertia, Leaf::reads_neighbours});
         keeps_all_ = !Leaf::beads && !Leaf::by_inertia &&
                      may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
@@ -145,7 +145,7 @@ class SideBySide {
         work.constants = constants_.data();
         work.nodes = nodes_.data();
         work.keeps_all = keeps_all_;
-        work.asks_ahead = asks_ahead_;
+        work.prefetches = asks_ahead_;
         space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) {
             kernels_.climb(work, begin, end);
         });

@@ -23,7 +23,8 @@ template <class Real, int D>
 CATENA_HD Vector<Real, D> read(ConstView<D> const& view, Column<Real> const& c) {
     Vector<Real, D> v;
     CATENA_UNROLL
-    for (int i = 0; i < D; ++i) v[i] = Real::load(view.origin + i * view.pitch + c.at * Real::lanes);
+    for (int i = 0; i < D; ++i)
+        v[i] = Real::load(view.origin + i * view.pitch + c.at * Real::lanes);
     return v;
 }
 /// Writes one body of every run, one vector per number.
@@ -39,11 +40,13 @@ View<1> component(View<D> const& view, int i) {
 }
 /// Writes to bodies body[j] + further of a field directly, without a tile.
 template <class Real, int D>
-void scatter(View<D> const& view, std::int64_t const* body, int further, Vector<Real, D> const& value) {
+void scatter(View<D> const& view, std::int64_t const* body, int further,
+             Vector<Real, D> const& value) {
     alignas(64) double of_lane[Real::lanes];
     for (int i = 0; i < D; ++i) {
         value[i].store(of_lane);
-        for (int j = 0; j < Real::lanes; ++j) view.origin[i * view.pitch + body[j] + further] = of_lane[j];
+        for (int j = 0; j < Real::lanes; ++j)
+            view.origin[i * view.pitch + body[j] + further] = of_lane[j];
     }
 }
 /// Reads bodies body[j] of a field directly, without a tile.
@@ -58,7 +61,8 @@ CATENA_HD Vector<Real, K> read_directions(ConstDirectionsView const& view, Colum
     return read(ConstView<K>{view.origin, view.pitch, 0}, c);
 }
 template <int K, class Real>
-CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& c, Vector<Real, K> const& value) {
+CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& c,
+                                Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, c, value);
 }
 /// Overloads for columns: bodies in a tile neither begin nor end a chain, except first bodies in
@@ -154,13 +158,16 @@ class Tile {
         for (int j = 0; j < lanes; ++j)
             for (int n = 0; n < count && part.skipped[j] > 0; ++n)
                 for (int i = 0; i < length; ++i)
-                    place(n)[i * lanes + j] = source_[n].origin[part.first[j] + (i < part.skipped[j] ? 0 : i - part.skipped[j])];
+                    place(n)[i * lanes + j] =
+                        source_[n].origin[part.first[j] +
+                                          (i < part.skipped[j] ? 0 : i - part.skipped[j])];
     }
     void fill(PartInLanes<Real> const& part) { fill(part, count_); }
     /// Writes the results in the tile to their fields. `first` are the bodies in column 0.
     void empty(std::int64_t const* first) {
         for (int n = 0; n < written_; ++n)
-            for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
+            for (int i = 0; i < length; i += 4)
+                Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
     }
     /// Writes the results of a part to their fields, except for skipped columns.
     void empty(PartInLanes<Real> const& part) {
@@ -168,7 +175,8 @@ class Tile {
         for (int n = 0; n < written_; ++n)
             for (int j = 0; j < lanes; ++j)
                 for (int i = part.skipped[j]; i < length; ++i)
-                    target_[n][part.first[j] + i - part.skipped[j]] = place(most - 1 - n)[i * lanes + j];
+                    target_[n][part.first[j] + i - part.skipped[j]] =
+                        place(most - 1 - n)[i * lanes + j];
     }
     /// Prefetches a share of what fill() will read and empty() will write for runs that are `ahead`
     /// bodies further. It is called once for each body i. The shares are small, because many
@@ -178,17 +186,22 @@ class Tile {
         ask_to_write(first, ahead, i);
     }
     /// Prefetches a share of what fill() will read.
-    [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i, int count) const {
+    [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i,
+                                            int count) const {
         for (int n = i % numbers_of_line; n < count; n += numbers_of_line)
-            for (int j = 0; j < lanes; ++j) prefetch<Real>(source_[n].origin, line_of(i) + first[j] + ahead);
+            for (int j = 0; j < lanes; ++j)
+                prefetch<Real>(source_[n].origin, line_of(i) + first[j] + ahead);
     }
-    [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i) const {
+    [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead,
+                                            int i) const {
         ask_to_read(first, ahead, i, count_);
     }
     /// Prefetches a share of what empty() will write.
-    [[gnu::always_inline]] void ask_to_write(std::int64_t const* first, std::int64_t ahead, int i) const {
+    [[gnu::always_inline]] void ask_to_write(std::int64_t const* first, std::int64_t ahead,
+                                             int i) const {
         for (int n = i % numbers_of_line; n < written_; n += numbers_of_line)
-            for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], line_of(i) + first[j] + ahead);
+            for (int j = 0; j < lanes; ++j)
+                prefetch_to_write<Real>(target_[n], line_of(i) + first[j] + ahead);
     }
 
   private:

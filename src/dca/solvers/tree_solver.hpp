@@ -111,7 +111,7 @@ class TreeSolver final : public ChainSolver {
     }
     /// True if evaluations compute runs by articulated-body inertias and all joints but those of
     /// chains' first bodies are revolute.
-    bool goes_by_revolutes() const override {
+    bool eliminates_revolute_joints() const override {
         return takes_runs_whole && at_once() && group_.revolute;
     }
     bool has_runs_side_by_side() const override { return aside_.has_value(); }
@@ -296,8 +296,8 @@ class TreeSolver final : public ChainSolver {
                      AccelerationsView const& out) {
         if (schedule_.shared.empty()) {
             space_.climb_and_descend(tree, sweep);
-        } else if (measured_ ||
-                   !shown.units.turn(space_, communicator_, shown.numbers, tree, top_, sweep)) {
+        } else if (measured_ || !shown.units.both_passes(space_, communicator_, shown.numbers, tree,
+                                                         top_, sweep)) {
             space_.climb(tree, sweep);
             gather(shown);
             space_.climb_and_descend(top_, sweep);

@@ -112,7 +112,7 @@ struct EmbeddedSteps {
     /// its equations may have no solution. NaN if it is not finite. Orientations are measured by
     /// the deviation of the quaternion's length from 1, and velocities relative to 1000 rad per
     /// step.
-    CATENA_HD double wildness(std::int64_t k, double length) const {
+    CATENA_HD double stage_divergence(std::int64_t k, double length) const {
         StateView const& state = steps.chains.scan.state;
         Vector<double, 4> const q = state.q.load(k);
         double const size = dot(q, q), fast = 1e-3 * length * norm(state.qd.load(k));

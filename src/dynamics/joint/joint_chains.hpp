@@ -100,7 +100,7 @@ struct JointChains : JointLoads {
         if (goes_by_revolute(k)) return {{rate_of_revolute(k), RealAt<Place>(0), RealAt<Place>(0)}};
         Vector3 const turning = read(alpha, k);
         if (joints().type(k) == JointType::free) return turning;
-        auto const axes1 = joints().axes(k), to_meeting = turn(k);
+        auto const axes1 = joints().axes(k), to_meeting = rotation(k);
         auto const before = inboard_end_of(k);
         Vector3 const inboard{{before[0], before[1], before[2]}};
         if (joints().type(k) == JointType::spherical)

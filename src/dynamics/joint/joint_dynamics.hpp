@@ -91,7 +91,7 @@ class JointDynamics : public BeadHost {
     virtual void embedded_stage(int stage, InnerStep const&) = 0;
     /// Measure of how implausible the next stage is, for a step of this length, on this rank. Its
     /// equations are worth solving if it is below 1.
-    virtual double wildness(double length) = 0;
+    virtual double stage_divergence(double length) = 0;
     /// Largest velocities at the two ends of the last substep, on this rank.
     virtual Speeds fastest() = 0;
     /// Largest error of the last substep relative to the tolerances, on this rank; NaN if anything

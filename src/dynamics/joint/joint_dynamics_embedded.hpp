@@ -30,10 +30,10 @@ void JointDynamicsIn<Space>::embedded_stage(EmbeddedStage const& stage) {
 }
 
 template <class Space>
-double JointDynamicsIn<Space>::wildness(double length) {
+double JointDynamicsIn<Space>::stage_divergence(double length) {
     return space_.largest(group_.size,
                           [s = embedded(), length] CATENA_LAMBDA(std::int64_t k) -> double {
-                              return s.wildness(k, length);
+                              return s.stage_divergence(k, length);
                           });
 }
 

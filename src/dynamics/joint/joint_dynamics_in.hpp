@@ -56,8 +56,9 @@ class JointDynamicsIn final : public JointDynamics {
           has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
           needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
           needs_orientations_(given_.wrenches || needs_positions_),
-          goes_by_revolutes_(solver_->goes_by_revolutes()),
-          in_run_(goes_by_revolutes_ ? revolutes_in_runs(group) : std::vector<std::uint8_t>{}),
+          eliminates_revolute_joints_(solver_->eliminates_revolute_joints()),
+          in_run_(eliminates_revolute_joints_ ? revolutes_in_runs(group)
+                                              : std::vector<std::uint8_t>{}),
           in_run_list_(in_run_),
           kinematics_(group, space, communicator),
           loads_(given_),
@@ -74,7 +75,7 @@ class JointDynamicsIn final : public JointDynamics {
           joint_load_(given_.joint_loads ? group.size : 0),
           compliance_(group.implicit_joint.empty() ? 0 : group.size),
           yielding_(group.implicit_joint.empty() ? 0 : group.size),
-          revolute_acceleration_(goes_by_revolutes_ ? group.size + 1 : 0),
+          revolute_acceleration_(eliminates_revolute_joints_ ? group.size + 1 : 0),
           torque_(group.size),
           force_(has_forces_ ? group.size : 0),
           alpha_(group.size),
@@ -93,7 +94,7 @@ class JointDynamicsIn final : public JointDynamics {
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         if constexpr (has_lanes)
             if (JointLanes lanes(group, given_.springs,
-                                 goes_by_revolutes_ && solver_->has_runs_side_by_side(),
+                                 eliminates_revolute_joints_ && solver_->has_runs_side_by_side(),
                                  space.simd());
                 lanes.any())
                 lanes_ = std::move(lanes);
@@ -126,7 +127,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
 
     void update_configuration() override { go_to_configuration(false); }
-    void update_to_solve_once() override { go_to_configuration(goes_by_revolutes_); }
+    void update_to_solve_once() override { go_to_configuration(eliminates_revolute_joints_); }
     void assemble_matrices() override {
         solver_->assemble_matrices(configuration());
         has_matrices_ = true;
@@ -175,7 +176,7 @@ class JointDynamicsIn final : public JointDynamics {
         time_ = s.time;
     }
     void embedded_stage(int stage, InnerStep const&) override;
-    double wildness(double length) override;
+    double stage_divergence(double length) override;
     Speeds fastest() override;
     double embedded_error(double length, AllowedErrors const&) override;
     double reach() const override { return reach_; }
@@ -480,7 +481,7 @@ class JointDynamicsIn final : public JointDynamics {
     bool follows_revolutes() const {
         if constexpr (has_lanes)
             if (space_.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
-        return goes_by_revolutes_ && group_.drives.empty() && !has_implicit() &&
+        return eliminates_revolute_joints_ && group_.drives.empty() && !has_implicit() &&
                (lanes_ || !solver_->has_runs_side_by_side());
     }
     /// True if joints' relative motions, which the preceding step may leave undone, are computed in
@@ -582,7 +583,8 @@ class JointDynamicsIn final : public JointDynamics {
     /// Jointed tips on the host; tips_ is their copy in the Space.
     std::vector<JointedTip> tip_;
     double reach_;
-    bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_revolutes_;
+    bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_,
+        eliminates_revolute_joints_;
     /// Codes of RevolutesInRuns by body.
     std::vector<std::uint8_t> in_run_;
     List<std::uint8_t> in_run_list_;

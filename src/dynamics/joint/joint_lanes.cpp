@@ -56,7 +56,7 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool revolutes, Si
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions)
                                                                : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);
-    asks_ahead_ = dca::asks_ahead(group);
+    asks_ahead_ = dca::prefetches(group);
     deal_out(group, springs, 0, group.size, lanes, bodies_);
     runs_ = dca::deal_out_runs(group, lanes, {true, false});
     if (!any()) {

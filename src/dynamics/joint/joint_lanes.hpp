@@ -13,21 +13,21 @@
 
 namespace catena {
 
-/// Groups of consecutive bodies: first[i], first[i] + 1, ... fill a vector. `asks_ahead`: prefetch,
-/// as dca::asks_ahead() advises.
-struct BodiesAbreast {
+/// Groups of consecutive bodies: first[i], first[i] + 1, ... fill a vector. `prefetches`: prefetch,
+/// as dca::prefetches() advises.
+struct BodyLanes {
     std::int64_t const* first;
-    bool asks_ahead;
+    bool prefetches;
 };
 /// Groups of runs, one run per lane.
 struct RunsAbreast {
     dca::RunsInLanes const* items;
-    bool asks_ahead;
+    bool prefetches;
 };
 /// Loops of one instruction set over groups [begin, end). There is one table with and one without
 /// positions.
 struct JointLoops {
-    void (*set_relative)(JointChains const&, BodiesAbreast const&, std::int64_t begin,
+    void (*set_relative)(JointChains const&, BodyLanes const&, std::int64_t begin,
                          std::int64_t end);
     /// Runs JointScan::follow on runs, and stores the motion across each run (JointScan::whole).
     void (*follow)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
@@ -39,13 +39,12 @@ struct JointLoops {
                              std::int64_t begin, std::int64_t end);
     /// Computes angular velocities of the runs' first bodies, after the scan.
     void (*begin_runs)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
-    void (*set_motion)(JointChains const&, BodiesAbreast const&, std::int64_t begin,
-                       std::int64_t end);
-    void (*set_rates)(JointChains const&, RatesView const&, BodiesAbreast const&,
-                      std::int64_t begin, std::int64_t end);
-    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodiesAbreast const&,
+    void (*set_motion)(JointChains const&, BodyLanes const&, std::int64_t begin, std::int64_t end);
+    void (*set_rates)(JointChains const&, RatesView const&, BodyLanes const&, std::int64_t begin,
+                      std::int64_t end);
+    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodyLanes const&,
                         std::int64_t begin, std::int64_t end);
-    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodiesAbreast const&,
+    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodyLanes const&,
                            std::int64_t begin, std::int64_t end);
 };
 /// Numbers per body: the axis of the revolute joint, and the rotation of its meeting frame.
@@ -57,8 +56,8 @@ JointLoops avx512_joint_loops(bool positions);
 /// Decides which bodies and runs of a group are placed side by side, and executes their loops.
 class JointLanes {
   public:
-    /// `springs`: some joint has one. `revolutes`: the solver goes_by_revolutes() with runs side by
-    /// side. The group must outlive this object.
+    /// `springs`: some joint has one. `revolutes`: the solver eliminates_revolute_joints() with
+    /// runs side by side. The group must outlive this object.
     JointLanes(ChainGroup const&, bool springs, bool revolutes, SimdLevel);
     // Moves only: the tree of a copy would refer to the original's runs.
     JointLanes(JointLanes&&) = default;
@@ -71,7 +70,7 @@ class JointLanes {
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
         space.over_ranges(std::ssize(bodies_.first), 2, [&](std::int64_t begin, std::int64_t end) {
-            some(loops, BodiesAbreast{bodies_.first.data(), asks_ahead_}, begin, end);
+            some(loops, BodyLanes{bodies_.first.data(), asks_ahead_}, begin, end);
         });
         space.over(std::span(bodies_.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
@@ -87,8 +86,8 @@ class JointLanes {
     }
     HostSpace::ScanTree const& tree() const { return *tree_; }
 
-    // Members for chains whose solver goes_by_revolutes() and whose positions are not requested.
-    // Precondition: `revolutes`.
+    // Members for chains whose solver eliminates_revolute_joints() and whose positions are not
+    // requested. Precondition: `revolutes`.
 
     /// Runs that are not side by side.
     std::span<dca::Run const> other_runs() const { return runs_.others; }

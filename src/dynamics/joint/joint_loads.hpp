@@ -37,9 +37,9 @@ struct ImplicitJoints {
     }
 };
 
-/// Revolute joints whose motion a solver that goes_by_revolutes() computes itself. They are in runs
-/// of several bodies, and their body does not begin a chain. All joints of bodies side by side are
-/// such (joint_lanes.cpp).
+/// Revolute joints whose motion a solver that eliminates_revolute_joints() computes itself. They
+/// are in runs of several bodies, and their body does not begin a chain. All joints of bodies side
+/// by side are such (joint_lanes.cpp).
 struct RevolutesInRuns {
     /// Codes of joints: 0 is no such revolute joint, `first` is that of a run's first body,
     /// `within` is any other.
@@ -99,7 +99,7 @@ struct JointLoads {
     // (dca/lane_access.hpp, JointsView::type).
     /// Rotation of B in M.
     template <class Place>
-    CATENA_HD Mat3At<Place> turn(Place k) const {
+    CATENA_HD Mat3At<Place> rotation(Place k) const {
         return to_matrix(as_quaternion(read(scan.motion.joint_turn, k)));
     }
     /// Rotation of B in W.
@@ -212,7 +212,7 @@ struct JointLoads {
         motions = Mat3::zero();
         switch (joints().joint[k]) {
             case JointType::spherical:
-                motions = transposed_times(axes, turn(k));
+                motions = transposed_times(axes, rotation(k));
                 return 3;
             case JointType::universal:
                 motions.set_column(0, transposed_times(axes, joints().first_axis.load(k)));
@@ -263,7 +263,7 @@ struct JointLoads {
         auto const axes = joints().axes(k);
         switch (joints().type(k)) {
             case JointType::spherical: {
-                auto const t = transposed_times(axes, turn(k) * along);
+                auto const t = transposed_times(axes, rotation(k) * along);
                 return {{t[0], t[1], t[2], none}};
             }
             case JointType::universal: {
@@ -330,7 +330,7 @@ struct JointLoads {
     CATENA_HD Vec3At<Place> joint_velocity_term(Place k, Vec3At<Place>& linear) const {
         using Real = RealAt<Place>;
         using Vector3 = Vec3At<Place>;
-        Vector3 const w = turn(k) * omega(k);
+        Vector3 const w = rotation(k) * omega(k);
         auto const rate = joints().rate(scan.state, k);
         // The inboard or the outboard body's angular velocity: both give the same product.
         Vector3 angular = cross(w, rate.angular);
@@ -367,7 +367,7 @@ struct JointLoads {
     }
     template <class Place>
     CATENA_HD void set_biases(Place k) const {
-        if (!left.biases || !in_run.has(k)) set_bias(k, turn(k), joints().axes(k));
+        if (!left.biases || !in_run.has(k)) set_bias(k, rotation(k), joints().axes(k));
     }
     /// Sets the total torque and force on body k, except joint constraint forces.
     template <class Place>
@@ -378,7 +378,7 @@ struct JointLoads {
         // the motion. It may be large, so that its rounding would have one.
         Vector3 moment = joints().planar ? Vector3::zero() : -gyroscopic_torque(k),
                 push = Vector3::zero();
-        if (given.joint_loads) add_joint_loads(k, turn(k), moment, push);
+        if (given.joint_loads) add_joint_loads(k, rotation(k), moment, push);
         if (has_wrenches) {
             auto const outside = wrench(k);
             auto const axes = orientation(k);

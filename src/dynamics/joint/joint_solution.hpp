@@ -12,7 +12,7 @@ struct JointSolution {
     ChainGroup const& group;
     BodyLoads const& given;
     /// Quaternions MotionView::joint_turn and MotionView::orientation.
-    ConstView<4> joint_turn, turn;
+    ConstView<4> joint_turn, rotation;
     /// Fields of MotionView.
     ConstView<3> omega, velocity, moving_r2;
     ConstView<6> moving_axes2;
@@ -40,7 +40,7 @@ struct JointSolution {
   private:
     /// Adds the constraint forces across the plane of planar chains. Collective.
     void add_across_plane(Communicator const&, BodyResults&) const;
-    Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(turn.load(k))); }
+    Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(rotation.load(k))); }
     /// Axes of the outboard joint, B.
     Mat3 axes2(std::int64_t k) const {
         return axes_of(group.moving_meeting() ? moving_axes2.load(k) : group.axes2[k]);

@@ -1,7 +1,7 @@
 // Scan over runs on revolute joints for solvers that release revolute joints from articulated-body
-// inertias (ChainSolver::goes_by_revolutes()). Motions within runs are not stored. The motion of a
-// run's first body is computed once that of the body before it is known. In any Space; JointLanes
-// has the counterpart with runs side by side.
+// inertias (ChainSolver::eliminates_revolute_joints()). Motions within runs are not stored. The
+// motion of a run's first body is computed once that of the body before it is known. In any Space;
+// JointLanes has the counterpart with runs side by side.
 #pragma once
 
 #include "dynamics/joint/joint_loads.hpp"
@@ -35,7 +35,7 @@ struct RevoluteScan {
         int i = 1;
         for (; i + few <= count; i += few) {
             Motion next[few];
-        CATENA_UNROLL
+            CATENA_UNROLL
             for (int j = 0; j < few; ++j) next[j] = of_body<false>(run, i + j);
             CATENA_UNROLL
             for (int j = 0; j < few; ++j) m = compose<false>(m, next[j]);
@@ -56,11 +56,17 @@ struct RevoluteScan {
     CATENA_HD static Value ended(Quat const& rotation, Vec3 const& omega) {
         return packed<false>({normalized(rotation), omega, Vec3::zero(), Vec3::zero()});
     }
-    CATENA_HD Value joined(Value const& inboard, Value const& outboard) const { return motions().joined(inboard, outboard); }
+    CATENA_HD Value joined(Value const& inboard, Value const& outboard) const {
+        return motions().joined(inboard, outboard);
+    }
     CATENA_HD Value whole(std::int64_t slot) const { return motions().whole(slot); }
-    CATENA_HD void set_whole(std::int64_t slot, Value const& value) const { motions().set_whole(slot, value); }
+    CATENA_HD void set_whole(std::int64_t slot, Value const& value) const {
+        motions().set_whole(slot, value);
+    }
     CATENA_HD Value before(std::int64_t slot) const { return motions().before(slot); }
-    CATENA_HD void set_before(std::int64_t slot, Value const& value) const { motions().set_before(slot, value); }
+    CATENA_HD void set_before(std::int64_t slot, Value const& value) const {
+        motions().set_before(slot, value);
+    }
     CATENA_HD MotionScan<false> motions() const { return {loads.scan}; }
 
     /// Computes, after the scan, the motion of a run's first body and those of its loads that the
@@ -73,7 +79,9 @@ struct RevoluteScan {
 
     /// True if begin() need not wait for the end of the scan, because the ground is before the run.
     /// A run of one body ends its chain, so that none waits for another rank's data.
-    CATENA_HD bool begins_at_ground(dca::Run const& run) const { return loads.scan.joints.starts_chain(run.body); }
+    CATENA_HD bool begins_at_ground(dca::Run const& run) const {
+        return loads.scan.joints.starts_chain(run.body);
+    }
 
   private:
     /// Motion and load of joint i of the run, limited to what the solver needs (compare
@@ -95,10 +103,11 @@ struct RevoluteScan {
                 loads.set_relative<false>(k);
                 return s.load<false>(k);
             }
-        Quat const turn = from_axis_angle(axis, angle);
-        Motion const m{frame * turn, rate * axis, Vec3::zero(), Vec3::zero()};
+        Quat const rotation = from_axis_angle(axis, angle);
+        Motion const m{frame * rotation, rate * axis, Vec3::zero(), Vec3::zero()};
         bool const begins = may_begin && i == 0;
-        if (all_turns || begins || i >= run.count - 2) write(s.motion.joint_turn, k, as_vector(turn));
+        if (all_turns || begins || i >= run.count - 2)
+            write(s.motion.joint_turn, k, as_vector(rotation));
         write(s.rotation, k, as_vector(m.rotation));
         if (begins) write(s.omega, k, m.omega);
         if (!loads.given.joint_loads) return m;

@@ -18,10 +18,10 @@ class FollowRuns {
     using Column = dca::Column<Real>;
 
   public:
-    FollowRuns(JointScan const& s, bool asks_ahead)
+    FollowRuns(JointScan const& s, bool prefetches)
         : joints_(s.joints),
           whole_(s.whole),
-          asks_ahead_(asks_ahead),
+          asks_ahead_(prefetches),
           rotation_(tile_.in(ConstView<4>(s.rotation))),
           omega_(tile_.in(ConstView<3>(s.omega))),
           to_rotation_(tile_.out(s.rotation)),
@@ -107,10 +107,10 @@ class FollowRevolutes {
     using Vector3 = Vector<Real, 3>;
 
   public:
-    FollowRevolutes(JointLoads const& loads, double const* constants, bool asks_ahead)
+    FollowRevolutes(JointLoads const& loads, double const* constants, bool prefetches)
         : scan_(loads.scan),
           constants_(constants),
-          asks_ahead_(asks_ahead),
+          asks_ahead_(prefetches),
           q_(coordinate(scan_.state.q)),
           qd_(coordinate(scan_.state.qd)),
           turn_(tile_.out(scan_.motion.joint_turn)) {
@@ -148,7 +148,7 @@ class FollowRevolutes {
                 Of of{from_axis_angle(along, q[0]),
                       {},
                       to_load_.origin ? torque(k, q, qd) : Vector<Real, 1>{{Real(0)}}};
-                of.motion = {as_quaternion(read(frame, k)) * of.turn, qd[0] * along,
+                of.motion = {as_quaternion(read(frame, k)) * of.rotation, qd[0] * along,
                              Vector3::zero(), Vector3::zero()};
                 unsigned const begin = runs.begins[p * part + k.at];
                 if (begin != 0) take_known(runs, begin, of);
@@ -160,7 +160,7 @@ class FollowRevolutes {
                     m = compose<false>(m, of.motion);
                     if (begin != 0) dca::choose<Real>(begin, of.motion, m);
                 }
-                write(turn_, k, as_vector(of.turn));
+                write(turn_, k, as_vector(of.rotation));
                 if (to_load_.origin) write(to_load_, k, of.torque);
             }
             tile_.empty(bodies);
@@ -172,7 +172,7 @@ class FollowRevolutes {
   private:
     /// Rotation, motion and torque of the joints of one column.
     struct Of {
-        Quaternion<Real> turn;
+        Quaternion<Real> rotation;
         Motions motion;
         Vector<Real, 1> torque;
     };
@@ -240,52 +240,50 @@ void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
 template <class Real, bool positions>
 struct LoopsOf {
     using Bodies = dca::Abreast<Real>;
-    [[gnu::flatten]] static void set_relative(JointChains const& chains,
-                                              BodiesAbreast const& bodies, std::int64_t begin,
-                                              std::int64_t end) {
+    [[gnu::flatten]] static void set_relative(JointChains const& chains, BodyLanes const& bodies,
+                                              std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
-            chains.template set_relative<positions>(Bodies{bodies.first[i], bodies.asks_ahead});
+            chains.template set_relative<positions>(Bodies{bodies.first[i], bodies.prefetches});
     }
     [[gnu::flatten]] static void follow(JointScan const& scan, RunsAbreast const& runs,
                                         std::int64_t begin, std::int64_t end) {
-        FollowRuns<Real, positions> lanes(scan, runs.asks_ahead);
+        FollowRuns<Real, positions> lanes(scan, runs.prefetches);
         for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items[i]);
     }
     [[gnu::flatten]] static void follow_revolutes(JointLoads const& loads, RunsAbreast const& runs,
                                                   double const* constants, std::int64_t begin,
                                                   std::int64_t end) {
-        FollowRevolutes<Real> lanes(loads, constants, runs.asks_ahead);
+        FollowRevolutes<Real> lanes(loads, constants, runs.prefetches);
         for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items, i);
     }
     [[gnu::flatten]] static void begin_runs(JointScan const& scan, RunsAbreast const& runs,
                                             std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) catena::begin_runs<Real>(scan, runs.items[i]);
     }
-    [[gnu::flatten]] static void set_motion(JointChains const& chains, BodiesAbreast const& bodies,
+    [[gnu::flatten]] static void set_motion(JointChains const& chains, BodyLanes const& bodies,
                                             std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
-            chains.template set_motion<positions>(Bodies{bodies.first[i], bodies.asks_ahead},
+            chains.template set_motion<positions>(Bodies{bodies.first[i], bodies.prefetches},
                                                   false);
     }
     [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out,
-                                           BodiesAbreast const& bodies, std::int64_t begin,
+                                           BodyLanes const& bodies, std::int64_t begin,
                                            std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
-            chains.set_rates(Bodies{bodies.first[i], bodies.asks_ahead}, out);
+            chains.set_rates(Bodies{bodies.first[i], bodies.prefetches}, out);
     }
     [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage,
-                                             BodiesAbreast const& bodies, std::int64_t begin,
+                                             BodyLanes const& bodies, std::int64_t begin,
                                              std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
-            steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.asks_ahead},
+            steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.prefetches},
                                                   stage);
     }
     [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps,
-                                                EmbeddedStage const& stage,
-                                                BodiesAbreast const& bodies, std::int64_t begin,
-                                                std::int64_t end) {
+                                                EmbeddedStage const& stage, BodyLanes const& bodies,
+                                                std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
-            steps.template advance<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, stage);
+            steps.template advance<positions>(Bodies{bodies.first[i], bodies.prefetches}, stage);
     }
     static constexpr JointLoops loops() {
         return {set_relative, follow,    follow_revolutes, begin_runs,
