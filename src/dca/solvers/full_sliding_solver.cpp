@@ -1,0 +1,8 @@
+// Handles of all six directions, with prismatic or helical joints.
+#include "dca/solvers/joint_solver_of.hpp"
+
+namespace catena::dca {
+
+CATENA_JOINT_SOLVER(6, true)
+
+}  // namespace catena::dca
