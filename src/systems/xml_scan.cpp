@@ -120,18 +120,27 @@ class Scanner {
     /// Reads a comment, declaration or tag.
     void markup() {
         string_view const rest = text_.substr(at_);
-        if (rest.starts_with("<!--")) return skip(4, "-->", "a comment that is not closed");
-        if (rest.starts_with("<?")) return skip(2, "?>", "a declaration that is not closed");
+        if (rest.starts_with("<!--")) return skip({"<!--", "-->", "<", "a comment"});
+        if (rest.starts_with("<?")) return skip({"<?", "?>", "<>", "a declaration"});
         if (rest.starts_with("<!")) fail(at_, "a document type or section, which no System has");
         if (rest.starts_with("</")) return end_tag();
         start_tag();
     }
 
-    /// Skips to the end of the token `closing`; throws InputError with `fault` if it is missing.
-    void skip(std::size_t opening, string_view closing, char const* fault) {
-        std::size_t const end = text_.find(closing, at_ + opening);
-        if (end == string_view::npos) fail(at_, fault);
-        at_ = end + closing.size();
+    /// A part of the text that has no element, and what may not stand in it.
+    struct Skipped {
+        string_view opening, closing, forbidden;
+        char const* name;
+    };
+    /// Skips a comment or declaration; throws InputError if it does not end. OpenMM's reader ends a
+    /// declaration at its first `>` and counts `<` in a comment. With these in it, that reader
+    /// would find other elements than this one, or read beyond the end of the text.
+    void skip(Skipped const& part) {
+        std::size_t const begin = at_ + part.opening.size(), end = text_.find(part.closing, begin);
+        if (end == string_view::npos) fail(at_, fmt::format("{} that is not closed", part.name));
+        std::size_t const odd = text_.find_first_of(part.forbidden, begin);
+        if (odd < end) fail(odd, fmt::format("{} that holds `{}`", part.name, text_[odd]));
+        at_ = end + part.closing.size();
     }
 
     /// Reads a name of a tag or attribute.

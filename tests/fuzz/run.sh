@@ -78,14 +78,14 @@ target pdb -lyaml-cpp "${files[@]}" src/scene/pdb_file.cpp src/scene/pdb_sites.c
 target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/scene/calvados2.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
 if [ -d "$hdf5" ]; then
-    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/scene/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry,freedom}.cpp \
+    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/scene/freedom.cpp \
         src/io/{memory_limit,trial}.cpp
-    target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,hdf5_data,seal,trial}.cpp
+    target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,file_seal,hdf5_data,trial}.cpp
 else
     echo "LEFT OUT: bodies and checkpoint, no serial HDF5 (apt-get install libhdf5-dev)"
 fi
 if [ -n "$openmm" ]; then
-    target system "-lyaml-cpp -L$openmm/lib -lOpenMM -Wl,-rpath,$PWD/$openmm/lib" "${tree[@]}" src/force/{xml_scan,openmm_xml}.cpp src/io/memory_limit.cpp
+    target system "-lyaml-cpp -L$openmm/lib -lOpenMM -Wl,-rpath,$PWD/$openmm/lib" "${tree[@]}" src/systems/{xml_scan,read_xml}.cpp src/io/memory_limit.cpp
 else
     echo "LEFT OUT: system, no OpenMM in build/venv"
 fi

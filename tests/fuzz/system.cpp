@@ -1,8 +1,8 @@
 // A serialised System, through the scanner and OpenMM's own reader.
 #include <OpenMM.h>
 
-#include "force/platform.hpp"
 #include "systems/model.hpp"
+#include "systems/plugins.hpp"
 #include "tests/fuzz/plain_xml.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -59,6 +59,9 @@ TEST(XmlScan, NamesTheFaultAndItsLine) {
         in_system("<Forces>\n<Force type=\"A\">\n<Bonds/>\n<Force type=\"B\"/></Force></Forces>"),
         "a <Force> is not closed before the next begins (2 lines below) (line 4)");
     expect_fault(in_system("<!-- open"), "a comment that is not closed (line 3)");
+    expect_fault(in_system("<!-- a < b -->"), "a comment that holds `<` (line 3)");
+    expect_fault("<?xml version=\"1\" <!> ?>\n" + in_system(""),
+                 "a declaration that holds `<` (line 1)");
     expect_fault("<?xml <System", "a declaration that is not closed");
     expect_fault("<!DOCTYPE System>" + in_system(""), "a document type");
     expect_fault(in_system("") + "<System type=\"System\"/>", "a second element beside the System");
