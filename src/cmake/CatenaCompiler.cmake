@@ -91,7 +91,7 @@ function(catena_precompile target)
         target_precompile_headers(${target} PRIVATE ${ARGN})
         if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
             # ccache needs the first. Precompiled headers lose that they are the system's, so gcc warns of them: falsely (GCC bug 105651).
-            target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess;-Wno-stringop-overflow;-Wno-array-bounds>)
+            target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>)
         endif()
     endif()
 endfunction()
