@@ -52,7 +52,7 @@ bool GhostInboxes::map_anew(std::int64_t received) {
 }
 
 void* GhostInboxes::box(int rank) const {
-    return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * turn_ * capacity_;
+    return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * current_ * capacity_;
 }
 
 }  // namespace catena::cuda
