@@ -69,7 +69,7 @@ double SingleRankForces::energy() {
     return finite_ && std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
 }
 
-SingleRankForces::FusedSweep SingleRankForces::at(std::vector<Vec3> const& positions) {
+SingleRankForces::EnergyAndForces SingleRankForces::at(std::vector<Vec3> const& positions) {
     std::vector<Vec3> found = forces(positions);
     double const sum = energy();
     return {sum, std::isfinite(sum) ? std::move(found) : pushes(positions)};

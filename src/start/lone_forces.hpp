@@ -21,13 +21,13 @@ class SingleRankForces {
     explicit SingleRankForces(Scene const&, std::optional<double> reach = std::nullopt);
 
     /// Energy and forces at the same positions.
-    struct FusedSweep {
+    struct EnergyAndForces {
         double energy = 0;         // kJ/mol; infinite if OpenMM's forces are not finite
         std::vector<Vec3> forces;  // kJ/mol/nm, in the order of beads(); those of forces() if
                                    // OpenMM's are not finite
     };
     /// Computes energy and forces at the positions, in nm and in the order of beads().
-    FusedSweep at(std::vector<Vec3> const& positions);
+    EnergyAndForces at(std::vector<Vec3> const& positions);
     /// Returns forces in kJ/mol/nm, in the order of beads(). If OpenMM's are not finite, the result
     /// pushes beads nearer than 0.3 nm apart. If no beads are so near, it pushes every bead in a
     /// direction of its own. That bends straight chains, whose torsions are undefined.

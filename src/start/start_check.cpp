@@ -214,7 +214,7 @@ void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
             torsions ? middle_of_straight(beads, positions) : std::nullopt;
         if (!near && !straight) return;
         SingleRankForces forces(scene);
-        SingleRankForces::FusedSweep const found = forces.at(positions);
+        SingleRankForces::EnergyAndForces const found = forces.at(positions);
         if (!near && !forces.are_finite()) refuse_straight(scene, beads, *straight);
         refuse_absurd(
             scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy));

@@ -75,7 +75,7 @@ StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains
     std::vector<Vec3> at = bead_positions_of(scene);
     std::vector<Vec3> const given = at;
     auto const look = [&] {
-        SingleRankForces::FusedSweep const found = all.at(at);
+        SingleRankForces::EnergyAndForces const found = all.at(at);
         return start_forces_of(scene, all.beads(), at, found.forces, found.energy);
     };
     StartRelaxation found;

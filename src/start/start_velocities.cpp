@@ -26,7 +26,7 @@ struct Drawn {
         return {{omega[3 * body], omega[3 * body + 1], omega[3 * body + 2]}};
     }
     /// Rotation matrix from body axes to W.
-    Mat3 turn_of(std::size_t body) const {
+    Mat3 rotation_of(std::size_t body) const {
         double const* const q = orientation.data() + 4 * body;
         return to_matrix(Quat{q[0], q[1], q[2], q[3]});
     }
@@ -64,13 +64,13 @@ void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {  // relative to the inboard body, body axes
         bodies.qd[k] = drawn.omega_of(first + k);
         if (k > 0)
-            bodies.qd[k] = bodies.qd[k] - transposed_times(drawn.turn_of(first + k),
-                                                           drawn.turn_of(first + k - 1) *
+            bodies.qd[k] = bodies.qd[k] - transposed_times(drawn.rotation_of(first + k),
+                                                           drawn.rotation_of(first + k - 1) *
                                                                drawn.omega_of(first + k - 1));
     }
     if (bodies.size() > 0 && chain.base == Base::free)
         bodies.free_velocity = drawn.velocity_of(first) -
-                               drawn.turn_of(first) * cross(drawn.omega_of(first), bodies.com[0]);
+                               drawn.rotation_of(first) * cross(drawn.omega_of(first), bodies.com[0]);
 }
 
 }  // namespace
