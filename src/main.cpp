@@ -1,5 +1,5 @@
-// The command line: catena check | plan | solve | run | report | bench. What each does is in
-// command/.
+// Entry point of the command line: catena check | plan | solve | run | report | bench. The commands
+// are implemented in command/.
 #include "bench/benchmarks.hpp"
 #include "command/commands.hpp"
 #include "command/report_scenes.hpp"
@@ -11,6 +11,8 @@ namespace {
 using namespace catena;
 using namespace catena::command;
 
+/// Each overload of execute() runs one command on all ranks and returns the exit status. This one
+/// prints the answer to --help or --version.
 int execute(Session const& session, Answer const& answer) {
     return session.conclude({answer.text, nullptr, true});
 }
@@ -23,7 +25,8 @@ int execute(Session const& session, CheckRequest const& request) {
 int execute(Session const& session, PlanRequest const& request) {
     Communicator const& ranks = session.communicator();
     if (request.scene.empty()) return session.conclude(calibrate(ranks, request));
-    if (request.ranks > 0) network_of(request);  // said before bodies are made
+    // Errors in --network are reported before the bodies of the scene are made.
+    if (request.ranks > 0) network_of(request);
     Scene const scene = session.load(request.scene);
     if (request.calibrate) calibrate(ranks, request);
     return session.conclude(plan_scene(scene, ranks, request));

@@ -1,3 +1,4 @@
+// Implements the calibration cache. The file name contains a checksum of the machine's identity.
 #include "plan/cache.hpp"
 
 #include <cstdio>

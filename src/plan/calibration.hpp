@@ -1,4 +1,4 @@
-// What was measured on a machine so far.
+// Times that were measured on one machine so far.
 #pragma once
 
 #include <map>
@@ -10,19 +10,26 @@
 
 namespace catena::plan {
 
-/// Where a level of merges is computed.
+/// The processor or device that computes a level of merges.
 enum class Place { host, gpu };
 
+/// Measured curves by family and arrangement, or by family and place. Asking for an unknown curve
+/// creates an empty one.
 class Calibration {
   public:
+    /// Seconds of the phases of an evaluation.
     PhaseCurve& of(Family const&, Arrangement const&);
+    /// Seconds of the parts of a constrained step.
     DriftCurve& of_drifts(Family const&, Arrangement const&);
+    /// Seconds of the parts of a level of the pairwise tree.
     LevelCurve& of(Family const&, Place, int threads);
-    /// Points of all curves.
+    /// Number of measured points of all curves.
     std::size_t points() const;
 
+    /// Returns all curves as {"phases", "drifts", "levels"}: name to a list of [bodies, seconds].
     nlohmann::json json() const;
-    /// Adds what json() gave; throws where it is something else, times that cannot be included.
+    /// Adds the curves that json() returned. Throws an exception if the JSON has another form or
+    /// contains times that are negative, not finite or above 1e6 s.
     void read(nlohmann::json const&);
 
   private:

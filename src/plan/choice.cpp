@@ -1,3 +1,4 @@
+// Implements the choice of backend, threads and levels on the GPU from predicted times.
 #include "plan/choice.hpp"
 
 #include <fmt/format.h>
@@ -11,14 +12,14 @@
 namespace catena::plan {
 namespace {
 
-/// Why a GPU is not for `auto`, besides there being none.
+/// Returns why `auto` must not choose a GPU that is present; empty if it may.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
     if (scene.solver.refine > 0) return "what refined solutions lack is looked for on the host";
     return scene.dynamics.why_host_alone();
 }
-/// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and
-/// the solver.
+/// True if OpenMM is free to use the GPU for its forces, so that beads could stay there between
+/// OpenMM and the solver.
 bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {
     if (!scene.forces.openmm || ranks > 1) return false;
     OpenMmSpec const& openmm = *scene.forces.openmm;
@@ -29,8 +30,8 @@ bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {
     return free && beads && machine.openmm_on_gpu();
 }
 
-/// Seconds that OpenMM's forces take of a step at the least, where they are computed on processors:
-/// a microsecond a bead.
+/// Returns a lower bound of the seconds per step that OpenMM's forces take on processors: a
+/// microsecond per bead. Returns 0 if a GPU computes them.
 double least_seconds_of_forces(Scene const& scene, Machine const& machine, int ranks) {
     if (!scene.forces.openmm) return 0;
     std::string const& platform = scene.forces.openmm->platform;
@@ -42,14 +43,15 @@ double least_seconds_of_forces(Scene const& scene, Machine const& machine, int r
     return a_bead * static_cast<double>(beads) / ranks;
 }
 
+/// Formats a prediction, e.g. "segments 1.2 ms" or "cuda not: REASON".
 std::string text_of(Prediction const& p) {
     return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(),
                                             1e3 * p.seconds[typical_evaluation])
                               : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
 }
 
-/// A GPU that would be chosen must hold the scene, with room for what a sample chain does not show
-/// (lists of short chains, OpenMM).
+/// Marks GPU arrangements as unusable if the device has too little memory for the scene. The margin
+/// covers what a sample chain does not show: lists of short chains, OpenMM.
 void refuse_what_does_not_fit(std::vector<Prediction>& predictions,
                               std::vector<Share> const& shares, Machine const& machine) {
     double constexpr reserve = 1 << 28, margin = 1.25;
@@ -63,6 +65,7 @@ void refuse_what_does_not_fit(std::vector<Prediction>& predictions,
                                         static_cast<std::int64_t>(machine.free_gpu_memory()));
 }
 
+/// Chooses the arrangement with the shortest predicted time and explains the choice.
 Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     std::string const no_gpu = no_gpu_for(scene, planner.machine());
     std::string const without = no_gpu.empty() ? "" : "; " + no_gpu;
@@ -71,7 +74,7 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
         std::erase_if(usable, [](Arrangement const& a) { return uses_gpu(a.backend); });
     std::string beside;
     if (int const spare = planner.machine().spare; spare > 0) {
-        // Threads that wait for each other would wait for other programs.
+        // Threads that wait for each other would also wait for other programs on the same cores.
         if (std::erase_if(usable, [&](Arrangement const& a) {
                 return a.backend == Backend::openmp && a.threads > spare;
             }) > 0)
@@ -102,6 +105,7 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     return {best.arrangement, {}, reason + beside + without};
 }
 
+/// Chooses how many levels of the pairwise tree the GPU assembles and disassembles.
 Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     LevelPlan const levels = planner.plan_levels(shares_of(scene, axes, ranks));
     GpuLevels const best = levels.best();
@@ -113,6 +117,7 @@ Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks)
                     1e3 * levels.seconds({}), 1e3 * levels.seconds({0, 0}))};
 }
 
+/// True if the backend is cuda-levels and its number of levels is `auto`.
 bool levels_are_open(SolverSpec const& solver) {
     return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto";
 }
@@ -146,7 +151,7 @@ Choice choose(Scene const& scene, Axes axes, Communicator const& communicator,
 void with_planner(Communicator const& communicator, int threads, std::int64_t largest,
                   std::string const& no_gpu, std::function<void(Planner&)> const& action) {
     Machine machine = this_machine(communicator, threads);
-    // Every rank needs a GPU, or none gets one.
+    // Either every rank has a GPU, or no rank uses one.
     if (communicator.max(machine.no_gpu.empty() ? 0 : 1) > 0)
         without_gpu(machine, "not every rank has one");
     if (!no_gpu.empty()) without_gpu(machine, no_gpu);

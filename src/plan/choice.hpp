@@ -1,4 +1,4 @@
-// What `auto` becomes on this machine.
+// Resolves the value `auto` of solver.backend and of solver.gpu_levels on this machine.
 #pragma once
 
 #include <functional>
@@ -9,36 +9,40 @@
 
 namespace catena::plan {
 
+/// The arrangement that a computation uses, and why.
 struct Choice {
     Arrangement arrangement;
-    GpuLevels levels;    // of cuda-levels
-    std::string reason;  // "asked for"; "auto: 1.2 ms predicted; segments 2 ms, ..."
+    /// Levels on the GPU; used by cuda-levels only.
+    GpuLevels levels;
+    /// "asked for", or for example "auto: predicted segments 1.2 ms, openmp, 8 threads 2 ms".
+    std::string reason;
 };
 
-/// Of chains that are measured before a computation starts: a fraction of a second in all.
+/// Largest sample chain, in bodies, that is measured before a computation starts. All measurements
+/// together take a fraction of a second.
 inline constexpr std::int64_t largest_at_start = 16384;
 
-/// Whether the scene leaves something to be chosen: the backend, or levels on the GPU.
+/// True if the scene leaves the backend or the levels on the GPU open.
 bool leaves_open(Scene const&);
 
-/// For the scene's evaluations, by this rank's planner. `auto` is only ever one of the arrangements
-/// that give the same bits, so that it never changes a result.
+/// Chooses for the scene's evaluations by this rank's planner. `auto` only ever becomes one of the
+/// arrangements that give the same bits, so it never changes a result.
 Choice choose(Scene const&, Axes, Planner&, int ranks);
-/// The same with this machine's planner, which knows what is in the cache and keeps there what it
-/// learns; nothing is measured where there is nothing to choose from. `no_gpu`: why the GPU is none
-/// to choose; empty: it may be. The same on every rank; collective.
+/// Chooses by this machine's planner, which reads the cache and writes new measurements to it.
+/// Measures nothing if the scene leaves nothing open. `no_gpu` is the reason why the GPU must not
+/// be chosen; empty if it may be. Returns the same choice on every rank; collective.
 Choice choose(Scene const&, Axes, Communicator const&, std::string const& no_gpu = "");
-/// Rank 0's planner of chains up to so many bodies; runs `action` with it there, and keeps what it
-/// learned. Collective.
+/// Makes rank 0's planner for sample chains of up to `largest` bodies, runs `action` with it on
+/// rank 0, and writes what it measured to the cache. Collective.
 void with_planner(Communicator const&, int threads, std::int64_t largest, std::string const& no_gpu,
                   std::function<void(Planner&)> const& action);
-/// Rank 0's to every rank.
+/// Broadcasts rank 0's choice to every rank. Collective.
 void share(Communicator const&, Choice&);
 
-/// The scene with everything that was open filled in.
+/// Returns the scene with the choice in place of everything that was left open.
 Scene with_choice(Scene, Choice const&);
-/// Does `action` with the scene filled in so. A GPU that nobody asked for and that turns out to be
-/// too small (cuda::TooLittleMemory) is left out of the choice, and `action` done once more.
+/// Runs `action` with the chosen scene. If a GPU that the user did not name turns out to be too
+/// small (cuda::TooLittleMemory), chooses again without it and repeats `action`.
 using Chooser = std::function<Choice(Scene const&, std::string const& no_gpu)>;
 using WithChoice = std::function<void(Scene const&, Choice const&)>;
 void with_choice(Scene, Chooser const&, WithChoice const& action);

@@ -1,4 +1,4 @@
-// Quantities measured at a few numbers of bodies, and what they are at others.
+// Interpolation of quantities that were measured at a few numbers of bodies.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,20 @@
 
 namespace catena::plan {
 
-/// N times, each a function of the number of bodies: between measured numbers the logarithm of the
-/// time is linear in that of the number; beyond them each further body takes, and below them each
-/// body fewer saves, what a body of the nearest interval took.
+/// N times as functions of the number of bodies. Between measured numbers the logarithm of the time
+/// is linear in the logarithm of the number. Outside the measured range the time is linear, with
+/// the cost per body of the nearest interval.
 template <std::size_t N>
 class Curve {
   public:
     using Values = std::array<double, N>;
 
+    /// Adds the N times, in seconds, measured at this number of bodies.
     void add(std::int64_t bodies, Values const& seconds) { points_[bodies] = seconds; }
     bool has(std::int64_t bodies) const { return points_.contains(bodies); }
     std::map<std::int64_t, Values> const& points() const { return points_; }
 
-    /// Precondition: there is a point.
+    /// Returns the interpolated times, in seconds. Precondition: at least one point.
     Values at(std::int64_t bodies) const {
         if (points_.size() == 1) return on_line(bodies, points_.begin(), points_.begin());
         auto const above = points_.lower_bound(bodies);
@@ -40,13 +41,14 @@ class Curve {
     }
 
   private:
-    static constexpr double least = 1e-12;  // what no clock tells from nothing
+    /// Smallest time in seconds that a clock can tell from zero.
+    static constexpr double least = 1e-12;
     static double ratio(std::int64_t a, std::int64_t b) {
         return static_cast<double>(a) / static_cast<double>(b);
     }
     using Point = typename std::map<std::int64_t, Values>::const_iterator;
-    /// From `near` on with the slope between it and `far`, as far as more bodies take longer and
-    /// none at all takes no less than nothing.
+    /// Extrapolates from `near` with the slope between `near` and `far`. The slope is never
+    /// negative, and the time of no bodies never below zero.
     Values on_line(std::int64_t bodies, Point near, Point far) const {
         Values seconds;
         auto const steps = static_cast<double>(bodies - near->first);

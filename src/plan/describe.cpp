@@ -1,3 +1,4 @@
+// Implements the descriptions of scenes that `check`, `plan`, `solve` and `run` print.
 #include "plan/describe.hpp"
 
 #include <fmt/format.h>
@@ -9,10 +10,12 @@
 namespace catena::command {
 namespace {
 
+/// True if one of the numbers is not zero.
 bool any(double const* values, int count) {
     return std::any_of(values, values + count, [](double v) { return v != 0; });
 }
 
+/// Returns what a chain consists of, as in the column "of" of the chain table.
 char const* contents_of(ChainSpec const& chain) {
     if (chain.is_beads()) return "beads";
     if (!chain.is_linked()) return "bodies";
@@ -21,13 +24,16 @@ char const* contents_of(ChainSpec const& chain) {
     return beads == 0 ? "bodies" : "bodies and beads";
 }
 
+/// Returns "free", or the kind of the tip's joint, with "ring, " if it closes a ring.
 std::string tip_name(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return "free";
     return std::string(chain.is_ring() ? "ring, " : "") + name_of(chain.tip_joint.type);
 }
 
+/// Returns the name of the chain's kind of handles.
 char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
 
+/// True if two chains share a row of the chain table.
 bool alike(ChainSpec const& a, ChainSpec const& b) {
     return a.size() == b.size() && a.base == b.base &&
            std::string(contents_of(a)) == contents_of(b) && tip_name(a) == tip_name(b) &&

@@ -1,4 +1,4 @@
-// Parts of a scene in words, shared by the commands.
+// Descriptions of parts of a scene, shared by the commands.
 #pragma once
 
 #include <optional>
@@ -12,50 +12,54 @@
 
 namespace catena::command {
 
-/// "title (file)"
+/// Returns "title (file)".
 std::string title_of(Scene const&);
-/// Equal neighbouring chains in one row.
+/// Returns a table of the chains; equal neighbouring chains share one row.
 Table chain_table(Scene const&);
-/// [{"name", "bodies", "kind", "base"}], every chain; "tip" where it is jointed.
+/// Returns [{"name", "bodies", "kind", "base"}] for every chain, with "tip" if the tip is jointed.
 Json chains_json(Scene const&);
 
-/// What acts on the chains.
+/// Numbers of joints, and for wrenches and drag of bodies, on which each kind of load acts.
 struct ForcesOnJoints {
-    std::int64_t springs = 0, dampers = 0, torques = 0, motions = 0, wrenches = 0,
-                 drag = 0;  // joints (bodies) that have one
+    std::int64_t springs = 0, dampers = 0, torques = 0, motions = 0, wrenches = 0, drag = 0;
 };
 ForcesOnJoints forces_on_joints(Scene const&);
-/// "springs on 2 joints, ..."; "none"
+/// Returns for example "springs on 2 joints, ..."; "none" if nothing acts.
 std::string forces_text(ForcesOnJoints const&);
+/// Returns "[x, y, z]".
 std::string vector_text(Vec3 const&);
 
-/// "g-baoab, 5000 steps of 0.01 ps (50 ps), ..."
+/// Returns for example "g-baoab, 5000 steps of 0.01 ps (50 ps), ...".
 std::string dynamics_text(Scene const&);
+/// Unit of time of the scene: "ps" or "s".
 char const* time_unit(Scene const&);
+/// Unit of energy of the scene: "kJ/mol" or "J".
 char const* energy_unit(Scene const&);
 
-/// Directions that a handle carries: those of chains of links, and of the scene's body chains
-/// together (0 where there are none).
+/// Number of directions that a handle carries: one number for chains of links, one for all body
+/// chains of the scene; 0 if the scene has none.
 struct Directions {
     int beads = 0, bodies = 0;
 };
 Directions directions_of(Scene const&);
-/// "5x5, projected on the restricted directions of revolute joints"
+/// Returns for example "5x5, projected on the restricted directions of revolute joints".
 std::string block_text(bool beads, int directions, Handles);
 
-/// What `check` and `plan` say of a scene beside its numbers: the reader's notes, what a run would
-/// write too seldom, and a step that is near its limit. InputError for a step beyond it.
+/// Returns the remarks that `check` and `plan` print below the numbers: the reader's notes, output
+/// that a run would write too rarely, and a time step close to its limit. Throws InputError for a
+/// time step beyond the limit.
 std::vector<std::string> notes_on(Scene const&, std::optional<StepLimit> const&);
 
-/// solver.gpu_levels with cuda-levels ("all" for auto), else null.
+/// Returns solver.gpu_levels if the backend is cuda-levels ("all" for auto), else null.
 Json gpu_levels_json(Scene const&);
 
-/// Bytes a rank needs, by the sizes of the arrays. An estimate: the largest share, OpenMM not
-/// counted.
+/// Estimated bytes per rank, computed from array sizes for the largest share. OpenMM is not
+/// included.
 struct Memory {
     double scene = 0, state = 0, solver = 0;
     double sum() const { return scene + state + solver; }
 };
+/// Estimates the memory of the scene on the given number of ranks.
 Memory memory_of(Scene const&, int ranks);
 
 }  // namespace catena::command

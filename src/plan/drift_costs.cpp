@@ -1,3 +1,4 @@
+// Implements the measurement of drifts, projection sweeps and noise.
 #include "plan/drift_costs.hpp"
 
 #include <algorithm>
@@ -8,9 +9,13 @@
 namespace catena::plan {
 namespace {
 
-constexpr double still = 1e-6;  // as long as a step must be for numbers to be numbers
+/// Time step of the measured steps, so short that the chains hardly move. A step of zero would give
+/// numbers that are not finite.
+constexpr double still = 1e-6;
+/// Number of projection sweeps that are timed together; their mean is the time of one sweep.
 constexpr int sweeps_at_once = 4;
 
+/// Returns the seconds of one step with the given number of projection sweeps.
 double time_step(ChainSystem& system, int sweeps) {
     ConstrainedStep step;
     step.kick = step.drift = still;
@@ -22,6 +27,7 @@ double time_step(ChainSystem& system, int sweeps) {
     return seconds_now() - start;
 }
 
+/// Returns the seconds that the thermostat's noise takes.
 double time_noise(ChainSystem& system) {
     double const start = seconds_now();
     for (AbsoluteDynamics* const group : system.absolute()) group->thermalise({}, 0);

@@ -1,3 +1,4 @@
+// Implements families: the mapping from chains to families and their random sample chains.
 #include "plan/family.hpp"
 
 #include <algorithm>
@@ -12,12 +13,14 @@ namespace {
 using scene::HandleKind;
 using scene::RandomJoint;
 
+/// Names of the random joints, as in --joints.
 constexpr std::pair<RandomJoint, char const*> joint_names[] = {
     {RandomJoint::link, "link"},           {RandomJoint::planar, "planar"},
     {RandomJoint::spherical, "spherical"}, {RandomJoint::universal, "universal"},
     {RandomJoint::revolute, "revolute"},   {RandomJoint::prismatic, "prismatic"},
     {RandomJoint::weld, "weld"},           {RandomJoint::mixed, "mixed"}};
 
+/// True if a joint of the chain, its jointed tip included, has one of the types.
 bool any_joint(ChainSpec const& chain, std::initializer_list<JointType> types) {
     auto const among = [&](JointType type) {
         return std::find(types.begin(), types.end(), type) != types.end();
@@ -26,7 +29,7 @@ bool any_joint(ChainSpec const& chain, std::initializer_list<JointType> types) {
            (chain.tip == Tip::jointed && among(chain.tip_joint.type));
 }
 
-/// The random joint that stands for a chain of rigid bodies.
+/// Returns the random joint that represents a chain of rigid bodies in measurements.
 RandomJoint joint_of(ChainSpec const& chain) {
     bool const slides = any_joint(chain, {JointType::prismatic, JointType::helical});
     switch (scene::handle_kind(chain)) {
@@ -44,12 +47,14 @@ RandomJoint joint_of(ChainSpec const& chain) {
     }
 }
 
+/// Returns the family of a chain.
 Family family_of(ChainSpec const& chain, Axes axes, Handles handles) {
     if (chain.is_beads()) return {RandomJoint::link, false, Axes::world, handles};
     if (chain.is_linked()) return {RandomJoint::link, true, Axes::world, handles};
     return {axes == Axes::world ? RandomJoint::spherical : joint_of(chain), false, axes, handles};
 }
 
+/// Returns the number of merges on each level of the pairwise trees of chains with these lengths.
 std::vector<std::int64_t> merges_of(std::vector<std::int64_t> const& lengths) {
     std::vector<std::int64_t> merges;
     for (std::int64_t const bodies : lengths) {
@@ -95,7 +100,8 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
     std::map<std::string, Members> groups;
     for (ChainSpec const& chain : scene.chains) {
         Family const family = family_of(chain, axes, scene.solver.handles);
-        // Full handles hold chains of every joint together: the most demanding one stands for them.
+        // Full handles put chains of all joints into one group; the most demanding chain represents
+        // it.
         bool const together =
             carries_all(scene.solver.handles) && family.joint != RandomJoint::link;
         Members& members = groups[together ? "bodies" : family.name()];

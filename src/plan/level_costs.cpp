@@ -1,3 +1,4 @@
+// Implements the measurement of single levels of the pairwise tree.
 #include "plan/level_costs.hpp"
 
 #include <algorithm>
@@ -14,8 +15,7 @@ namespace {
 using dca::LevelPart;
 using Items = LevelPart::Items;
 
-/// Takes the place of a solver: what dynamics would have solved is measured part by part, and not
-/// solved.
+/// Replaces a solver: it times each part of the work that the dynamics asks for and solves nothing.
 class Probe final : public ChainSolver {
   public:
     Probe(ChainGroup const& group, dca::LevelPartMaker const& maker, Effort const& effort)
@@ -32,6 +32,7 @@ class Probe final : public ChainSolver {
     void assemble_matrices(ConfigurationView const& configuration) override {
         configuration_ = configuration;
     }
+    /// Measures all parts and keeps the least times; leaves `out` without a solution.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         time_once(loads, out);
         least_.fill(std::numeric_limits<double>::infinity());
@@ -47,6 +48,7 @@ class Probe final : public ChainSolver {
     LevelSeconds const& least() const { return least_; }
 
   private:
+    /// Runs every part once and returns the seconds of each.
     LevelSeconds time_once(LoadsView const& loads, AccelerationsView const& out) {
         LevelSeconds spent{};
         double last = seconds_now();
@@ -75,7 +77,8 @@ class Probe final : public ChainSolver {
         to(merges_up);
         level_->disassemble();
         to(merges_down);
-        bodies_->put(Items::forces, joints_of_bodies_, offsets_);  // any numbers
+        // The values of the forces do not matter here.
+        bodies_->put(Items::forces, joints_of_bodies_, offsets_);
         to(forces_down);
         bodies_->disassemble();
         to(bodies_down);

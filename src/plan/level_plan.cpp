@@ -1,3 +1,4 @@
+// Implements the plan of levels: sums over groups and the search for the best cut.
 #include "plan/level_plan.hpp"
 
 #include <numeric>
@@ -16,7 +17,8 @@ void LevelPlan::add(LevelledShare const& each) {
     rows_[0].gpu_up += gpu[bodies_up], rows_[0].gpu_down += gpu[bodies_down];
     views_ += gpu[views];
     rows_.resize(std::max(rows_.size(), share.merges.size() + 1));
-    std::int64_t segments = share.bodies;  // below the level
+    // Number of segments below the level.
+    std::int64_t segments = share.bodies;
     for (std::size_t l = 1; l < rows_.size(); ++l) {
         LevelRow& row = rows_[l];
         std::int64_t const merges = l <= share.merges.size() ? share.merges[l - 1] : 0;
@@ -41,8 +43,8 @@ double LevelPlan::seconds(GpuLevels cut) const {
     }
     if (up > 0) sum += rows_[static_cast<std::size_t>(up)].cut_up;
     if (down > 0) sum += rows_[static_cast<std::size_t>(down)].cut_down;
-    for (LevelledShare const& each :
-         shares_) {  // joints eliminated in one place and needed in the other
+    // Joints that are eliminated in one place and needed in the other cross the cut.
+    for (LevelledShare const& each : shares_) {
         std::vector<std::int64_t> const& merges = each.share.merges;
         auto const at = [&](int level) {
             return merges.begin() + std::min<std::ptrdiff_t>(level, std::ssize(merges));

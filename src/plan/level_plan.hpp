@@ -1,5 +1,5 @@
-// How many of the pairwise tree's lowest levels a GPU should have (chapter, Fig. 2.3, extended to
-// the way down).
+// Finds how many of the pairwise tree's lowest levels a GPU should compute (chapter, Fig. 2.3,
+// extended to the outward pass).
 #pragma once
 
 #include <vector>
@@ -8,34 +8,41 @@
 
 namespace catena::plan {
 
-/// A group of chains, and what its levels cost on the host and on the GPU.
+/// A group of chains with the measured times of its levels on the host and on the GPU.
 struct LevelledShare {
     Share share;
     LevelCurve host, gpu;
 };
 
-/// Row 0: the bodies; row l: level l of merges, all groups together.
+/// Predicted seconds of one row of the tree, summed over all groups. Row 0 holds the bodies, row l
+/// the merges of level l. `up` is the assembly, `down` the disassembly.
 struct LevelRow {
-    std::int64_t items = 0;  // bodies or merges
+    /// Number of bodies or merges.
+    std::int64_t items = 0;
     double host_up = 0, host_down = 0, gpu_up = 0, gpu_down = 0;
-    double cut_up = 0, cut_down = 0;  // what crosses where the tree is cut above this row
+    /// Seconds of the transfers if the tree is cut above this row.
+    double cut_up = 0, cut_down = 0;
 };
 
+/// Predicted times of all possible cuts of the tree between GPU and host.
 class LevelPlan {
   public:
     explicit LevelPlan(std::vector<LevelledShare> const&);
+    /// Predicted seconds, row by row from the bodies to the root.
     std::vector<LevelRow> const& rows() const { return rows_; }
+    /// Number of levels of merges.
     int levels() const { return static_cast<int>(rows_.size()) - 1; }
-    /// Seconds of both sweeps, transfers included.
+    /// Returns the seconds of both sweeps, transfers included.
     double seconds(GpuLevels) const;
-    /// The cut that takes least.
+    /// Returns the cut with the shortest time.
     GpuLevels best() const;
 
   private:
     void add(LevelledShare const&);
     std::vector<LevelRow> rows_;
     std::vector<LevelledShare> shares_;
-    double views_ = 0;  // what bodies on the GPU need of the host and give back
+    /// Seconds in which bodies on the GPU receive inputs from the host and return results.
+    double views_ = 0;
 };
 
 }  // namespace catena::plan

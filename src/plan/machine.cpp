@@ -1,3 +1,4 @@
+// Implements the description of this machine: arrangements, identity and measurements.
 #include "plan/machine.hpp"
 
 #include <sys/stat.h>
@@ -12,7 +13,8 @@
 namespace catena::plan {
 namespace {
 
-/// Of the program that runs: another build is another file.
+/// Identifies the running executable by size and time, so that another build gets a cache file of
+/// its own.
 std::string build() {
     struct stat file{};
     if (::stat("/proc/self/exe", &file) != 0) return "unknown";
@@ -20,7 +22,7 @@ std::string build() {
            std::to_string(file.st_mtim.tv_nsec);
 }
 
-/// 2, 4, 8, ... and all; where so many are asked for, these alone.
+/// Returns 2, 4, 8, ... and `all`; returns `all` alone if the user asked for that number.
 std::vector<int> numbers_of_threads(int all, bool asked) {
     std::vector<int> numbers;
     for (int threads = 2; threads < all && !asked; threads *= 2) numbers.push_back(threads);
@@ -28,7 +30,8 @@ std::vector<int> numbers_of_threads(int all, bool asked) {
     return numbers;
 }
 
-/// Counted for a chain that is small enough to be made at once; a longer one takes in proportion.
+/// Returns the bytes on the GPU for chains of a family. They are counted for a chain of at most
+/// 16384 bodies and scaled in proportion to the length.
 double gpu_memory_of(Family const& family, std::int64_t bodies) {
     std::int64_t constexpr largest = 16384;
     std::int64_t const counted = std::min(bodies, largest);
@@ -40,6 +43,7 @@ double gpu_memory_of(Family const& family, std::int64_t bodies) {
     return bytes * static_cast<double>(bodies) / static_cast<double>(counted);
 }
 
+/// Calls `use` with the system of a sample chain of the family.
 template <class Use>
 auto with_sample(Family const& family, std::int64_t bodies, Arrangement const& arrangement,
                  Use const& use) {
@@ -49,7 +53,7 @@ auto with_sample(Family const& family, std::int64_t bodies, Arrangement const& a
     return use(system);
 }
 
-/// Of a rank's cores those that other programs leave to it just now.
+/// Returns how many of the rank's cores other programs leave free just now.
 int spare_cores(Communicator const& communicator) {
     int const ranks = communicator.ranks_on_host(), others = std::max(0, tasks_running() - ranks);
     return std::clamp((processor_threads() - others) / ranks, 1, cores_of_rank(communicator));
@@ -57,12 +61,14 @@ int spare_cores(Communicator const& communicator) {
 
 }  // namespace
 
+/// Collects arrangements and measuring functions for the cores of this rank.
 Machine this_machine(Communicator const& communicator, int threads) {
     int const cores = cores_of_rank(communicator);
     Machine m;
     m.threads = openmp_is_built() ? (threads > 0 ? threads : cores) : 1;
     if (m.threads > 1 && threads == 0)
-        m.spare = spare_cores(communicator);  // a number that was asked for is the user's word
+        // A number of threads that the user asked for is used as it is.
+        m.spare = spare_cores(communicator);
     m.no_gpu = cuda::why_not();
     m.alike.push_back({Backend::segments, 1});
     for (int const number : numbers_of_threads(m.threads, threads > 0))

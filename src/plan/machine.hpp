@@ -1,4 +1,4 @@
-// What can compute here, and how it is measured.
+// Describes what can compute on this machine and how it is measured.
 #pragma once
 
 #include <functional>
@@ -9,35 +9,43 @@
 
 namespace catena::plan {
 
+/// Arrangements of one machine with functions that measure them. Tests replace the functions.
 struct Machine {
-    /// By the same tree, so that all give the same bits: one core first, then threads, then the
-    /// GPU.
+    /// Arrangements that use the same tree and give the same bits: one core first, then threads,
+    /// then the GPU.
     std::vector<Arrangement> alike;
-    /// By another tree: never chosen unasked.
+    /// Arrangements that use another tree; never chosen unless the user names them.
     std::vector<Arrangement> others;
-    int threads = 1;  // of the host's share in cuda-levels
-    int spare = 0;  // of this rank's processors those that no other program wants just now; 0: not
-                    // looked at
-    std::string no_gpu;  // empty where there is one, else why not
-    /// Times are those of this machine, this many cores and this program alone.
+    /// Threads of the host's share in cuda-levels.
+    int threads = 1;
+    /// Number of this rank's cores that no other program uses just now; 0 if this was not examined.
+    int spare = 0;
+    /// Reason why there is no GPU; empty if there is one.
+    std::string no_gpu;
+    /// Identifies the machine, its number of cores and the build; measured times are valid for this
+    /// identity alone.
     std::string identity;
 
+    /// Returns the seconds of the phases of an evaluation.
     std::function<PhaseSeconds(Family const&, std::int64_t bodies, Arrangement const&)> measure;
-    /// Of a family in ground axes.
+    /// Returns the seconds of the parts of a constrained step; for families in ground axes only.
     std::function<DriftSeconds(Family const&, std::int64_t bodies, Arrangement const&)>
         measure_drifts;
+    /// Returns the seconds of the parts of a level of merges.
     std::function<LevelSeconds(Family const&, std::int64_t bodies, Place, int threads)>
         measure_levels;
-    /// Bytes that a GPU must have for chains of a family; those that are free.
+    /// Returns the bytes that a GPU needs for chains of a family.
     std::function<double(Family const&, std::int64_t bodies)> gpu_memory;
+    /// Returns the free bytes of the GPU.
     std::function<double()> free_gpu_memory;
-    /// Whether OpenMM can compute there.
+    /// True if OpenMM can compute on the GPU.
     std::function<bool()> openmm_on_gpu;
 };
 
-/// `threads`: 0: as many as this rank has cores, and fewer; else this number alone.
+/// Returns the machine of this rank. `threads` is the number of threads to consider; 0 means 2, 4,
+/// 8, ... up to the number of the rank's cores.
 Machine this_machine(Communicator const&, int threads);
-/// Takes the GPU from it, for a reason where it has one.
+/// Removes the GPU from the machine. The reason is kept if the machine had a GPU.
 void without_gpu(Machine&, std::string const& reason);
 
 }  // namespace catena::plan

@@ -1,3 +1,4 @@
+// Implements the timing of the phases of an evaluation.
 #include "plan/phases.hpp"
 
 #include <algorithm>
@@ -8,7 +9,8 @@
 namespace catena::plan {
 namespace {
 
-/// One evaluation phase by phase, each waited for, and then one as it is.
+/// Times one evaluation phase by phase, waiting for the end of each, and then one evaluation as a
+/// whole.
 PhaseSeconds time_once(ChainSystem& system) {
     PhaseSeconds spent{};
     double last = seconds_now();
@@ -54,7 +56,8 @@ Scene arranged(Scene scene, Arrangement const& arrangement) {
 
 PhaseSeconds measure_phases(ChainSystem& system, Effort const& effort) {
     Communicator const& communicator = system.communicator();
-    system.evaluate();  // velocities in absolute coordinates are projected once
+    // The first evaluation projects velocities in absolute coordinates once.
+    system.evaluate();
     PhaseSeconds least;
     least.fill(std::numeric_limits<double>::infinity());
     std::vector<double> evaluations;

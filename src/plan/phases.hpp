@@ -1,4 +1,4 @@
-// What an evaluation is made of, and how long each part takes on one arrangement of this machine.
+// Phases of an evaluation, and the measurement of each of them on one arrangement of this machine.
 #pragma once
 
 #include <array>
@@ -10,20 +10,21 @@
 
 namespace catena::plan {
 
-/// Where an evaluation runs.
+/// The backend and the number of threads that compute an evaluation.
 struct Arrangement {
     Backend backend = Backend::segments;
-    int threads = 1;  // of cuda and cuda-levels: what they leave to the host
+    /// Number of threads; for cuda and cuda-levels those of the work left to the host.
+    int threads = 1;
 
     bool operator==(Arrangement const&) const = default;
-    /// "openmp, 8 threads"
+    /// Returns for example "openmp, 8 threads".
     std::string name() const;
 };
 
-/// `evaluation` is the whole of it, which may be less than its phases: projected handles have
-/// matrices and biases in one sweep. What disturbs a machine makes it slower, never faster: these
-/// are the shortest of several; `typical_evaluation` is their median, which says what several
-/// threads really come to where others use the cores too.
+/// Phases that are timed. `evaluation` is a whole evaluation, which may take less than the sum of
+/// its phases: projected handles compute matrices and biases in one sweep. The times are the
+/// shortest of several, because disturbances only make a machine slower. `typical_evaluation` is
+/// the median, which shows what several threads achieve if other programs use the cores too.
 enum Phase : std::size_t {
     kinematics,
     matrix_sweep,
@@ -32,21 +33,25 @@ enum Phase : std::size_t {
     typical_evaluation,
     phases
 };
+/// Names of the phases in tables and JSON.
 inline constexpr std::array<char const*, phases> phase_names{
     "kinematics and loads", "matrix sweep", "bias sweep", "evaluation", "evaluation, median"};
+/// Seconds of each phase.
 using PhaseSeconds = std::array<double, phases>;
+/// Seconds of each phase as functions of the number of bodies.
 using PhaseCurve = Curve<phases>;
 
-/// How much a measurement may cost: evaluations, and seconds after which no more are begun (`least`
-/// are made in any case).
+/// Limits of a measurement: it makes at least `least` and at most `most` evaluations and starts no
+/// further one after `seconds`.
 struct Effort {
     int least = 3, most = 200;
     double seconds = 0.02;
 };
 
-/// The scene with the arrangement in the place of its own.
+/// Returns the scene with its backend and threads replaced by those of the arrangement.
 Scene arranged(Scene, Arrangement const&);
-/// Over several evaluations of the present state; forces from outside do not count. Collective.
+/// Measures the phases of several evaluations of the present state, without external forces such as
+/// OpenMM's. Collective.
 PhaseSeconds measure_phases(ChainSystem&, Effort const& = {});
 
 }  // namespace catena::plan

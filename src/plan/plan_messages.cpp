@@ -1,3 +1,4 @@
+// Implements the part of `catena plan` on messages between ranks.
 #include "plan/plan_messages.hpp"
 
 #include <fmt/format.h>
@@ -13,22 +14,26 @@
 namespace catena::command {
 namespace {
 
+/// Number of timed repetitions of a step's messages.
 constexpr int measurements = 21;
 
+/// Converts the counts of messages to JSON.
 Json json_of(Traffic const& t) {
     Json json;
     t.for_each([&](char const* name, std::int64_t count) { json[name] = count; });
     return json;
 }
 
+/// Converts a link of the network to JSON: latency in s, inverse bandwidth in s per byte.
 Json json_of(Link const& link) {
     return {{"latency", link.latency}, {"seconds_a_byte", link.seconds_a_byte}};
 }
 
-/// Sums over the groups: without sweeps of drifts (corrections of tips), and what each of these
-/// adds.
+/// Messages of a step, summed over the groups: those without projection sweeps of drifts (or
+/// corrections of jointed tips), and those that each such sweep adds.
 struct Messages {
     Traffic fixed, each;
+    /// Returns the messages of a step with this number of sweeps.
     Traffic with(int sweeps) const {
         Traffic sum = fixed;
         for (int i = 0; i < sweeps; ++i) sum += each;
@@ -36,7 +41,8 @@ struct Messages {
     }
 };
 
-/// As a rank in the middle sees it that leads a host, were there so many.
+/// Returns how a group would be cut on way.ranks ranks, as seen by a rank in the middle that leads
+/// its host.
 Cut cut_on(ChainGroup const& group, bool pairwise, GatherWay const& way) {
     dca::Partition const& here = group.partition;
     std::vector<std::int64_t> lengths;
@@ -51,12 +57,13 @@ Cut cut_on(ChainGroup const& group, bool pairwise, GatherWay const& way) {
     return cut;
 }
 
+/// Messages of a step of all groups of a system.
 class Groups {
   public:
     explicit Groups(ChainSystem const& system) : system_(system) {
         for (auto const& group : system.groups()) of_step_.emplace_back(*group, system.scene());
     }
-    /// `cut`: of a group, as the rank that is asked for sees it.
+    /// Returns the messages for a cut. `cut` maps a group to its cut as seen by one rank.
     template <class CutOf>
         requires std::invocable<CutOf, ChainGroup const&>
     Messages messages(CutOf const& cut) const {
@@ -69,12 +76,12 @@ class Groups {
         }
         return sum;
     }
-    /// As a rank in the middle of so many sees them.
+    /// Returns the messages as seen by a rank in the middle of way.ranks ranks.
     Messages messages(GatherWay const& way) const {
         bool const pairwise = system_.scene().solver.pairwise();
         return messages([&](ChainGroup const& group) { return cut_on(group, pairwise, way); });
     }
-    /// With the usual sweeps.
+    /// Returns the messages of a step with the usual number of sweeps.
     Traffic traffic(GatherWay const& way) const {
         return messages(way).with(usual_sweeps(system_.scene().dynamics));
     }
@@ -84,6 +91,7 @@ class Groups {
     std::vector<StepMessages> of_step_;
 };
 
+/// Describes the network: the file, and the link between hosts if it was given on the command line.
 std::string network_text(PlanRequest const& request, Network const& network) {
     std::string text = request.network;
     if (!request.latency) return text;
@@ -96,6 +104,7 @@ std::string network_text(PlanRequest const& request, Network const& network) {
                        text.empty() ? ", and gathers as the model says: nothing was measured" : "");
 }
 
+/// Returns the predicted seconds of these messages.
 double seconds_of(Traffic const& t, Network const& network, GatherWay const& way,
                   std::int64_t hosts) {
     double seconds = 0;
@@ -108,8 +117,8 @@ double seconds_of(Traffic const& t, Network const& network, GatherWay const& way
     return seconds;
 }
 
-/// The model's word on the ranks at hand beside what they take: the same messages, nothing computed
-/// meanwhile.
+/// Adds the measured time of a step's messages on the present ranks, compared with the prediction
+/// of the network model. Nothing is computed between the messages.
 void add_measured(Text& text, Json& json, ChainSystem const& system, Groups const& groups,
                   Network const& network) {
     Communicator const& communicator = system.communicator();
@@ -126,6 +135,7 @@ void add_measured(Text& text, Json& json, ChainSystem const& system, Groups cons
         {"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
 }
 
+/// Returns the messages of a step on 1, 2, 4, ... and request.ranks ranks.
 std::vector<MessagesOnRanks> messages_on(Groups const& groups, Network const& network,
                                          PlanRequest const& request) {
     std::vector<MessagesOnRanks> rows;
@@ -138,6 +148,7 @@ std::vector<MessagesOnRanks> messages_on(Groups const& groups, Network const& ne
     return rows;
 }
 
+/// Adds the numbers and sizes of messages on the present ranks.
 void add_counts(Text& text, Json& json, ChainSystem const& system, Groups const& groups) {
     GatherWay const& way = system.communicator().gather_way();
     Messages const here =

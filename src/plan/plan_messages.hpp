@@ -1,5 +1,5 @@
-// What a step costs in messages: counts and sizes on these ranks, and with computing its time on as
-// many as one likes.
+// Reports the messages of a step: numbers and sizes on the ranks at hand, and predicted times of
+// steps on any number of ranks.
 #pragma once
 
 #include "console/requests.hpp"
@@ -8,8 +8,9 @@
 
 namespace catena::command {
 
-/// Adds "messages" and, with --ranks, "network"; nothing for a scene without dynamics. The
-/// predictions are rank 0's alone.
+/// Adds "messages" and, with --ranks, "network" to the text and JSON. Adds nothing for a scene
+/// without dynamics; throws InputError for such a scene with --ranks. `predictions` are used on
+/// rank 0 alone. Collective.
 void add_messages(Text&, Json&, ChainSystem const&, PlanRequest const&, Predictions const&);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the reading of the network model from the JSON of `catena bench network`.
 #include "plan/plan_network.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,8 @@
 namespace catena::command {
 namespace {
 
-/// Seconds or bytes: finite, and at least zero.
+/// Returns the number at `key`, in seconds or bytes. Throws InputError unless it is finite and at
+/// least zero.
 double quantity(Json const& json, char const* key) {
     double const value = json.at(key).get<double>();
     if (!std::isfinite(value) || value < 0)
@@ -20,6 +22,7 @@ double quantity(Json const& json, char const* key) {
     return value;
 }
 
+/// Reads a link: `latency` in s with `bandwidth` in bytes per s or `seconds_a_byte`.
 Link link_of(Json const& json) {
     if (!json.contains("bandwidth"))
         return {quantity(json, "latency"), quantity(json, "seconds_a_byte")};
@@ -28,6 +31,7 @@ Link link_of(Json const& json) {
     return {quantity(json, "latency"), 1 / bandwidth};
 }
 
+/// Reads the whole file. A network of one host may have one link only, which then holds for all.
 Network read_network(std::string const& file) {
     Network network;
     try {
@@ -50,7 +54,8 @@ Network network_of(PlanRequest const& request) {
     Network network;
     if (!request.network.empty()) network = read_network(request.network);
     if (request.latency) network.far = Link{*request.latency, *request.seconds_a_byte};
-    if (!network.near) network.near = network.far;  // a file of one rank measured no link at all
+    // A file that was written on one rank contains no link at all.
+    if (!network.near) network.near = network.far;
     if (request.ranks > 1 && !network.near)
         throw InputError("measured on one rank", "--network " + request.network,
                          "add --latency and --bandwidth (1.5us, 12.5GB/s), or measure on two ranks "

@@ -1,4 +1,4 @@
-// The network that `catena plan --ranks` predicts with.
+// Reads the network model that `catena plan --ranks` predicts with.
 #pragma once
 
 #include "console/requests.hpp"
@@ -6,9 +6,9 @@
 
 namespace catena::command {
 
-/// What --network FILE holds, with --latency and --bandwidth in the place of its link between
-/// hosts. Without a file they are every link's, and gathers take what the model says. InputError
-/// where --ranks or --hosts need a link that is not there, and for values that no link has.
+/// Returns the network of --network FILE; --latency and --bandwidth replace its link between hosts.
+/// Without a file these values hold for every link and for gathers. Throws InputError if a link is
+/// missing that --ranks or --hosts need, and for impossible values.
 Network network_of(PlanRequest const&);
 
 }  // namespace catena::command

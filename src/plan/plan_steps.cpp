@@ -1,3 +1,4 @@
+// Implements the prediction of step times on many ranks.
 #include "plan/plan_steps.hpp"
 
 #include <fmt/format.h>
@@ -12,10 +13,10 @@
 namespace catena::command {
 namespace {
 
-/// Of a drift at 10 fs (src/integrate/README.md).
+/// Projection sweeps of a drift at a time step of 10 fs (src/integrate/README.md).
 constexpr int usual_drift_sweeps = 4;
 
-/// What the numbers stand for, and what is not in them.
+/// Returns notes on what the predicted numbers mean and what they leave out.
 std::vector<std::string> notes_on(Scene const& scene,
                                   std::vector<plan::StepPrediction> const& steps) {
     DynamicsSpec const& d = scene.dynamics;
@@ -59,7 +60,8 @@ std::vector<std::string> notes_on(Scene const& scene,
     return notes;
 }
 
-/// "4 evaluations"; "1 drift with its matrix sweep and kick, 4 bias sweeps that close joints"
+/// Describes the work of a step, e.g. "1 drift with its matrix sweep and kick, 4 bias sweeps that
+/// close joints".
 std::string text_of(plan::StepWork const& work, Scene const& scene) {
     std::vector<std::string> parts;
     auto const add = [&](int times, char const* one, char const* many) {
@@ -79,6 +81,7 @@ std::string text_of(plan::StepWork const& work, Scene const& scene) {
                      fmt::format("; {} corrections of jointed tips", usual_sweeps(scene.dynamics))
                : text;
 }
+/// Converts the work of a step to JSON.
 Json json_of(plan::StepWork const& work) {
     return {{"evaluations", work.evaluations},
             {"kinematics", work.kinematics},
@@ -89,8 +92,10 @@ Json json_of(plan::StepWork const& work) {
             {"noises", work.noises}};
 }
 
+/// Formats a table cell; "-" for an unknown time.
 std::string cell(double seconds) { return std::isfinite(seconds) ? duration_text(seconds) : "-"; }
 
+/// Returns the JSON of one row: computing, messages, and the speed-up over one rank.
 Json row_of(MessagesOnRanks const& messages, plan::StepPrediction const& computing,
             double one_rank) {
     double const step = computing.seconds + messages.seconds, speed_up = one_rank / step;

@@ -1,3 +1,4 @@
+// Implements predictions by interpolation between measured sizes.
 #include "plan/planner.hpp"
 
 #include <algorithm>
@@ -7,15 +8,16 @@
 namespace catena::plan {
 namespace {
 
-/// Sizes that are measured: `first`, and then each `step` times the one before.
+/// Sizes at which chains are measured: `first`, and then each `step` times the previous one.
 struct Sizes {
     std::int64_t first, step;
-    /// The two that are nearest to `bodies` from below and above, or the two largest.
+    /// Returns the measured sizes next to `bodies` from below and above, or the two largest.
     std::array<std::int64_t, 2> around(std::int64_t bodies, std::int64_t largest) const {
         std::int64_t low = first;
         while (low * step < bodies && low * step * step <= largest) low *= step;
         return {low, std::min(low * step, std::max(low, largest))};
     }
+    /// Returns the sizes up to the first one that reaches `bodies`, none above `largest`.
     std::vector<std::int64_t> up_to(std::int64_t bodies, std::int64_t largest) const {
         std::vector<std::int64_t> all;
         for (std::int64_t n = first; n <= largest; n *= step) {
@@ -25,9 +27,10 @@ struct Sizes {
         return all;
     }
 };
+/// Sizes for whole evaluations and for levels of the pairwise tree.
 constexpr Sizes of_evaluations{16, 4}, of_levels{2, 8};
 
-/// The curve, with points at these numbers of bodies.
+/// Measures the missing points of a curve at these numbers of bodies and returns the curve.
 template <class Points, class Numbers, class Measure>
 Points const& measured_at(Points& curve, Numbers const& numbers, Measure const& measure) {
     for (std::int64_t const n : numbers)
@@ -69,7 +72,8 @@ Prediction Planner::predict(std::vector<Share> const& shares, Arrangement const&
         }
     } catch (std::exception const& error) {
         if (!uses_gpu(arrangement.backend)) throw;
-        found.unusable = error.what();  // no kernels for this GPU, no memory left on it
+        // For example, the program has no kernels for this GPU, or the GPU has no memory left.
+        found.unusable = error.what();
     }
     return found;
 }
@@ -106,7 +110,7 @@ LevelPlan Planner::plan_levels(std::vector<Share> const& shares, Place gpu) {
 
 Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& levels,
                             GpuLevels cut) {
-    // What is not the tree's is the host's, with its threads.
+    // The host computes everything outside the tree with its threads.
     Arrangement const host =
         machine_.threads > 1 ? Arrangement{Backend::openmp, machine_.threads} : Arrangement{};
     Prediction found = predict(shares, host);
@@ -133,8 +137,8 @@ void Planner::measure_everything() {
 }
 
 Prediction const& quickest(std::vector<Prediction> const& predictions, double beside) {
-    double constexpr worth_it =
-        0.9;  // fewer threads wait for each other, and more are left to others
+    // A switch must save a tenth: fewer threads wait less and leave more cores to other programs.
+    double constexpr worth_it = 0.9;
     Prediction const* best = nullptr;
     for (Prediction const& p : predictions) {
         if (!p.alike || !p.unusable.empty()) continue;

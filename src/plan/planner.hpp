@@ -1,5 +1,5 @@
-// Predicts how long an evaluation of a scene takes on every arrangement of a machine, from what was
-// measured there and, where that is not enough, from what it measures now.
+// Predicts the time of a scene's evaluation on every arrangement of a machine. It uses earlier
+// measurements and measures what they lack.
 #pragma once
 
 #include <optional>
@@ -11,40 +11,47 @@
 
 namespace catena::plan {
 
+/// Predicted time of one arrangement.
 struct Prediction {
     Arrangement arrangement;
-    PhaseSeconds
-        seconds{};  // of all groups; exchange between ranks and forces from outside are not in it
-    bool alike = true;     // the same bits as the others that are
-    std::string unusable;  // why there is none; empty where there is
+    /// Seconds of all groups, without exchange between ranks and external forces.
+    PhaseSeconds seconds{};
+    /// True if the arrangement gives the same bits as the others with this flag.
+    bool alike = true;
+    /// Reason why the arrangement cannot be used; empty if it can.
+    std::string unusable;
 };
 
+/// Predicts times and keeps the measurements that it made for this.
 class Planner {
   public:
-    /// Measures chains of at most `largest` bodies, and of four times as many beads, which take
-    /// that much less memory each, or bodies on a GPU, which few do not fill.
+    /// Measures sample chains of at most `largest` bodies. The limit is four times as many for
+    /// beads, which need that much less memory each, and for GPUs, which few bodies do not fill.
     Planner(Machine machine, Calibration known, std::int64_t largest)
         : machine_(std::move(machine)),
           calibration_(std::move(known)),
           known_(calibration_.points()),
           largest_(largest) {}
 
+    /// Predicts one arrangement.
     Prediction predict(std::vector<Share> const&, Arrangement const&);
-    /// Of the largest rank's chains in ground axes. Throws where the arrangement cannot be used.
+    /// Predicts the parts of a constrained step of the largest rank's chains in ground axes. Throws
+    /// an exception if the arrangement cannot be used.
     DriftSeconds predict_drifts(std::vector<Share> const&, Arrangement const&);
-    /// Of those that give the same bits, and of the others.
+    /// Predicts every arrangement of the machine: first those that give the same bits, then the
+    /// others.
     std::vector<Prediction> predict(std::vector<Share> const&);
-    /// Precondition: there is a GPU, or `gpu` is the host's part too (to see what the host would
-    /// gain by itself: nothing).
+    /// Plans the levels on the GPU. Precondition: the machine has a GPU, or `gpu` is Place::host,
+    /// which shows that cuts of the host alone gain nothing.
     LevelPlan plan_levels(std::vector<Share> const&, Place gpu = Place::gpu);
-    /// Of cuda-levels, cut so.
+    /// Predicts cuda-levels with this cut.
     Prediction predict(std::vector<Share> const&, LevelPlan const&, GpuLevels);
     /// Measures every family at every size.
     void measure_everything();
 
     Machine const& machine() const { return machine_; }
     Calibration const& calibration() const { return calibration_; }
-    /// Whether something was measured that had not been known.
+    /// True if the planner has measured something that the initial calibration lacked.
     bool learned() const { return calibration_.points() > known_; }
 
   private:
@@ -61,9 +68,10 @@ class Planner {
     std::int64_t largest_;
 };
 
-/// The quickest of those that give the same bits; an earlier one where a later one gains less than
-/// a tenth of the evaluation and `beside`, the seconds of a step that are the same on all of them:
-/// so little is lost in a machine's noise. Precondition: one of them can be used.
+/// Returns the quickest usable arrangement among those that give the same bits. An earlier one is
+/// kept unless a later one saves a tenth of the evaluation plus `beside`. `beside` is the seconds
+/// of a step that all arrangements share. Noise of the machine then costs little. Precondition: one
+/// arrangement can be used.
 Prediction const& quickest(std::vector<Prediction> const&, double beside = 0);
 
 }  // namespace catena::plan

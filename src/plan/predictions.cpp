@@ -1,3 +1,4 @@
+// Implements the predictions of `catena plan` and their tables.
 #include "plan/predictions.hpp"
 
 #include <fmt/format.h>
@@ -8,14 +9,17 @@
 namespace catena::command {
 namespace {
 
+/// Formats a table cell; "-" for an unknown time.
 std::string cell(double seconds) { return std::isfinite(seconds) ? duration_text(seconds) : "-"; }
 
+/// Converts times to JSON, in seconds by name of the phase.
 Json json_of(plan::PhaseSeconds const& seconds) {
     Json json = Json::object();
     for (std::size_t p = 0; p < plan::phases; ++p) json[plan::phase_names[p]] = seconds[p];
     return json;
 }
 
+/// Adds the table of levels of the pairwise tree.
 void add_levels(Text& text, Json& json, plan::LevelPlan const& levels) {
     GpuLevels const best = levels.best();
     text.heading(fmt::format(

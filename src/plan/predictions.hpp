@@ -1,4 +1,4 @@
-// Predicted times of a scene's evaluation, as `catena plan` shows them.
+// Predicted times of a scene's evaluation, as `catena plan` prints them.
 #pragma once
 
 #include "console/outcome.hpp"
@@ -7,29 +7,34 @@
 
 namespace catena::command {
 
-/// Chains of so many bodies (Planner) stand for all larger ones: caches are full by then, threads
-/// and GPUs busy.
+/// Largest sample chain in bodies (Planner) that represents all longer ones: caches are full and
+/// threads and GPUs busy at this size.
 inline constexpr std::int64_t largest_sample = 262144;
 
+/// The predictions for one scene on this rank's machine.
 struct Predictions {
     plan::Choice choice;
     std::vector<plan::Prediction> all;
-    std::optional<plan::LevelPlan> levels;  // where there is a GPU
+    /// Cuts of the pairwise tree; empty if there is no GPU.
+    std::optional<plan::LevelPlan> levels;
     std::string no_gpu;
-    double gpu_memory = 0;                    // bytes that a rank's GPU would need
-    plan::StepWork work;                      // of a step, where steps are asked for
-    std::vector<plan::StepPrediction> steps;  // on one rank, two, four, ...
+    /// Bytes that a rank's GPU would need.
+    double gpu_memory = 0;
+    /// Work of a step, if steps are predicted.
+    plan::StepWork work;
+    /// Steps on 1, 2, 4, ... ranks.
+    std::vector<plan::StepPrediction> steps;
     std::string machine;
 };
-/// What this rank's planner says of the scene, and what it chooses.
+/// Predicts the scene on every arrangement of this rank's planner and chooses one.
 Predictions predict(plan::Planner&, Scene const&, Axes, int ranks);
 
-/// The arrangement's prediction; nullptr: none was made.
+/// Returns the prediction of an arrangement; nullptr if there is none.
 plan::Prediction const* prediction_of(Predictions const&, plan::Arrangement const&);
 
-/// Phase by phase on every arrangement, and level by level where the tree may be cut.
+/// Adds a table of all phases on every arrangement and, if there is a GPU, one of all levels.
 void add_predictions(Text&, Json&, Predictions const&);
-/// Beside what the chosen arrangement took.
+/// Adds the predicted and the measured times of the chosen arrangement.
 void add_measured(Text&, Json&, Predictions const&, plan::PhaseSeconds const& measured);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the measurement of computations that a scene does not need.
 #include "plan/savings.hpp"
 
 #include <fmt/format.h>
@@ -15,9 +16,10 @@ namespace {
 
 using plan::Family;
 
-/// Long enough for caches and short enough to wait for.
+/// Largest number of bodies that is timed: long enough to fill caches, short enough to wait for.
 constexpr std::int64_t largest_measured = 4096;
 
+/// Returns the axes in which the system's bodies are computed.
 Axes axes_of(ChainSystem const& system) {
     bool const joint =
         std::any_of(system.groups().begin(), system.groups().end(), [](auto const& group) {
@@ -26,15 +28,15 @@ Axes axes_of(ChainSystem const& system) {
     return joint ? Axes::joint : Axes::world;
 }
 
-/// Chains of a family on which nothing acts but gravity.
+/// Returns a sample chain on which nothing acts but gravity.
 Scene bare(Family const& family, std::int64_t bodies) {
     Scene scene = plan::sample(family, bodies);
     scene.chains[0].bodies.torque.clear();
     scene.chains[0].bodies.wrench.clear();
     return scene;
 }
-/// The least of several, on one core, of chains without and with something; they turn about, so
-/// that what disturbs one disturbs both.
+/// Returns the additional seconds of `with` over `without`, least of several on one core. The two
+/// are timed in turns, so that a disturbance affects both.
 double seconds_more(Scene const& without, Axes axes_without, Scene const& with, Axes axes_with) {
     auto const alone = serial_communicator();
     Scene const scenes[] = {plan::arranged(without, {}), plan::arranged(with, {})};
@@ -47,8 +49,8 @@ double seconds_more(Scene const& without, Axes axes_without, Scene const& with, 
     return std::max(0.0, more - least);
 }
 
-/// To bring the inboard one of two segments into the other one's axes, with six directions a
-/// handle, at every merge.
+/// Returns the seconds of rotating the inboard one of two segments into the axes of the other at
+/// every merge, with six directions per handle.
 double seconds_of_turning(std::int64_t merges) {
     Mat3 const rotation = to_matrix(normalized(Quat{1, 2, 3, 4}));
     using Block = Matrix<double, 6, 6>;
@@ -64,13 +66,13 @@ double seconds_of_turning(std::int64_t merges) {
             z12 = z12 * both;
         }
         double const spent = seconds_now() - start;
-        if (z22(0, 0) == z22(0, 0) && z12(0, 0) == z12(0, 0))
-            least = std::min(least, spent);  // so that they are computed
+        // The comparisons keep the compiler from removing the products.
+        if (z22(0, 0) == z22(0, 0) && z12(0, 0) == z12(0, 0)) least = std::min(least, spent);
     }
     return least;
 }
 
-/// What a change of a family's chains takes.
+/// Returns a function that measures the additional seconds of a change to the chains of a family.
 template <class Change>
 std::function<double(std::int64_t)> change_of(Family const& family, Change const& change) {
     return [family, change](std::int64_t bodies) {
@@ -80,7 +82,7 @@ std::function<double(std::int64_t)> change_of(Family const& family, Change const
         return seconds_more(without, family.axes, with, family.axes);
     };
 }
-/// What it takes that bodies on spherical joints follow along the chain.
+/// Returns a function that measures the kinematics of bodies along a chain on spherical joints.
 std::function<double(std::int64_t)> following(Family const& family) {
     return [family](std::int64_t bodies) {
         Family const joints{scene::RandomJoint::spherical, false, Axes::joint, Handles::projected};
@@ -88,6 +90,7 @@ std::function<double(std::int64_t)> following(Family const& family) {
     };
 }
 
+/// Collects the computations that are left out.
 class List {
   public:
     explicit List(ForcesOnJoints const& found) : found_(found) {}
@@ -95,12 +98,14 @@ class List {
              std::function<double(std::int64_t)> const& takes = {}) {
         lines_.push_back({text, share, takes});
     }
+    /// Adds what chains of beads do without.
     void add_beads(Family const& family, std::size_t share) {
         add("kinematics of beads: their positions are the coordinates");
         add("rotations and inertias of beads: a bead is a point, both its handles are the bead "
             "itself",
             share, following(family));
     }
+    /// Adds what chains of rigid bodies do without.
     void add_bodies(ChainGroup const& group, Family const& family, std::size_t share) {
         if (group.axes == Axes::joint) {
             if (!group.has_tips() && !group.carried_in_scene && found_.drag == 0) {
@@ -137,6 +142,7 @@ class List {
     std::vector<Savings> const& lines() const { return lines_; }
 
   private:
+    /// Adds loads that the scene does not have.
     void add_loads(Family const& family, std::size_t share) {
         auto const on_all = [&](auto const& change) {
             return family.linked ? std::function<double(std::int64_t)>()
@@ -160,7 +166,7 @@ class List {
     std::vector<Savings> lines_;
 };
 
-/// The share that a group is.
+/// Returns the index of the share that describes a group.
 std::size_t share_of(std::vector<plan::Share> const& shares, ChainGroup const& group) {
     auto const same = [&](plan::Share const& share) {
         bool const links = share.family.joint == scene::RandomJoint::link;
@@ -170,6 +176,7 @@ std::size_t share_of(std::vector<plan::Share> const& shares, ChainGroup const& g
                                     shares.begin());
 }
 
+/// Returns the seconds of an evaluation of a bare sample chain.
 double seconds_without(Family const& family, std::int64_t bodies) {
     auto const alone = serial_communicator();
     Scene const scene = plan::arranged(bare(family, bodies), {});
@@ -224,7 +231,8 @@ void add_savings(Text& text, Json& json, Scene const& scene, ChainSystem const& 
             std::int64_t const bodies = std::min(share.bodies, largest_measured);
             double const saved = each.takes(bodies),
                          of_evaluation = saved / seconds_without(share.family, bodies);
-            if (!(saved > 0)) {  // a time is never below zero
+            // A measured time cannot be negative.
+            if (!(saved > 0)) {
                 table.add({each.text, "not resolved", "-"});
                 json["savings"].push_back(
                     {{"left_out", each.text}, {"seconds", nullptr}, {"of_an_evaluation", nullptr}});

@@ -1,3 +1,4 @@
+// Estimates the memory of a scene from the sizes of the arrays on one rank.
 #include <algorithm>
 
 #include "dca/articulated.hpp"
@@ -9,11 +10,14 @@
 namespace catena::command {
 namespace {
 
+/// Bytes of the solver's data per segment and per joint.
 struct SolverSizes {
     double segment, joint;
-    double kept = 0, all_kept = 0;  // of a run among those that go side by side: its joints between
-                                    // parts, and its bodies too
+    /// Bytes of a run that is computed side by side with others: joints between its parts, and its
+    /// bodies too.
+    double kept = 0, all_kept = 0;
 };
+/// Returns the sizes for handles with K directions.
 template <int K>
 SolverSizes sizes() {
     return {
@@ -22,9 +26,9 @@ SolverSizes sizes() {
         static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)),
         dca::kept_of_run<K>(false) * 8.0, dca::kept_of_run<K>(true) * 8.0};
 }
-/// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a
-/// merge, what is kept and the merge's joint, its bodies' constants. 0 where none do. `runs`: about
-/// how many a rank has.
+/// Returns the bytes of a run that is computed side by side with others (dca/simd/runs.hpp): its
+/// own lanes and those of a merge, kept bodies and the joint of the merge, and constants of its
+/// bodies. Returns 0 if no runs are computed so. `runs` is the approximate number of runs per rank.
 double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes sizes, int directions,
                     double runs) {
     SimdLevel const level = scene.solver.simd.value_or(best_simd_level());
@@ -53,6 +57,7 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes size
     return places + (all ? sizes.all_kept : sizes.kept) + merge +
            static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
+/// Returns the sizes for handles with this number of directions.
 SolverSizes sizes_for(int directions, Handles handles) {
     if (handles == Handles::articulated)
         return {static_cast<double>(sizeof(dca::ArticulatedMatrix<double, 6>) +
@@ -76,21 +81,22 @@ SolverSizes sizes_for(int directions, Handles handles) {
     }
 }
 
-// Doubles a body in the model's and the dynamics' arrays (chain/chain_group.hpp and integrate/),
-// apart from those of the directions.
+// Doubles per body in the arrays of the model and the dynamics (chain/chain_group.hpp and
+// integrate/), apart from those of the directions.
 constexpr double bead_numbers = 3 + 7 * 3, body_numbers = 39 + 3 * 4 + 16 * 3;
-constexpr double embedded_numbers = 6 * 7;  // rates of stages
-constexpr double joint_numbers =
-    13 + 2 * 7 + 2 * 3;  // the scan; where a step starts and its sum; rates
-constexpr double noise_numbers =
-    2 * 3;  // a thermostat's forces in joint coordinates; what is at rest
-constexpr double yielding_numbers =
-    6 + 3;  // implicit joints' compliance; in joint coordinates what it does to rates
-constexpr double rotor_numbers =
-    6 + 2 * 3 + 4;  // in absolute ones rates, torques and flights of rotors (JointRotors)
+/// Rates at the stages of an embedded Runge-Kutta method.
+constexpr double embedded_numbers = 6 * 7;
+/// The scan along the chain, the start of a step and its sum, and rates.
+constexpr double joint_numbers = 13 + 2 * 7 + 2 * 3;
+/// A thermostat's forces in joint coordinates, and what is at rest.
+constexpr double noise_numbers = 2 * 3;
+/// Compliance of implicit joints and, in joint coordinates, its effect on the rates.
+constexpr double yielding_numbers = 6 + 3;
+/// Rates, torques and free rotation of rotors in absolute coordinates (JointRotors).
+constexpr double rotor_numbers = 6 + 2 * 3 + 4;
 
-/// What an integrator keeps of a body beside the model and the state. `stands`: springs stand in
-/// the matrices of the body's group.
+/// Returns the doubles per body that an integrator keeps in addition to the model and the state.
+/// `stands` is true if springs enter the matrices of the body's group.
 double numbers_of(DynamicsSpec const& dynamics, bool stands) {
     if (!uses_joint_coordinates(dynamics.integrator)) return stands ? rotor_numbers : 0;
     double numbers = joint_numbers + (stands ? yielding_numbers : 0);
@@ -99,6 +105,7 @@ double numbers_of(DynamicsSpec const& dynamics, bool stands) {
     return numbers;
 }
 
+/// Returns the bytes of a chain's scene data, which every rank holds.
 double scene_bytes(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
     double const bead = sizeof(double) * 8 + sizeof(std::string),

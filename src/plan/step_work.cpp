@@ -1,3 +1,4 @@
+// Implements the work of a step and its predicted time on many ranks.
 #include "plan/step_work.hpp"
 
 #include <cmath>
@@ -9,7 +10,7 @@
 namespace catena::plan {
 namespace {
 
-/// With as many threads as `solver.threads: 0` stands for.
+/// Returns the arrangement with the number of threads that `solver.threads: 0` means.
 Arrangement with_threads(Arrangement arrangement, Machine const& machine) {
     bool const alone =
         arrangement.backend == Backend::serial || arrangement.backend == Backend::segments;
@@ -17,6 +18,7 @@ Arrangement with_threads(Arrangement arrangement, Machine const& machine) {
     return arrangement;
 }
 
+/// Returns the seconds of the work with the chosen arrangement; throws if it cannot be used.
 double seconds_on(Planner& planner, std::vector<Share> const& shares, StepWork const& work,
                   Choice const& choice) {
     Machine const& machine = planner.machine();
@@ -39,7 +41,8 @@ double seconds_on(Planner& planner, std::vector<Share> const& shares, StepWork c
 double StepWork::seconds(PhaseSeconds const& of) const {
     double sum = 0;
     auto const add = [&](int times, Phase phase) {
-        if (times > 0) sum += times * of[phase];  // what is not done may be unknown
+        // Parts that the step does not contain may have unknown times.
+        if (times > 0) sum += times * of[phase];
     };
     add(evaluations, evaluation);
     add(kinematics, Phase::kinematics);
@@ -82,7 +85,8 @@ StepPrediction predict_step(Planner& planner, Scene const& scene, Axes axes, Ste
         step.seconds = seconds_on(planner, shares, work, choice);
     } catch (std::exception const& error) {
         if (!uses_gpu(choice.arrangement.backend)) throw;
-        step.unusable = error.what();  // as Planner::predict
+        // Planner::predict() accepts the same failures.
+        step.unusable = error.what();
     }
     return step;
 }

@@ -1,36 +1,48 @@
-// What a rank computes in a step, made up of the parts that a machine is measured by.
+// The work of one step in units of the parts that a machine is measured by.
 #pragma once
 
 #include "plan/choice.hpp"
 
 namespace catena::plan {
 
-/// How often a step does each of them.
+/// Number of times that a step does each part.
 struct StepWork {
-    // In joint coordinates, loops that move the state not among them.
-    int evaluations = 0;  // as one, whose matrices are not kept; the others come beside these
+    // The first group is for joint coordinates; loops that update the state are not counted.
+    /// Whole evaluations, whose matrices are not kept; the following parts are done in addition to
+    /// them.
+    int evaluations = 0;
     int kinematics = 0, matrix_sweeps = 0, bias_sweeps = 0;
-    // In absolute ones.
+    // The second group is for absolute coordinates.
     int drifts = 0, closings = 0, noises = 0;
 
+    /// True if the step is in absolute coordinates.
     bool absolute() const { return drifts > 0; }
+    /// Seconds of the work in joint coordinates.
     double seconds(PhaseSeconds const&) const;
+    /// Seconds of the work in absolute coordinates.
     double seconds(DriftSeconds const&) const;
     bool operator==(StepWork const&) const = default;
 };
-/// `sweeps`: of each drift, or corrections of jointed tips. Of an adaptive step: of one inner step.
-/// Drifts are taken in one part. OpenMM's forces, Fixman's and what refinements look for are not
-/// among it. Precondition: the scene has dynamics.
+/// Returns the work of a step. `sweeps` is the number of projection sweeps per drift, or of
+/// corrections of jointed tips. For an adaptive integrator it is the work of one inner step. Drifts
+/// are counted in one part. Forces of OpenMM and of the Fixman potential and the residuals of
+/// refinements are not included. Precondition: the scene has dynamics.
 StepWork work_of_step(Scene const&, int sweeps);
 
+/// Predicted computing time of a step on a number of ranks.
 struct StepPrediction {
     int ranks = 1;
-    std::int64_t bodies = 0;  // of the largest shares
-    Arrangement arrangement;  // what `auto` chooses for them, or what the scene asks for
-    double seconds = 0;       // not a number: its parts are not measured one by one, or `unusable`
-    std::string unusable;     // why the arrangement cannot be used; empty where it can
+    /// Number of bodies of the largest shares.
+    std::int64_t bodies = 0;
+    /// Arrangement that `auto` chooses on these ranks, or that the scene names.
+    Arrangement arrangement;
+    /// NaN if the parts are not measured separately or the arrangement is `unusable`.
+    double seconds = 0;
+    /// Reason why the arrangement cannot be used; empty if it can.
+    std::string unusable;
 };
-/// Of the largest rank, were every one like that of the planner's machine; no messages.
+/// Predicts the largest rank's computing time of a step if every rank were like the planner's
+/// machine. Messages are not included.
 StepPrediction predict_step(Planner&, Scene const&, Axes, StepWork const&, int ranks);
 
 }  // namespace catena::plan
