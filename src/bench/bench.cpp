@@ -1,3 +1,4 @@
+// Implements `bench solve`, `bench evaluation`, `bench list` and the choice of a benchmark.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -15,6 +16,7 @@
 namespace catena::command {
 namespace {
 
+/// Lists the benchmarks.
 Outcome list() {
     Outcome outcome;
     outcome.text =
@@ -51,20 +53,22 @@ Outcome list() {
     return outcome;
 }
 
-/// The oracle's memory is many times the solver's.
+/// Largest number of bodies for the oracle, whose memory is many times the solver's.
 constexpr std::int64_t most_bodies_of_oracle = 1000000;
 
-/// Of the articulated-body oracle in double, on rank 0: seconds a body.
+/// Returns the seconds of the articulated-body oracle in double precision on rank 0.
 Spread time_oracle(Scene const& scene, int repeat) {
     std::vector<double> seconds;
     for (int i = 0; i <= repeat; ++i) {
         double const start = seconds_now();
         oracle::aba<double>(scene.chains.front(), {scene.forces.gravity, {}});
-        if (i > 0) seconds.push_back(seconds_now() - start);  // the first one warms up
+        // The first evaluation warms up and is not counted.
+        if (i > 0) seconds.push_back(seconds_now() - start);
     }
     return spread_of(seconds);
 }
 
+/// Times and residual of one backend on one chain.
 struct Measured {
     std::string joint;
     std::int64_t bodies = 0;
@@ -74,9 +78,11 @@ struct Measured {
     Timing timing;
     double residual = 0, bound = 0;
     bool valid() const { return residual <= bound; }
+    /// Median time in ns per body.
     double a_body(Spread const& s) const { return 1e9 * s.median / static_cast<double>(bodies); }
 };
 
+/// Measures one backend. Collective.
 Measured measure(Scene& scene, std::string const& joint, Backend backend,
                  Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
@@ -97,6 +103,7 @@ Measured measure(Scene& scene, std::string const& joint, Backend backend,
     return m;
 }
 
+/// Converts a measurement to JSON.
 Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
     auto const nanoseconds = [&](Spread const& s) {
         double const scale = 1e9 / static_cast<double>(m.bodies);
@@ -121,6 +128,7 @@ Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
             {"valid", m.valid()}};
 }
 
+/// Returns an outcome with build, hardware and an empty list of results.
 Outcome begun(std::string const& name, Communicator const& communicator) {
     Outcome outcome;
     outcome.json = {{"bench", name},
@@ -130,7 +138,7 @@ Outcome begun(std::string const& name, Communicator const& communicator) {
                     {"results", Json::array()}};
     return outcome;
 }
-/// `what`: the table's figures.
+/// Completes an outcome with its text. `what` explains the numbers of the table.
 Outcome ended(Outcome outcome, std::string const& what, Table const& table,
               Communicator const& communicator) {
     outcome.json["valid"] = outcome.valid;
@@ -142,12 +150,14 @@ Outcome ended(Outcome outcome, std::string const& what, Table const& table,
     return outcome;
 }
 
+/// Describes the loads of a benchmark.
 std::string words_of(std::string const& loads) {
     if (loads == "none") return "; gravity alone";
     return loads == "torques" ? "; gravity and torques of joints"
                               : "; gravity, torques of joints and a wrench on every body";
 }
 
+/// Measures sweeps and evaluations for all backends, joints and sizes.
 Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends =
         request.backends.empty() ? cpu_backends() : request.backends;
@@ -184,21 +194,23 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     return ended(std::move(outcome), what, table, communicator);
 }
 
-/// Bytes a body that an evaluation must read and must write, whatever the algorithm: links: mass,
-/// position, velocity, force; acceleration. Bodies on spherical joints: mass, inertia, two handles,
-/// orientation, angular velocity, force, torque; two accelerations. 0: not said.
+/// Bytes per body that an evaluation must read and write, whatever the algorithm; 0 if unknown.
+/// Links: mass, position, velocity, force; acceleration. Bodies on spherical joints: mass, inertia,
+/// two handles, orientation, angular velocity, force, torque; two accelerations.
 struct Traffic {
     double read = 0, write = 0;
 };
-/// Of alike bodies what never changes does not count.
+/// Returns the traffic of a joint; constant data of alike bodies is not counted.
 Traffic traffic_of(std::string const& joint, bool alike) {
     if (joint == "link") return {alike ? 72.0 : 80.0, 24};
     if (joint == "spherical") return {alike ? 104.0 : 208.0, 48};
     return {};
 }
-/// So many evaluations one after the other that a moment's noise does not count.
+/// Returns the number of evaluations that are timed together, so that short disturbances average
+/// out.
 int chained_for(std::int64_t bodies) { return bodies < 100000 ? 50 : bodies < 2000000 ? 10 : 2; }
 
+/// Time of a whole evaluation, and its residual.
 struct AtOnce {
     Spread seconds;
     double residual = 0, bound = 0;
@@ -206,9 +218,10 @@ struct AtOnce {
     SimdLevel simd = SimdLevel::off;
     bool direct_exchange = false;
 };
-/// Whether the solver is measured alone, in absolute coordinates; else kinematics, loads and the
-/// joints' rates count as well.
+/// True if the solver is measured alone, in absolute coordinates. Otherwise kinematics, loads and
+/// the joints' rates are measured too.
 bool is_absolute(std::string const& joint) { return joint == "link" || joint == "spherical"; }
+/// Measures whole evaluations with inputs and outputs in place.
 AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend,
                     Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
@@ -228,7 +241,8 @@ AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend,
     return found;
 }
 
-/// Those that find matrices and biases in one sweep.
+/// Returns the backends that compute matrices and biases in one sweep. Throws InputError for
+/// others.
 std::vector<Backend> backends_at_once(BenchRequest const& request) {
     if (!request.handles.empty() && request.handles != name_of(Handles::projected))
         throw InputError(request.handles + " handles need a sweep after the other", "--handles",
@@ -246,6 +260,7 @@ std::vector<Backend> backends_at_once(BenchRequest const& request) {
     return chosen;
 }
 
+/// Measures whole evaluations for all backends, joints and sizes.
 Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = backends_at_once(request);
     Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor",
@@ -267,7 +282,8 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                 Traffic const traffic = traffic_of(joint, request.alike);
                 double const rate =
                     n * (traffic.read + traffic.write) / found.seconds.median * 1e-9;
-                // Two sweeps over what is read, at what an H200's memory delivers, each rank's.
+                // The floor is two sweeps over the data at the bandwidth of an H200's memory, per
+                // rank.
                 double const floor = n / communicator.size() * (2 * traffic.read + traffic.write) /
                                      4.2e12 / found.seconds.median;
                 bool const gpu = backend == Backend::cuda;

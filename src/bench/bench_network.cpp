@@ -1,3 +1,4 @@
+// Implements `bench network`.
 #include <fmt/format.h>
 
 #include "bench/benchmarks.hpp"
@@ -9,11 +10,13 @@
 namespace catena::command {
 namespace {
 
+/// Converts a link to JSON; null if there is none.
 Json json_of(std::optional<Link> const& link) {
     return link ? Json{{"latency", link->latency}, {"seconds_a_byte", link->seconds_a_byte}}
                 : Json(nullptr);
 }
 
+/// Describes a link: latency and bandwidth.
 std::string text_of(std::optional<Link> const& link) {
     if (!link) return "none to measure";
     std::string const rate = link->seconds_a_byte > 0
@@ -22,7 +25,7 @@ std::string text_of(std::optional<Link> const& link) {
     return duration_text(link->latency) + ", " + rate;
 }
 
-/// A table of messages with what the model says of each.
+/// Adds messages to a table and returns their JSON, with the model's time of each.
 template <class Model>
 Json rows_of(std::vector<TimedMessage> const& messages, Table& table, Model const& model) {
     Json rows = Json::array();

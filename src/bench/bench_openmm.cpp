@@ -1,5 +1,5 @@
-// Steps of Catena beside OpenMM's own, on the same beads in the same run; and what it brings to
-// work on while forces are computed.
+// Implements `bench openmm` and `bench overlap`. The first compares Catena's steps with OpenMM's
+// own on the same beads in the same run; the second measures what overlap with the forces saves.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
@@ -25,24 +25,28 @@
 namespace catena::command {
 namespace {
 
-/// OpenMM's set-up of so many constraints has not ended within minutes; more are tried in a process
-/// that can be stopped.
+/// Largest number of constraints that is tried in this process. OpenMM's set-up of more has taken
+/// over a minute without an end, so these run in a process that can be stopped.
 constexpr std::int64_t most_constraints_unguarded = 200000;
 constexpr std::chrono::seconds patience{30};
 constexpr double block_seconds = 0.1, longest_block = 4;
-constexpr double slow_seconds = 1;  // of a step: two are enough to warm up
-constexpr int timed_steps = 3;      // the median one is drawn
+/// Seconds per step from which two steps are enough to warm up.
+constexpr double slow_seconds = 1;
+/// Number of steps whose phases are recorded; the median one is drawn.
+constexpr int timed_steps = 3;
 
-/// Something that takes steps, and the seconds of one, block after block.
+/// A function that makes steps, and its seconds per step, block by block.
 struct Runner {
     std::function<void(int)> step;
     int of_block = 1;
-    int period = 1;  // steps after which all that is done now and then has been done: in a block,
-                     // where that is not too long
+    /// Number of steps after which all periodic work has been done once. A block contains a period
+    /// if that does not take too long.
+    int period = 1;
     std::vector<double> seconds = {};
 
     void warm_up() {
-        step(1);  // builds what is built late
+        // The first step builds what is built on demand.
+        step(1);
         double const begin = seconds_now();
         step(1);
         if (seconds_now() - begin > slow_seconds) return;
@@ -61,29 +65,32 @@ struct Runner {
     }
 };
 
-/// Of a new order of particles on a GPU.
+/// Returns the number of steps after which the order of the particles on a GPU is renewed.
 int period_of(ChainSystem const& system) { return system.openmm()->path() == "device" ? 1000 : 1; }
 
+/// Runs the blocks of all runners in turn.
 void take_turns(std::vector<Runner*> const& runners, int blocks) {
     for (int b = 0; b < blocks; ++b)
         for (Runner* runner : runners) runner->block();
 }
 
+/// Returns a condensate of about this many beads with the requested options.
 Scene scene_for(std::int64_t beads, BenchRequest const& request, Backend backend) {
     Scene scene = condensate_scene(beads, overrides_of(request));
     scene.solver.backend = backend;
     return scene;
 }
 
-/// What one of OpenMM's own runs says of itself.
+/// Result of a run of OpenMM's own integrator.
 struct OwnFound {
     double seconds = NAN, energy = NAN, link_error = NAN;
-    char failure[200] = {};  // empty: none
+    /// Reason of a failure; empty if there was none.
+    char failure[200] = {};
     void fail(std::string const& text) { text.copy(failure, sizeof(failure) - 1); }
 };
 
-/// In a process of its own, before this one has touched a GPU: steps with so many constraints, or
-/// what came instead.
+/// Tries steps with this many constraints in a process of its own. It must be called before this
+/// process uses a GPU. Returns the result or the failure.
 OwnFound try_constraints(std::int64_t beads, BenchRequest const& request,
                          Communicator const& communicator) {
     OwnFound found;
@@ -127,6 +134,7 @@ OwnFound try_constraints(std::int64_t beads, BenchRequest const& request,
     return found;
 }
 
+/// Converts seconds of blocks to JSON.
 Json json_of(std::vector<double> const& seconds) {
     Spread const s = spread_of(seconds);
     return {{"median", s.median}, {"min", s.min}, {"max", s.max}, {"blocks", s.count}};
@@ -134,7 +142,7 @@ Json json_of(std::vector<double> const& seconds) {
 
 double median(std::vector<double> const& seconds) { return spread_of(seconds).median; }
 
-/// The share of the matrix sweeps during which forces were computed.
+/// Measures the share of the matrix sweeps that ran while forces were computed.
 class Hidden {
   public:
     explicit Hidden(ChainSystem const& system)
@@ -159,6 +167,7 @@ class Hidden {
     double matrix_, hidden_, forces_;
 };
 
+/// Formats a share in percent.
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 std::string step_text(double seconds) {
     return std::isfinite(seconds) ? duration_text(seconds) : "-";
@@ -167,7 +176,7 @@ std::string ratio_text(double ratio) {
     return std::isfinite(ratio) ? fmt::format("{:.2f}", ratio) : "-";
 }
 
-/// OpenMM with one kind of links, in turn with Catena; a failure is what is found.
+/// OpenMM with one kind of links, run in turn with Catena. A failure is a result, not an error.
 struct Rival {
     OwnLinks links;
     std::unique_ptr<OpenMmIntegrator> own = nullptr;
@@ -205,12 +214,14 @@ struct Rival {
     }
 };
 
+/// Result of one comparison as JSON and as a row of the table.
 struct SideBySide {
     Json json;
     std::vector<std::string> row;
     bool valid = false;
 };
 
+/// Runs Catena and OpenMM in turn on the same beads.
 SideBySide compare(std::int64_t beads, BenchRequest const& request,
                    Communicator const& communicator, Backend backend,
                    std::optional<OwnFound> const& constrained_before) {
@@ -288,6 +299,7 @@ SideBySide compare(std::int64_t beads, BenchRequest const& request,
     return r;
 }
 
+/// Returns the head of a benchmark's JSON.
 Json head(char const* name) {
     return {{"bench", name},
             {"build", version_json()},
@@ -295,6 +307,7 @@ Json head(char const* name) {
             {"results", Json::array()}};
 }
 
+/// Returns the numbers of beads in whole chains.
 std::vector<std::int64_t> sizes_of(BenchRequest const& request,
                                    std::vector<std::int64_t> const& usual) {
     std::vector<std::int64_t> sizes;
@@ -303,7 +316,7 @@ std::vector<std::int64_t> sizes_of(BenchRequest const& request,
     return sizes;
 }
 
-/// A step's phases, in the manner of the founding chapter's Fig. 2.7.
+/// Writes the phases of steps as a page, in the manner of the founding chapter's Fig. 2.7.
 void write_pictures(std::string const& folder, std::string const& pictures) {
     std::string const intro =
         "<h1>What is hidden behind the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";
@@ -316,7 +329,8 @@ Outcome bench_openmm(Communicator const& communicator, BenchRequest const& reque
     need_one_rank(communicator, "openmm");
     auto const sizes = sizes_of(request, {140, 9940, 99960, 1000020});
     std::vector<std::optional<OwnFound>> guarded;
-    for (std::int64_t const beads : sizes)  // before anything here has touched the GPU
+    // This must come before anything here uses the GPU.
+    for (std::int64_t const beads : sizes)
         guarded.push_back(beads > most_constraints_unguarded
                               ? std::optional(try_constraints(beads, request, communicator))
                               : std::nullopt);

@@ -1,4 +1,5 @@
-// Forward dynamics by other programs beside Catena's: the same chains, in turns.
+// Implements `bench peers`: forward dynamics by other programs and by Catena on the same chains, in
+// turns.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -18,10 +19,12 @@
 namespace catena::command {
 namespace {
 
+/// Limits for the other programs.
 constexpr std::chrono::seconds most_set_up{120};
 constexpr std::chrono::seconds most_evaluation{2};
 constexpr std::int64_t most_bodies = 1000000;
 
+/// Throws InputError for options that this benchmark does not take.
 void check(BenchRequest const& request, Communicator const& communicator) {
     if (communicator.size() > 1)
         throw InputError("peers run on one rank", "catena bench peers", "run it without mpirun");
@@ -37,13 +40,14 @@ void check(BenchRequest const& request, Communicator const& communicator) {
         throw InputError("the peers' chains are given", "--set", "choose --sizes and --joints");
 }
 
+/// Converts the limits to JSON.
 Json json_of(Peer::Limits const& l) {
     return {{"set_up_seconds", l.set_up.count()},
             {"evaluation_seconds", l.evaluation.count()},
             {"memory_bytes", l.memory_bytes}};
 }
 
-/// The peers in turn, and where they stopped.
+/// Starts the peers for each chain and records where they stopped.
 class Runners {
   public:
     void add_to(PeerBenchmark& contest, PeerStop const& here) {

@@ -1,4 +1,5 @@
-// How far predictions are from what is measured, and choices from the best there is.
+// Implements `bench plan`: compares predictions with measured times, and choices with the best
+// arrangement.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -18,7 +19,8 @@ namespace {
 using plan::Arrangement;
 using plan::Prediction;
 
-/// What the random chains of the named joints are: where they may be in ground axes too, both.
+/// Returns the families of the random chains of the named joints, in joint axes and, if possible,
+/// also in ground axes.
 std::vector<plan::Family> families_named(std::vector<std::string> const& joints, Handles handles) {
     std::vector<plan::Family> chosen;
     for (plan::Family const& family : plan::all_families()) {
@@ -31,10 +33,12 @@ std::vector<plan::Family> families_named(std::vector<std::string> const& joints,
     return chosen;
 }
 
+/// Predicted and measured times of one arrangement.
 struct Compared {
     Prediction predicted;
     plan::PhaseSeconds measured{};
-    std::string name;  // of the arrangement, its levels too
+    /// Name of the arrangement with its levels.
+    std::string name;
     double residual = 0, bound = 0;
     bool valid() const { return residual <= bound; }
     double typical() const { return measured[plan::typical_evaluation]; }
@@ -44,6 +48,7 @@ struct Compared {
     double ratio_to_median() const { return predicted.seconds[plan::evaluation] / typical(); }
 };
 
+/// Measures the arrangement of a prediction.
 Compared compare(plan::Family const& family, Scene const& scene, Prediction const& predicted,
                  std::string const& gpu_levels) {
     Scene made = plan::arranged(scene, predicted.arrangement);
@@ -59,7 +64,7 @@ Compared compare(plan::Family const& family, Scene const& scene, Prediction cons
     return c;
 }
 
-/// Every arrangement, and every number of levels on the GPU where there is one.
+/// Measures every arrangement and, if there is a GPU, every number of levels on it.
 std::vector<Compared> compare_all(plan::Planner& planner, plan::Family const& family,
                                   std::int64_t bodies) {
     Scene const scene = plan::sample(family, bodies);
@@ -79,6 +84,7 @@ std::vector<Compared> compare_all(plan::Planner& planner, plan::Family const& fa
     return all;
 }
 
+/// Converts a comparison to JSON.
 Json json_of(Compared const& c) {
     Json phases = Json::object();
     for (std::size_t p = 0; p < plan::phases; ++p)
@@ -91,7 +97,7 @@ Json json_of(Compared const& c) {
             {"valid", c.valid()}};
 }
 
-/// The quickest as measured, among those that `counts`.
+/// Returns the quickest measured arrangement among those for which `counts` is true.
 template <class Counts>
 Compared const& best_of(std::vector<Compared> const& all, Counts const& counts) {
     Compared const* best = nullptr;
@@ -100,8 +106,8 @@ Compared const& best_of(std::vector<Compared> const& all, Counts const& counts) 
     return *best;
 }
 
-/// Ratios farthest from 1, to the shortest measured and to the median; how much slower than the
-/// best.
+/// Ratios farthest from 1, to the shortest measured time and to the median, and by how much the
+/// worst choice is slower than the best.
 struct Worst {
     double ratio = 1, to_median = 1, choice = 0;
     static void keep(double& worst, double r) {
@@ -113,6 +119,7 @@ struct Worst {
     }
 };
 
+/// Compares all arrangements for one family and size, and adds a row.
 void add_case(Outcome& outcome, Table& table, Worst& worst, plan::Planner& planner,
               plan::Family const& family, std::int64_t bodies) {
     std::vector<Compared> const all = compare_all(planner, family, bodies);
@@ -152,7 +159,8 @@ void add_case(Outcome& outcome, Table& table, Worst& worst, plan::Planner& plann
          {"valid", valid}});
 }
 
-/// A chain that cannot be computed is a finding: the others are compared all the same.
+/// Compares one case. A chain that cannot be computed is a finding; the other cases are still
+/// compared.
 void add_case_or_failure(Outcome& outcome, Table& table, Worst& worst, plan::Planner& planner,
                          plan::Family const& family, std::int64_t bodies) {
     try {

@@ -1,5 +1,5 @@
-// What a chain samples on rigid links, on harmonic bonds and on constraints, at which step, and how
-// fast.
+// Implements `bench sampling`: what a chain samples on rigid links, harmonic bonds and constraints,
+// up to which time step, and how fast.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 namespace catena::command {
 namespace {
 
+/// Converts a mean with its error to JSON.
 Json json_of(Blocked const& b, char const* unit) {
     return {{"mean", b.mean},
             {"error", b.error},
@@ -25,6 +26,7 @@ Json json_of(Blocked const& b, char const* unit) {
             {"plateau", b.plateau}};
 }
 
+/// Converts a row to JSON.
 Json json_of(SamplingRow const& row, std::int64_t copies) {
     return {{"method", name_of(row.method)},
             {"step_ps", row.step},
@@ -61,11 +63,13 @@ Json json_of(SamplingRow const& row, std::int64_t copies) {
             {"valid", row.valid()}};
 }
 
+/// Converts time step and speed of a row to JSON; null if there is none.
 Json json_of(SamplingRow const* row) {
     if (!row) return nullptr;
     return {{"step_ps", row->step}, {"ns_per_day", row->ns_per_day()}};
 }
 
+/// Converts the verdict on a method to JSON.
 Json json_of(SamplingMethodVerdict const& verdict) {
     Json biases = Json::array();
     for (std::size_t i = 0; i < verdict.rows.size(); ++i) {
@@ -84,17 +88,19 @@ Json json_of(SamplingMethodVerdict const& verdict) {
             {"usable_not_contradicted", json_of(verdict.allowed)}};
 }
 
+/// Converts a difference to JSON.
 Json json_of(Difference const& d) {
     return {{"value", d.value}, {"error", d.error}, {"errors", d.errors()}};
 }
 
+/// Formats a difference with its error and their ratio.
 std::string sign_text(Difference const& d, int digits) {
     if (!std::isfinite(d.errors())) return fmt::format("{:+.{}f} +- ?", d.value, digits);
     return fmt::format("{:+.{}f} +- {:.{}f} ({:+.1f} errors)", d.value, digits, d.error, digits,
                        d.errors());
 }
 
-/// "2.98 +- 0.01", a star where the error had not come to its plateau.
+/// Returns for example "2.98 +- 0.01"; a star marks an error that had not reached its plateau.
 std::string text_of(Blocked const& b, int digits) {
     if (!std::isfinite(b.mean)) return "-";
     if (!std::isfinite(b.error)) return fmt::format("{:.{}f} +- ?", b.mean, digits);
@@ -102,11 +108,13 @@ std::string text_of(Blocked const& b, int digits) {
                        b.plateau ? "" : "*");
 }
 
+/// Formats a time step in fs.
 std::string femtoseconds(double ps) { return fmt::format("{:.4g}", 1e3 * ps); }
 std::string rate_text(double ns_per_day) {
     return std::isfinite(ns_per_day) ? fmt::format("{:.4g}", ns_per_day) : "-";
 }
 
+/// Returns the table of all rows.
 std::string table_of(std::vector<SamplingRow> const& rows) {
     Table table({"links", "step fs", "ns in all", "Rg nm", "Ree nm", "cosine", "T conf. K",
                  "T kin. K", "link error", "a step", "ns/day", ""},
@@ -127,6 +135,7 @@ std::string table_of(std::vector<SamplingRow> const& rows) {
     return table.text();
 }
 
+/// Returns the table of biases and the largest usable step of each method.
 std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
     Table table({"links", "step fs", "Rg %", "T conf. %", "usable", "ns/day"}, {0, 4});
     auto const percent = [](double value, double error) {
@@ -168,6 +177,7 @@ std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
     return text;
 }
 
+/// Returns the differences between methods, one line each.
 std::string difference_text(std::vector<SamplingDifference> const& differences) {
     std::string text;
     for (SamplingDifference const& d : differences)
@@ -178,11 +188,12 @@ std::string difference_text(std::vector<SamplingDifference> const& differences) 
     return text;
 }
 
-/// Without the number that a copy has.
+/// Returns the name of the chain without the number of a copy.
 std::string name_of_chain(std::string const& first, std::int64_t copies) {
     return copies > 1 && first.ends_with("-1") ? first.substr(0, first.size() - 2) : first;
 }
 
+/// Returns the conditions that all rows share.
 std::string heading(SamplingCopies const& copies, SamplingOptions const& options) {
     Scene const& scene = copies.model();
     return fmt::format(
@@ -200,7 +211,7 @@ std::string heading(SamplingCopies const& copies, SamplingOptions const& options
         options.equilibration, openmm_version(), hardware_text());
 }
 
-/// The nearest and the farthest out of all rows.
+/// Returns the smallest distance between copies and the largest rounding of positions in all rows.
 std::string distances_text(std::vector<SamplingRow> const& rows) {
     double nearest = INFINITY, rounding = 0;
     for (SamplingRow const& row : rows) {
@@ -216,6 +227,7 @@ std::string distances_text(std::vector<SamplingRow> const& rows) {
            far;
 }
 
+/// Sets the text and the JSON of the outcome from the rows so far.
 void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions const& options,
               std::vector<SamplingRow> const& rows) {
     auto const verdicts = verdicts_of(rows, copies.model().dynamics.temperature);
@@ -238,8 +250,8 @@ void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions co
     }
     for (SamplingMethodVerdict const& each : verdicts) {
         outcome.json["verdicts"].push_back(json_of(each));
-        outcome.valid = outcome.valid &&
-                        each.rows.front()->valid();  // a longer step that is too long is a finding
+        // A longer step that turns out too long is a finding, not a failure.
+        outcome.valid = outcome.valid && each.rows.front()->valid();
     }
     for (SamplingDifference const& d : differences)
         outcome.json["differences"].push_back({{"of", name_of(d.of->method)},
@@ -253,6 +265,7 @@ void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions co
                    usable_text(verdicts) + difference_text(differences);
 }
 
+/// Returns the head of the JSON.
 Json head(SamplingCopies const& copies, SamplingOptions const& options,
           CommonOptions const& common) {
     Scene const& scene = copies.model();

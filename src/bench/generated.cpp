@@ -1,3 +1,4 @@
+// Implements the generated scenes as YAML texts.
 #include "bench/generated.hpp"
 #include "reader/load_scene.hpp"
 
@@ -52,11 +53,13 @@ Scene swinging_scene(std::string const& joint, std::vector<std::string> const& o
 
 Scene elastic_scene(std::vector<std::string> const& overrides) {
     constexpr int rods = 8;
-    constexpr double stiffness = 5.3;  // its slowest mode takes 1.6 s, a quarter of that is where a
-                                       // run of half a second ends
-    constexpr double turning = 2.0;    // of the last rod
-    // Curvature of a clamped rod that bends under the weight of its own sag: all but the slowest
-    // mode's; u: 1 at the clamp, 0 at the end.
+    // The slowest mode has a period of 1.6 s. A run of half a second ends after about a quarter of
+    // that.
+    constexpr double stiffness = 5.3;
+    // Rotation rate of the last rod at the start.
+    constexpr double turning = 2.0;
+    // Curvature of a clamped rod that bends under the weight of its own sag. This is almost that of
+    // the slowest mode. The coordinate u is 1 at the clamp and 0 at the end.
     auto const bending = [](double u) { return u * u * (1.5 - u * (2.0 / 3 - u * u * u / 30)); };
     std::string text =
         "title: clamped elastic rod, 8 rods\nunits: si\nchains:\n  - name: rod\n    base: fixed\n  "
@@ -86,12 +89,14 @@ Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides)
 
 namespace {
 
+/// Sequence of human alpha-synuclein.
 constexpr char const* alpha_synuclein =
     "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGF"
     "VKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEM"
     "PSEEGYQDYEPEA";
 constexpr std::int64_t beads_of_chain = 140;
 
+/// Returns the scene of copies of alpha-synuclein in a box.
 std::string alpha_synucleins(std::int64_t chains, std::string const& box) {
     return fmt::format(
         "title: {0} of alpha-synuclein\n"
@@ -104,6 +109,7 @@ std::string alpha_synucleins(std::int64_t chains, std::string const& box) {
         chains, alpha_synuclein, box);
 }
 
+/// Returns the number of whole chains for about this many beads.
 std::int64_t chains_for(std::int64_t beads) {
     return std::max<std::int64_t>(1, (beads + beads_of_chain / 2) / beads_of_chain);
 }
@@ -114,7 +120,8 @@ std::int64_t beads_of_condensate(std::int64_t beads) { return beads_of_chain * c
 
 Scene condensate_scene(std::int64_t beads, std::vector<std::string> const& overrides) {
     std::int64_t const chains = chains_for(beads);
-    // As inputs/condensate.yaml, but no smaller than the cutoff of 4 nm allows.
+    // The density is that of inputs/condensate.yaml; the edge is no smaller than the cutoff of 4 nm
+    // allows.
     double const edge =
         chains == 1 ? 60.0 : std::max(8.1, 19.38 * std::cbrt(static_cast<double>(chains) / 100));
     return parse_scene(alpha_synucleins(chains, fmt::format("{{periodic: [{0}, {0}, {0}]}}", edge)),

@@ -1,3 +1,4 @@
+// Implements the conversation with another program over a pair of sockets.
 #include "bench/peer.hpp"
 
 #include <fcntl.h>
@@ -25,6 +26,7 @@ namespace {
 
 constexpr std::size_t longest_answer = 1 << 16;
 
+/// Returns a peer that is a Python script, or why it is missing.
 PeerProgram python_peer(std::string const& name, std::string const& module,
                         std::string const& package, std::vector<std::string> const& options) {
     std::string const path = "tests/bench/peers/peer_" + module + ".py";
@@ -39,6 +41,7 @@ PeerProgram python_peer(std::string const& name, std::string const& module,
     return program;
 }
 
+/// Returns the peer for Simbody, or why it is missing.
 PeerProgram simbody() {
     auto const program = find_in_build_tree("tests/bench/peer-simbody");
     if (program) return {"simbody", {program->string()}, {}, ""};
@@ -49,6 +52,7 @@ PeerProgram simbody() {
             "build again)"};
 }
 
+/// Returns the last line of a file that is not empty.
 std::string last_line(std::string const& file) {
     std::ifstream in(file);
     std::string last;
@@ -70,7 +74,7 @@ Peer::Peer(PeerProgram const& program, std::string const& chain_file,
     : limits_(limits),
       accelerations_file_(accelerations_file),
       errors_file_(accelerations_file + ".log") {
-    // The shell sets the limit and becomes the program.
+    // The shell sets the limit and then becomes the program.
     std::vector<std::string> words{
         "/bin/sh", "-c", fmt::format("ulimit -v {}; exec \"$@\"", limits.memory_bytes / 1024),
         "sh"};
@@ -80,7 +84,8 @@ Peer::Peer(PeerProgram const& program, std::string const& chain_file,
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    int ends[2] = {-1, -1};  // sockets, because a pipe that nobody reads would end this program
+    // Sockets are used because writing to a pipe that nobody reads would end this program.
+    int ends[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         throw ComputationError("no socket to talk to another program");
     posix_spawn_file_actions_t actions;
@@ -145,7 +150,8 @@ std::vector<double> Peer::accelerations() const {
     return found;
 }
 
-/// Where nobody is left, no answer comes. What was said before the question is no answer to it.
+/// Sends a question. A program that has ended gives no answer; output before the question is an
+/// error.
 void Peer::ask(std::string const& question) {
     char some[100];
     ssize_t const count = ::recv(talk_, some, sizeof(some), MSG_DONTWAIT | MSG_PEEK);
@@ -154,7 +160,7 @@ void Peer::ask(std::string const& question) {
     ::send(talk_, question.data(), question.size(), MSG_NOSIGNAL);
 }
 
-/// The next line it says, within `patience`.
+/// Returns the next line of output. Stops the program if there is none within `patience`.
 std::string Peer::line(std::chrono::duration<double> patience, std::string const& doing) {
     auto const until = std::chrono::steady_clock::now() + patience;
     while (stopped_.empty()) {
@@ -181,7 +187,7 @@ std::string Peer::line(std::chrono::duration<double> patience, std::string const
     return "";
 }
 
-/// It does not speak any more; should it live on for a second, it is ended.
+/// Describes how a silent program ended. If it still runs after a second, it will be killed.
 std::string Peer::how_it_ended() {
     int status = 0;
     for (int tenths = 0; ::waitpid(child_, &status, WNOHANG) == 0; ++tenths) {

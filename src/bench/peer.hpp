@@ -13,38 +13,44 @@
 
 namespace catena::command {
 
-/// What to start, or why that cannot be.
+/// Command of a program, or why it cannot run.
 struct PeerProgram {
     std::string name;
-    std::vector<std::string> words, options;  // before and after the two files
-    std::string missing;                      // empty: it is there
+    /// Words of the command before and after the names of the two files.
+    std::vector<std::string> words, options;
+    /// Reason why the program cannot run; empty if it can.
+    std::string missing;
 };
-/// Pinocchio, Simbody and MuJoCo, as far as this machine has them.
+/// Returns Pinocchio, Simbody and MuJoCo, each with its command or why it is missing.
 std::vector<PeerProgram> peer_programs();
 
+/// A running program. It stops at an error or when a limit is exceeded.
 class Peer {
   public:
     struct Limits {
         std::chrono::duration<double> set_up, evaluation;
-        std::int64_t memory_bytes;  // of its address space
+        /// Largest size of its address space, bytes.
+        std::int64_t memory_bytes;
     };
-    /// Starts the program on a chain's table; its accelerations go to `accelerations_file`.
+    /// Starts the program on a chain's table. It writes its accelerations to `accelerations_file`.
     Peer(PeerProgram const&, std::string const& chain_file, std::string const& accelerations_file,
          Limits);
     ~Peer();
     Peer(Peer const&) = delete;
     Peer& operator=(Peer const&) = delete;
 
-    /// Waits until the chain is built and evaluated once. False where it stopped instead.
+    /// Waits until the program has built the chain and evaluated it once. Returns false if it
+    /// stopped.
     bool is_ready();
-    /// The same for what the chain's file holds by now.
+    /// Waits likewise for the chain that the chain's file holds now.
     bool is_ready_for_next();
-    /// Seconds of so many evaluations; negative where it stopped.
+    /// Returns the seconds of this many evaluations; negative if the program stopped.
     double time(int evaluations);
-    /// Why it stopped; empty: it goes on.
+    /// Reason why the program stopped; empty while it runs.
     std::string const& stopped() const { return stopped_; }
-    /// What it says of itself: name, version, method, set_up_seconds, memory_bytes.
+    /// Self-description of the program: name, version, method, set_up_seconds, memory_bytes.
     Json const& description() const { return description_; }
+    /// Reads the accelerations that the program wrote.
     std::vector<double> accelerations() const;
 
   private:

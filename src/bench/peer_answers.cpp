@@ -1,3 +1,4 @@
+// Implements the questions of the stability suite to other programs.
 #include "bench/peer_answers.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Chains of the stability suite, solved by other programs that eliminate body by body, as
-// articulated bodies do.
+// Solves the chains of the stability suite by other programs that eliminate body by body, as
+// articulated-body algorithms do.
 #pragma once
 
 #include <map>
@@ -9,18 +9,19 @@
 
 namespace catena::command {
 
-/// Simbody and Pinocchio. MuJoCo factors the joint-space inertia, whose condition is another
-/// question.
+/// Returns Simbody and Pinocchio. MuJoCo is left out: it factors the joint-space inertia, whose
+/// condition is a different question.
 std::vector<PeerProgram> peers_of_suite();
-/// A suite has many chains.
+/// Returns limits that are short, because a suite has many chains.
 Peer::Limits limits_of_suite();
 
-/// One process a program, that takes one chain after the other; where it stops, another is started
-/// for the next case.
+/// Keeps one process per program, which solves one chain after the other. After a stop another
+/// process is started for the next case.
 class PeerAnswers {
   public:
     explicit PeerAnswers(std::vector<PeerProgram>, Peer::Limits);
-    /// Those that are here; of a family in which one stopped, it is asked about no longer chain.
+    /// Returns the answers of the programs that are present. If a program stopped in a family, it
+    /// is not asked about longer chains of that family.
     std::vector<PeerAnswer> operator()(StabilityCase const&, Scene const&);
     Json json() const { return peers_.json(); }
     std::vector<std::string> not_run() const { return peers_.not_run(); }

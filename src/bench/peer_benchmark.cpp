@@ -1,3 +1,4 @@
+// Implements the comparison of engines on one chain.
 #include "bench/peer_benchmark.hpp"
 
 #include <fmt/format.h>
@@ -10,20 +11,26 @@
 namespace catena::command {
 namespace {
 
-constexpr double rounding =
-    32 * 0x1p-53;  // as of a level of the tree (ChainSystem::residual_bound)
+/// Rounding error per level of the tree, as in ChainSystem::residual_bound().
+constexpr double rounding = 32 * 0x1p-53;
+/// Largest chain whose exact solution is computed in 113 bits, and the size from which one
+/// perturbation of the data estimates the growth of roundings instead of three.
 constexpr std::int64_t largest_quad_here = 5000, few_nudges_above = 10000;
 
+/// Returns an entry of a peer's self-description; null if it is missing.
 Json said(Json const& peer, char const* key) {
     return peer.is_object() ? peer.value(key, Json()) : Json();
 }
 
+/// Suffixes of backend names, by Way.
 constexpr char const* suffix_of[] = {"", ", absolute", ", solver alone"};
 
+/// Returns the ways in which a backend evaluates chains of a joint.
 std::vector<Way> ways_of(std::string const& joint, Backend backend, Handles handles) {
     if (joint != "link" && joint != "spherical") return {Way::joint};
     std::vector<Way> ways{Way::joint};
-    if (joint == "spherical") ways.push_back(Way::absolute);  // beads know no other
+    // Beads have only one set of coordinates.
+    if (joint == "spherical") ways.push_back(Way::absolute);
     bool const in_one_sweep = backend != Backend::serial && backend != Backend::cuda_levels &&
                               handles == Handles::projected;
     if (in_one_sweep) ways.push_back(Way::solver);
@@ -42,6 +49,7 @@ class PeerBenchmark::Own {
         system_.evaluate();
         system_.evaluate(false);
     }
+    /// Returns the seconds of this many evaluations.
     double time(int evaluations) {
         if (way_ == Way::solver)
             return evaluations * system_.absolute().front()->time_at_once(evaluations, 1).front();
@@ -51,13 +59,14 @@ class PeerBenchmark::Own {
         return seconds_now() - start;
     }
     ChainSystem& system() { return system_; }
-    /// As the peers give them.
+    /// Returns the accelerations in the form in which peers give them.
     Solution solution() {
         Solution found = solution_of(system_);
         if (scene_.chains.front().is_beads() || way_ == Way::joint) return found;
         ChainSystem::Accelerations const a = system_.accelerations();
         ChainSystem::Snapshot const at = system_.snapshot();
-        Vec3 alpha = Vec3::zero(), omega = Vec3::zero();  // of the body before
+        // Angular acceleration and velocity of the previous body.
+        Vec3 alpha = Vec3::zero(), omega = Vec3::zero();
         for (std::size_t k = 0; k < at.omega.size(); ++k) {
             Mat3 const r = to_matrix(at.orientation[k]);
             Vec3 const own = r * at.omega[k],
@@ -126,7 +135,7 @@ void PeerBenchmark::add(Backend backend, Way way, Communicator const& communicat
 void PeerBenchmark::add(std::string const& name, std::unique_ptr<Peer> peer) {
     Engine engine{name, 1, [p = peer.get()](int n) { return p->time(n); }};
     engine.peer = peer->description();
-    // Rounding goes through as many bodies there as through levels of a tree here.
+    // Rounding errors pass through as many bodies there as through levels of a tree here.
     engine.bound = rounding * static_cast<double>(scene_.bodies()) * exact_.growth;
     judge(engine, accelerations_of_peer(scene_.chains.front(), peer->accelerations()));
     engines_.push_back(std::move(engine));

@@ -1,5 +1,4 @@
-// One chain, evaluated in turns by Catena's backends and by other programs, and how right each of
-// them is.
+// Compares Catena's backends and other programs on one chain: times in turns, and errors.
 #pragma once
 
 #include <functional>
@@ -17,40 +16,41 @@
 
 namespace catena::command {
 
-/// Where a peer went no further, and why.
+/// Chain at which a peer stopped, and why.
 struct PeerStop {
     std::string peer, joint, why;
     std::int64_t bodies = 0;
 };
 
-/// How Catena evaluates: from the joints' coordinates to their accelerations, as the peers do; from
-/// poses to accelerations of bodies, as rattle and g-baoab do; of that the solver alone, loads in
-/// place, as `bench evaluation` does.
+/// Ways in which Catena evaluates. `joint`: joint coordinates to joint accelerations, as the peers
+/// do. `absolute`: poses to accelerations of bodies, as rattle and g-baoab do. `solver`: the solver
+/// of the latter alone with loads in place, as `bench evaluation` does.
 enum class Way { joint, absolute, solver };
 
-/// Engines take turns by blocks of evaluations that last about so long.
+/// Approximate seconds of the blocks of evaluations in which the engines take turns.
 inline constexpr double block_seconds = 0.05;
 
+/// Times and errors of all engines on one chain.
 class PeerBenchmark {
   public:
     PeerBenchmark(Scene, std::string joint);
     ~PeerBenchmark();
 
-    /// Every way in which the backends evaluate such chains.
+    /// Adds every way in which the backends evaluate such chains.
     void add(std::vector<Backend> const&, Communicator const&);
-    /// One that is ready; the backends are there.
+    /// Adds a peer that is ready. The backends must have been added before.
     void add(std::string const& name, std::unique_ptr<Peer>);
-    /// Blocks in turn; returns the peers that gave up meanwhile.
+    /// Runs blocks in turn and returns the peers that stopped meanwhile.
     std::vector<PeerStop> take_turns(int blocks);
-    /// A row each; the outcome is valid where Catena's own are.
+    /// Adds a row per engine. The outcome stays valid if Catena's own engines are valid.
     void conclude(Outcome&, Table&) const;
 
-    /// For the peers.
+    /// Returns the table that describes the chain to the peers.
     std::vector<double> table() const;
 
   private:
     class Own;
-    /// Whatever evaluates a chain, and how long it takes.
+    /// An evaluator of the chain with its times and errors.
     struct Engine {
         std::string name;
         int threads = 1;
@@ -59,10 +59,13 @@ class PeerBenchmark {
         int of_block = 1;
         std::vector<double> seconds = {};
         double error = 0, bound = 0;
-        std::optional<double> residual = {};  // a peer gives joint accelerations alone
-        bool whole = true;                    // not the solver alone
+        /// Residual; empty for a peer, which returns joint accelerations only.
+        std::optional<double> residual = {};
+        /// False for the solver alone.
+        bool whole = true;
         bool valid = false, goes_on = true;
-        Json peer = nullptr;  // what it says of itself; null: one of Catena's backends
+        /// Self-description of a peer; null for one of Catena's backends.
+        Json peer = nullptr;
 
         void warm_up();
         void block();

@@ -1,3 +1,4 @@
+// Implements the table of a chain for other programs and the conversion of their answers.
 #include "bench/peer_chain.hpp"
 
 #include <algorithm>
@@ -11,8 +12,10 @@
 namespace catena::command {
 namespace {
 
+/// Joints that the table knows.
 enum class PeerJoint { revolute, ball, slide, universal };
 
+/// A body of the table with its joint, state and loads.
 struct PeerBody {
     double mass = 0;
     Vec3 com = Vec3::zero();
@@ -25,8 +28,10 @@ struct PeerBody {
     Vec3 qd = Vec3::zero(), torque = Vec3::zero(), wrench_torque = Vec3::zero(),
          wrench_force = Vec3::zero();
 };
+/// Number of columns of the table.
 constexpr std::size_t columns = 42;
 
+/// Appends a vector, a body or a chain to the table.
 void append(std::vector<double>& table, Vec3 const& v) {
     table.insert(table.end(), v.data, v.data + 3);
 }
@@ -44,13 +49,14 @@ void append(std::vector<double>& table, PeerBody const& b) {
     for (Vec3 const& v : {b.qd, b.torque, b.wrench_torque, b.wrench_force}) append(table, v);
 }
 
+/// Returns an entry of a list; zero if the list is empty.
 Vec3 entry(std::vector<Vec3> const& list, std::size_t k) {
     return list.empty() ? Vec3::zero() : list[k];
 }
 
 Quat quaternion(std::array<double, 4> const& q) { return {q[0], q[1], q[2], q[3]}; }
 
-/// The joint's torque, its spring's and its damper's at the state.
+/// Returns the joint's torque plus that of its spring and damper in the present state.
 Vec3 torque_of(BodyArrays const& b, std::size_t k) {
     Vec3 torque = entry(b.torque, k);
     Vec3 const stiffness = entry(b.stiffness, k), damping = entry(b.damping, k);
@@ -65,6 +71,7 @@ Vec3 torque_of(BodyArrays const& b, std::size_t k) {
     return torque;
 }
 
+/// Returns the row of a body.
 PeerBody body_of(BodyArrays const& bodies, std::size_t k) {
     PeerBody b{bodies.mass[k], bodies.com[k],        bodies.inertia[k],     PeerJoint::ball,
                bodies.axis[k], bodies.rotation[k],   bodies.translation[k], bodies.q[k],
@@ -76,6 +83,7 @@ PeerBody body_of(BodyArrays const& bodies, std::size_t k) {
     return b;
 }
 
+/// Returns a body that slides along the ground's axes.
 PeerBody slide_at(Vec3 const& position, Vec3 const& velocity, double mass) {
     PeerBody slide;
     slide.joint = PeerJoint::slide;
@@ -91,19 +99,23 @@ void append(std::vector<double>& table, BodyArrays const& bodies) {
     for (std::size_t k = 0; k < bodies.size(); ++k) append(table, body_of(bodies, k));
 }
 
-/// A link as a rod: axes with z along it, at rest about z against the rod before.
+/// A link as a rod. The z axis of its frame points along the link; the frame does not rotate about
+/// z relative to the previous rod.
 struct Rod {
     double length = 0;
-    Mat3 axes = Mat3::identity();  // in the ground's
-    Vec3 omega = Vec3::zero();     // W
-    double u1 = 0, u2 = 0;         // rates of the universal joint about x and y
+    /// Rotation matrix from the rod's axes to the ground's.
+    Mat3 axes = Mat3::identity();
+    /// Angular velocity in W.
+    Vec3 omega = Vec3::zero();
+    /// Rates of the universal joint about x and y.
+    double u1 = 0, u2 = 0;
 
     Vec3 x() const { return axes.column(0); }
     Vec3 y() const { return axes.column(1); }
     Vec3 along() const { return axes.column(2); }
 };
 
-/// A right-handed frame with z along a unit vector.
+/// Returns a right-handed frame with z along a unit vector.
 Mat3 axes_along(Vec3 const& z) {
     Vec3 const other = std::abs(z[0]) < 0.5 ? Vec3{{1, 0, 0}} : Vec3{{0, 1, 0}};
     Vec3 const across = cross(other, z), x = (1 / norm(across)) * across;
@@ -114,7 +126,7 @@ Mat3 axes_along(Vec3 const& z) {
     return axes;
 }
 
-/// From bead k - 1 to bead k; `last`: the one before.
+/// Returns the rod from bead k - 1 to bead k. `last` is the previous rod.
 Rod rod_of(BeadArrays const& beads, std::size_t k, Rod const& last) {
     Rod rod;
     Vec3 const link = beads.position[k] - beads.position[k - 1];
@@ -145,7 +157,8 @@ void append(std::vector<double>& table, BeadArrays const& beads) {
     }
 }
 
-/// Second derivatives along the rods, from the first bead on.
+/// Returns the accelerations of the beads from the first one on, from the joint accelerations of
+/// the rods.
 std::vector<double> accelerations_of_beads(BeadArrays const& beads,
                                            std::vector<double> const& found) {
     std::vector<double> list(found.begin(), found.begin() + 3);
@@ -164,10 +177,12 @@ std::vector<double> accelerations_of_beads(BeadArrays const& beads,
     return list;
 }
 
+/// True if the first body of the chain is free.
 bool has_free_body(ChainSpec const& chain) {
     return !chain.is_beads() && chain.bodies.joint[0] == JointType::free;
 }
 
+/// Returns the number of joint accelerations of a chain.
 std::size_t accelerations_of(ChainSpec const& chain) {
     if (chain.is_beads()) return 1 + 2 * chain.size();
     std::size_t count = 0;
@@ -176,6 +191,7 @@ std::size_t accelerations_of(ChainSpec const& chain) {
     return count;
 }
 
+/// True if a body has drag.
 bool resists(std::vector<std::array<double, 2>> const& drag) {
     return std::any_of(drag.begin(), drag.end(),
                        [](auto const& d) { return d[0] != 0 || d[1] != 0; });
@@ -222,7 +238,8 @@ std::vector<double> accelerations_of_peer(ChainSpec const& chain,
     std::vector<double> list = found;
     if (has_free_body(chain))
         std::rotate(list.begin(), list.begin() + 3,
-                    list.begin() + 6);  // the angular one comes first
+                    // The angular acceleration comes first in Catena's order.
+                    list.begin() + 6);
     return list;
 }
 

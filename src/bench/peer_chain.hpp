@@ -1,4 +1,5 @@
-// A chain as other programs for multibody dynamics take it, and their answer as Catena gives it.
+// Converts a chain to the form that other programs for multibody dynamics read, and their answers
+// to Catena's form.
 #pragma once
 
 #include <string>
@@ -8,17 +9,17 @@
 
 namespace catena::command {
 
-/// Why the table cannot hold a scene; empty: it can.
+/// Returns why the table cannot hold a scene; empty if it can.
 std::string not_for_peers(Scene const&);
 
-/// The table that tests/bench/peers/peer.py describes. Bodies on revolute and spherical joints; a
-/// free base becomes a body without mass that slides along the ground's axes and a ball joint;
-/// springs and dampers become the torques that they have now. Beads on links and a free base, which
-/// become a bead that slides and rods without mass on universal joints, bead at their end.
+/// Returns the table that tests/bench/peers/peer.py describes. Bodies on revolute and spherical
+/// joints are written as they are. A free base becomes a massless body that slides along the
+/// ground's axes, and a ball joint. Springs and dampers become their present torques. A chain of
+/// beads becomes a sliding bead and massless rods on universal joints with a bead at their ends.
 std::vector<double> peer_table(ChainSpec const&, Vec3 const& gravity);
 
-/// What a peer found for the table, as Solution::acceleration: of beads, their accelerations. Empty
-/// where it is of another length.
+/// Converts a peer's accelerations to Solution::acceleration; for beads to their accelerations.
+/// Returns an empty list if the length is wrong.
 std::vector<double> accelerations_of_peer(ChainSpec const&, std::vector<double> const& found);
 
 }  // namespace catena::command

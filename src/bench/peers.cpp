@@ -1,3 +1,4 @@
+// Implements the folder of chains and the list of peers.
 #include "bench/peers.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Creates a temporary folder. Throws ComputationError if that fails.
 fs::path temporary_folder() {
     std::string name = (fs::temp_directory_path() / "catena-peers-XXXXXX").string();
     if (!::mkdtemp(name.data()))

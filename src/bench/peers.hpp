@@ -1,5 +1,4 @@
-// The other programs that this machine has, and the folder in which they find the chains that they
-// are asked about.
+// The other programs on this machine, and the folder of the chains that they solve.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +11,7 @@
 
 namespace catena::command {
 
+/// Starts peers and keeps their self-descriptions. The folder is removed at the end.
 class Peers {
   public:
     explicit Peers(std::vector<PeerProgram>, Peer::Limits);
@@ -21,15 +21,16 @@ class Peers {
 
     std::vector<PeerProgram> const& programs() const { return programs_; }
     Peer::Limits const& limits() const { return limits_; }
-    /// The chain that is asked about from here on.
+    /// Writes the chain that the following questions are about.
     void write(std::vector<double> const& table) const;
+    /// Starts a program on that chain.
     std::unique_ptr<Peer> start(PeerProgram const&) const;
-    /// Keeps what one that is ready says of itself.
+    /// Keeps the self-description of a peer that is ready.
     void note(PeerProgram const&, Peer const&);
 
-    /// Name, version and method of each, or `not_run`.
+    /// Returns name, version and method of each program, or `not_run`.
     Json json() const;
-    /// "NOT RUN: NAME: WHY" of those that are missing.
+    /// Returns "NOT RUN: NAME: WHY" for each missing program.
     std::vector<std::string> not_run() const;
 
   private:
@@ -40,7 +41,7 @@ class Peers {
     std::map<std::string, Json> described_;
 };
 
-/// Half of this machine's memory.
+/// Returns half of this machine's memory in bytes.
 std::int64_t memory_for_peers();
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the copies of `bench sampling`: checks of the scene, the grid and the forces.
 #include "bench/sampling_copies.hpp"
 
 #include <fmt/format.h>
@@ -16,9 +17,11 @@
 namespace catena::command {
 namespace {
 
-constexpr double clear_of_chance = 4;  // times the root-mean-square way: five standard deviations
-                                       // of two chains' distance along an axis
+/// Distance between copies in units of the root-mean-square displacement: five standard deviations
+/// of two chains' distance along an axis.
+constexpr double clear_of_chance = 4;
 
+/// Returns the scene with its chain repeated and without a box.
 Scene copies_of(BenchRequest const& request) {
     std::vector<std::string> overrides = overrides_of(request);
     overrides.push_back(fmt::format("chains[0].count={}", request.sampling.copies));
@@ -27,7 +30,8 @@ Scene copies_of(BenchRequest const& request) {
     return file.empty() ? single_chain_scene(overrides) : load_scene(file, overrides);
 }
 
-/// Nothing else, as OpenMM's own integrators would not know of it.
+/// Throws InputError unless the scene is one chain of beads with CALVADOS 2. OpenMM's own
+/// integrators would ignore anything else.
 void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
     auto const refuse = [&](std::string const& what, std::string const& remedy) {
         throw InputError(what, scene.file, remedy);
@@ -48,13 +52,14 @@ void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
                "add dynamics: {integrator: g-baoab, step: 0.01}");
 }
 
-/// Free Langevin motion of a mass: root of the mean square way within t.
+/// Returns the root-mean-square displacement of a mass in free Langevin motion within the time t.
 double way(double kt, double mass, double friction, double t) {
     double const damped = friction * t;
     if (damped < 1e-4) return std::sqrt(3 * kt / mass) * t;
     return std::sqrt(6 * kt / (mass * friction) * (t + std::expm1(-damped) / friction));
 }
 
+/// Returns the sum of the values from `first` on.
 double sum_of(std::vector<double> const& values, std::size_t first = 0) {
     return std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(), 0.0);
 }
@@ -76,7 +81,8 @@ SamplingCopies::SamplingCopies(BenchRequest const& request, Communicator const& 
     for (ChainSpec const& chain : scene_.chains)
         start.insert(start.end(), chain.beads.position.begin(), chain.beads.position.end());
 
-    Scene described = scene_;  // for its list of beads
+    // This scene serves only to list the beads.
+    Scene described = scene_;
     described.solver.backend = Backend::segments;
     described.forces.openmm->platform = "Reference";
     described.forces.openmm->path = "inline";

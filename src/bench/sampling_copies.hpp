@@ -1,5 +1,5 @@
 // Copies of one chain that are sampled side by side and never meet, with one evaluator of their
-// forces for whatever moves them.
+// forces for all methods.
 #pragma once
 
 #include <memory>
@@ -14,32 +14,35 @@
 
 namespace catena::command {
 
+/// The copies and their current start.
 class SamplingCopies {
   public:
-    /// The scene's one chain of beads with CALVADOS 2, as many times as asked for, without a box.
-    /// InputError where the scene has anything else, and "built without OpenMM".
+    /// Repeats the scene's one chain of beads with CALVADOS 2 as often as requested, without a box.
+    /// Throws InputError if the scene holds anything else, and "built without OpenMM".
     SamplingCopies(BenchRequest const&, Communicator const&, Backend backend);
 
-    /// As they stand for `time` ps of motion that starts now: on a cubic grid around the origin.
-    /// Their distance is a chain's contour length, the longest cutoff and four times the
-    /// root-mean-square way of a chain's centre, so that two meet once in a million. Every call has
-    /// a seed of its own: velocities and noise that come again would push a chain the way it went
-    /// before.
+    /// Returns the copies on a cubic grid around the origin, ready for `time` ps of motion. Their
+    /// distance is a chain's contour length, the longest cutoff and four times the root-mean-square
+    /// displacement of a chain's centre, so that two meet once in a million. Every call uses
+    /// another seed: repeated velocities and noise would push a chain the same way again.
     Scene scene(double step, double time);
+    /// Returns the distance of the grid, nm.
     double spacing(double time) const;
-    /// The largest coordinate there, nm.
+    /// Returns the largest coordinate of a bead on the grid, nm.
     double extent(double time) const;
-    /// Where all start from now on, wherever they are: in the order of beads(), nm.
+    /// Sets the positions from which all rows start, in the order of beads(), nm.
     void start_from(std::vector<Vec3> const& positions);
 
-    /// OpenMM's forces on all beads but those of bonds, kJ/mol/nm. Copies are brought near each
-    /// other before, which changes no force and keeps the digits of single precision.
+    /// Returns OpenMM's forces on all beads except those of bonds, kJ/mol/nm. Copies are first
+    /// moved close to each other, which changes no force and keeps the digits of single precision.
     std::vector<Vec3> forces(std::vector<Vec3> const& positions);
-    /// One a copy.
+    /// Returns one sample per copy.
     std::vector<ChainSample> sample(std::vector<Vec3> const& positions, BondMeasure);
-    /// A distance that no two beads of different copies are below, nm; the least distance itself
-    /// where it is within the cutoff. Infinite for one copy, NaN where positions are not finite.
+    /// Returns a distance, nm, that no two beads of different copies fall below; the smallest
+    /// distance itself if it is within the cutoff. Returns infinity for one copy and NaN if
+    /// positions are not finite.
     double nearest(std::vector<Vec3> const& positions) const;
+    /// Longest cutoff of the forces, nm.
     static double cutoff();
 
     BeadSystem const& beads() const { return beads_; }
@@ -51,14 +54,18 @@ class SamplingCopies {
     std::string platform() const { return evaluator_->platform(); }
 
   private:
+    /// A sphere around the centre of mass of a copy.
     struct Ball {
-        Vec3 centre = Vec3::zero();  // of mass
-        double reach = 0;            // of the bead farthest from it
+        /// Centre of mass, nm.
+        Vec3 centre = Vec3::zero();
+        /// Distance of the bead farthest from it, nm.
+        double reach = 0;
     };
     std::span<Vec3 const> of_copy(std::vector<Vec3> const& all, std::int64_t copy) const;
     Ball ball(std::span<Vec3 const> x) const;
     std::vector<Vec3> placed(std::vector<Vec3> positions, double spacing) const;
-    Vec3 place(std::int64_t copy) const;  // on a grid of edge 1 around the origin
+    /// Returns the place of a copy on a grid of edge 1 around the origin.
+    Vec3 place(std::int64_t copy) const;
 
     Scene scene_;
     std::uint64_t runs_ = 0;

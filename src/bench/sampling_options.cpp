@@ -1,3 +1,4 @@
+// Implements the options of `bench sampling`.
 #include "bench/sampling_options.hpp"
 
 #include <fmt/format.h>
@@ -12,9 +13,11 @@
 namespace catena::command {
 namespace {
 
+/// Bounds of the options: ps, and number of steps between samples.
 constexpr double longest_step = 10, longest_time = 1e9;  // ps
 constexpr double most_steps = 1e9;                       // between samples
 
+/// Reads a number within bounds. Throws InputError for anything else.
 double number_between(std::string const& option, std::string const& text, double least,
                       double most) {
     double value = 0;
@@ -27,6 +30,7 @@ double number_between(std::string const& option, std::string const& text, double
     return value;
 }
 
+/// Throws InputError if an option of `bench sampling` was given for another benchmark.
 void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
     for (auto const& [option, given] : {std::pair{"SCENE", words.scene},
                                         {"--copies", words.copies},

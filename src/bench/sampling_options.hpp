@@ -1,4 +1,4 @@
-// The options of `catena bench sampling` on the command line.
+// Options of `catena bench sampling` on the command line.
 #pragma once
 
 #include <string>
@@ -11,15 +11,16 @@ class App;
 
 namespace catena::command {
 
-/// As they stand there; empty: not given.
+/// Texts of the options; empty if not given.
 struct SamplingOptionTexts {
     std::string scene, copies, methods, steps, duration, discard, every, equilibration, seconds;
 };
 
+/// Adds the options to `catena bench`.
 void add_sampling(CLI::App& bench, SamplingOptionTexts&);
 
-/// InputError for what is no number, out of bounds or unknown, for an option that benchmark `name`
-/// has not, and where the file `json` is the scene.
+/// Reads the options. Throws InputError for values that are no number, out of bounds or unknown,
+/// for an option that benchmark `name` does not have, and if the file `json` is the scene.
 SamplingOptions sampling_options(SamplingOptionTexts const&, std::string const& name,
                                  std::string const& json);
 

@@ -1,3 +1,4 @@
+// Implements the rows of `bench sampling` by Catena's and OpenMM's integrators.
 #include "bench/sampling_rows.hpp"
 
 #include <fmt/format.h>
@@ -18,27 +19,33 @@ namespace catena::command {
 namespace {
 
 constexpr std::string_view method_names[] = {"rigid", "rigid-fixman", "bonds", "constraints"};
-constexpr double tolerance_of_constraints = 2e-5;  // OpenMM closes them to 1e-5
-constexpr double torn = 0.5;                       // of a bond's length: ten standard deviations
+/// Tolerance of OpenMM's constraints, which it closes to 1e-5.
+constexpr double tolerance_of_constraints = 2e-5;
+/// Error of a bond, relative to its length, that counts as torn: ten standard deviations.
+constexpr double torn = 0.5;
 
+/// State of the copies at one moment.
 struct Moment {
     std::vector<Vec3> position;
-    double kinetic = 0;     // kJ/mol
-    double link_error = 0;  // relative
+    /// Kinetic energy, kJ/mol.
+    double kinetic = 0;
+    /// Largest relative error of a link.
+    double link_error = 0;
 };
 
-/// What moves the copies.
+/// Moves the copies by one method.
 class Mover {
   public:
     virtual ~Mover() = default;
     virtual void step(int count) = 0;
     virtual Moment now() = 0;
-    /// Between samples, at little cost.
+    /// Returns the largest link error at little cost, for use between samples.
     virtual double link_error() = 0;
     virtual double tolerance() const = 0;
     virtual void describe(SamplingRow&) = 0;
 };
 
+/// Moves the copies by Catena's g-BAOAB.
 class CatenaMover final : public Mover {
   public:
     CatenaMover(Scene scene, Communicator const& communicator)
@@ -64,8 +71,8 @@ class CatenaMover final : public Mover {
     CatenaSteps catena_;
 };
 
-/// Bonds' lengths as they are at the temperature: friction of 0.01/ps would take hundreds of ps to
-/// bring them there.
+/// Gives the bonds lengths as at the temperature. A friction of 0.01/ps would take hundreds of ps
+/// to do so.
 void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
     std::normal_distribution<double> longer(0, std::sqrt(kt / calvados2::bond_stiffness));
     std::vector<Vec3>& x = chain.beads.position;
@@ -77,6 +84,7 @@ void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
     }
 }
 
+/// Moves the copies by OpenMM's own integrator.
 class OpenMmMover final : public Mover {
   public:
     OpenMmMover(Scene scene, BeadSystem const& beads, Communicator const& communicator,
@@ -113,6 +121,7 @@ class OpenMmMover final : public Mover {
     std::unique_ptr<OpenMmIntegrator> own_;
 };
 
+/// Returns the mover of a method, at a fresh place on the grid.
 std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& communicator,
                                   Backend backend, SamplingMethod method, double step,
                                   double time) {
@@ -123,15 +132,15 @@ std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& co
             scene, copies.beads(), communicator,
             method == SamplingMethod::bonds ? OwnLinks::bonds : OwnLinks::constraints, backend);
     scene.dynamics.fixman = method == SamplingMethod::rigid_fixman;
-    if (scene.dynamics.fixman &&
-        uses_gpu(backend)) {  // that force is computed on the host; OpenMM stays where it is
+    // The Fixman force is computed on the host; OpenMM stays on the GPU.
+    if (scene.dynamics.fixman && uses_gpu(backend)) {
         scene.solver.backend = Backend::segments;
         if (scene.forces.openmm->platform.empty()) scene.forces.openmm->platform = "CUDA";
     }
     return std::make_unique<CatenaMover>(std::move(scene), communicator);
 }
 
-/// One value a copy and sample, and that of all copies' kinetic energy.
+/// Series of samples: one value per copy and sample, and one kinetic energy of all copies.
 struct Found {
     CopySeries gyration, end_to_end, cosine, virial, divergence, kinetic;
 
@@ -150,7 +159,7 @@ struct Found {
     }
 };
 
-/// A row as it runs.
+/// The course of a row: discarded steps, then steps and samples.
 class RowRun {
   public:
     RowRun(SamplingCopies& copies, BenchRequest const& request, SamplingRow& row)
@@ -164,10 +173,12 @@ class RowRun {
         discarded_ = std::llround(std::ceil(options_.discard / block - 1e-9));
         wanted_ = std::max<std::int64_t>(1, std::llround(options_.duration / block));
     }
+    /// Total time of the row, ps.
     double time() const {
         return static_cast<double>((discarded_ + wanted_) * of_block_) * row_.step;
     }
 
+    /// Runs the row until its end or until --seconds.
     void run(Mover& mover) {
         Progress progress(quiet_, 0, (discarded_ + wanted_) * of_block_, row_.step, false);
         double const start = seconds_now();
@@ -193,6 +204,7 @@ class RowRun {
         progress.finish();
     }
 
+    /// Sets the means of the row from its samples.
     void conclude(SamplingMethod method) {
         Scene const& model = copies_.model();
         row_.samples = std::ssize(found_.kinetic.front());
@@ -214,6 +226,7 @@ class RowRun {
     }
 
   private:
+    /// Takes one sample of all copies.
     void sample(Mover& mover) {
         Moment const now = mover.now();
         row_.link_error = larger(row_.link_error, now.link_error);
@@ -238,6 +251,7 @@ class RowRun {
     std::int64_t of_block_, discarded_, wanted_;
 };
 
+/// Decides the state of a row.
 void judge(SamplingRow& row, double tolerance) {
     row.state = "INVALID";
     if (row.samples == 0) {
@@ -257,6 +271,7 @@ void judge(SamplingRow& row, double tolerance) {
     }
 }
 
+/// Returns the rounding error of a coordinate in single precision.
 double rounding_at(double coordinate) {
     auto const x = static_cast<float>(coordinate);
     return 0.5 * static_cast<double>(std::nextafter(x, INFINITY) - x);

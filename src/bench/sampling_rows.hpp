@@ -1,4 +1,4 @@
-// One row of `bench sampling`: a way to hold links, a step, and what was sampled with them.
+// One row of `bench sampling`: a method to keep links, a time step, and what was sampled with them.
 #pragma once
 
 #include <cmath>
@@ -12,33 +12,50 @@
 
 namespace catena::command {
 
-/// Catena's g-BAOAB on rigid links, without and with the Fixman potential; OpenMM's LangevinMiddle
-/// with harmonic bonds and with constraints.
+/// Methods: Catena's g-BAOAB on rigid links, without and with the Fixman potential; OpenMM's
+/// LangevinMiddle with harmonic bonds and with constraints.
 enum class SamplingMethod { rigid, rigid_fixman, bonds, constraints };
 char const* name_of(SamplingMethod);
-/// InputError for another name than one of these.
+/// Returns the method of a name. Throws InputError for an unknown name.
 SamplingMethod sampling_method_named(std::string const& option, std::string const& name);
-/// What it weighs bonds' directions by.
+/// Returns the measure of bond directions that the method samples.
 BondMeasure measure_of(SamplingMethod);
 
+/// Conditions and results of a row. Means have standard errors by blocking.
 struct SamplingRow {
     SamplingMethod method = SamplingMethod::rigid;
-    double step = 0;         // ps
-    std::string state, why;  // VALID, INVALID, unstable, failed or "too short"; why it is not VALID
-    std::int64_t samples = 0;              // a copy
-    double every = 0;                      // ps between them: whole steps
-    double time = 0, all = 0;              // sampled: ps a copy, ns of all copies together
-    bool cut = false;                      // by --seconds
-    Blocked gyration, end_to_end, cosine;  // nm, nm, 1
-    Blocked temperature, kinetic;          // K: configurational (measure/chain_sample.hpp), kinetic
-    double link_error = 0;                 // largest, relative
-    double nearest = INFINITY;             // of two copies, nm
-    double spacing = 0;                    // of copies at the start, nm
-    double rounding = 0;  // nm: of positions in single precision where the outermost bead may be
-    Spread seconds;       // of a step, from blocks between samples
-    double stepping = 0, sampling = 0;    // seconds that went into steps and into samples
-    std::int64_t steps = 0;               // of those
-    std::string backend, platform, path;  // of chains and forces
+    /// Time step, ps.
+    double step = 0;
+    /// State of the row, VALID, INVALID, unstable, failed or "too short", and why it is not VALID.
+    std::string state, why;
+    /// Number of samples per copy.
+    std::int64_t samples = 0;
+    /// Time between samples in whole steps, ps.
+    double every = 0;
+    /// Sampled time: ps per copy, ns of all copies together.
+    double time = 0, all = 0;
+    /// True if --seconds ended the row.
+    bool cut = false;
+    /// Means: nm, nm, 1.
+    Blocked gyration, end_to_end, cosine;
+    /// Configurational (measure/chain_sample.hpp) and kinetic temperature, K.
+    Blocked temperature, kinetic;
+    /// Largest relative error of a link.
+    double link_error = 0;
+    /// Smallest distance of two copies, nm.
+    double nearest = INFINITY;
+    /// Distance of the copies at the start, nm.
+    double spacing = 0;
+    /// Rounding of positions in single precision at the outermost possible bead, nm.
+    double rounding = 0;
+    /// Seconds per step, from the blocks between samples.
+    Spread seconds;
+    /// Seconds spent in steps and in samples.
+    double stepping = 0, sampling = 0;
+    /// Number of these steps.
+    std::int64_t steps = 0;
+    /// Backend of the chains; platform and path of the forces.
+    std::string backend, platform, path;
 
     bool valid() const { return state == "VALID"; }
     double ns_per_day() const {
@@ -46,11 +63,12 @@ struct SamplingRow {
     }
 };
 
-/// Runs it. A computation that fails is its state; InputError where it cannot be had at all.
+/// Runs a row. A failed computation becomes its state. Throws InputError if the row cannot run at
+/// all.
 SamplingRow run_sampling_row(SamplingCopies&, BenchRequest const&, Communicator const&, Backend,
                              SamplingMethod, double step);
 
-/// Moves the copies' start by so many ps on rigid links, with the scene's own step.
+/// Moves the start of the copies by this many ps on rigid links, with the scene's own time step.
 void equilibrate(SamplingCopies&, BenchRequest const&, Communicator const&, Backend, double time);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements biases, usable steps and differences.
 #include "bench/sampling_verdict.hpp"
 
 #include <algorithm>
@@ -6,8 +7,10 @@
 namespace catena::command {
 namespace {
 
+/// Largest allowed bias in percent.
 constexpr double allowed_percent = 1;
 
+/// Returns the bias of a row.
 SamplingBias bias_of(SamplingRow const& row, SamplingRow const& smallest, double temperature) {
     SamplingBias bias{NAN, NAN, NAN, NAN};
     if (!row.valid()) return bias;
@@ -26,6 +29,7 @@ SamplingBias bias_of(SamplingRow const& row, SamplingRow const& smallest, double
     return bias;
 }
 
+/// Returns the difference of two means, with their errors combined.
 Difference difference(Blocked const& of, Blocked const& less) {
     return {of.mean - less.mean, std::hypot(of.error, less.error)};
 }

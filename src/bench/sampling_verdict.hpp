@@ -1,4 +1,4 @@
-// What the rows of `bench sampling` say together: biases, the largest usable step of each method,
+// Conclusions from the rows of `bench sampling`: biases, the largest usable step of each method,
 // differences between methods.
 #pragma once
 
@@ -9,48 +9,58 @@
 
 namespace catena::command {
 
-/// In percent, with standard errors: of the mean radius of gyration against the same method's
-/// smallest step, and of the configurational temperature against the one that the dynamics is
-/// given.
+/// Biases in percent with standard errors: of the mean radius of gyration relative to the same
+/// method's smallest step, and of the configurational temperature relative to that of the
+/// thermostat.
 struct SamplingBias {
-    double gyration = 0,
-           gyration_error =
-               0;  // zeros for the smallest step itself, the reference; NaN where that is not VALID
+    /// Zero for the smallest step, which is the reference; NaN if that row is not VALID.
+    double gyration = 0, gyration_error = 0;
     double temperature = 0, temperature_error = 0;
     bool is_reference = false;
-    bool errors_known = false;  // all of them at their plateau
-    bool allowed() const;       // both below 1 %, and their errors
-    bool shown() const;         // so far below that two standard errors more would be, too
-    bool refuted() const;       // one is above 1 % even with two standard errors less
-    /// "reference", "shown", "not contradicted", "no", "no reference", or "errors too large to
-    /// tell".
+    /// True if all errors have reached their plateau.
+    bool errors_known = false;
+    /// True if both biases and their errors are below 1 %.
+    bool allowed() const;
+    /// True if both stay below 1 % even with two standard errors more.
+    bool shown() const;
+    /// True if one is above 1 % even with two standard errors less.
+    bool refuted() const;
+    /// Returns "reference", "shown", "not contradicted", "no", "no reference", or "errors too large
+    /// to tell".
     char const* word() const;
 };
 
+/// Rows and biases of one method.
 struct SamplingMethodVerdict {
     SamplingMethod method = SamplingMethod::rigid;
-    std::vector<SamplingRow const*> rows;  // by step, of every state
-    std::vector<SamplingBias> bias;        // one a row; NaN of what is not VALID
-    /// Rows of the longest steps that are usable: these and all shorter ones are VALID and their
-    /// biases allowed (shown). nullptr: none but the reference is.
+    /// Rows of every state, sorted by time step.
+    std::vector<SamplingRow const*> rows;
+    /// Biases, one per row; NaN for rows that are not VALID.
+    std::vector<SamplingBias> bias;
+    /// Rows of the longest usable steps: these and all shorter ones are VALID and their biases
+    /// allowed (shown). nullptr if only the reference is usable.
     SamplingRow const *allowed = nullptr, *shown = nullptr;
 };
 
-/// Methods in the order in which they come. The rows must outlive it.
+/// Returns the verdicts of all methods in the order in which they occur. The rows must outlive the
+/// result.
 std::vector<SamplingMethodVerdict> verdicts_of(std::vector<SamplingRow> const&, double temperature);
 
+/// A difference with its error.
 struct Difference {
-    double value = 0, error = 0;  // error: of independent runs. These begin alike: short ones are
-                                  // nearer to each other
+    /// The error is that of independent runs. The runs here start alike, so that short ones are
+    /// closer to each other.
+    double value = 0, error = 0;
     double errors() const { return error > 0 ? value / error : NAN; }
 };
-/// Of one method's row less another's.
+/// Differences of one method's row from another's.
 struct SamplingDifference {
     SamplingRow const *of = nullptr, *less = nullptr;
     Difference gyration, end_to_end, cosine;
 };
 /// Each method less bonds, and constraints less rigid, at the methods' smallest steps; where those
-/// are VALID.
+/// Returns the differences of each method from bonds, and of constraints from rigid, at the
+/// methods' smallest steps if those rows are VALID.
 std::vector<SamplingDifference> differences_of(std::vector<SamplingMethodVerdict> const&);
 
 }  // namespace catena::command

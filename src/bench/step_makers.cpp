@@ -1,3 +1,4 @@
+// Implements Catena's steps for benchmarks.
 #include "bench/step_makers.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What takes steps in benchmarks, Catena's integrators and OpenMM's own, without files.
+// Integrators for benchmarks, Catena's and OpenMM's own, without output files.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 
 namespace catena::command {
 
-/// A scene's integrator.
+/// Runs the integrator of a scene.
 class CatenaSteps {
   public:
-    /// As ChainSystem and make_stepper; throws what they throw.
+    /// Constructs the system and the integrator; throws what ChainSystem and make_stepper throw.
     CatenaSteps(Scene scene, Communicator const& communicator);
-    /// Takes so many steps, and waits for them. Throws ComputationError where they fail.
+    /// Makes this many steps and waits for them. Throws ComputationError if they fail.
     void step(int count);
-    /// Some more, with their phases.
+    /// Makes further steps and returns their phases.
     std::vector<StepTimeline> timelines(int count);
-    /// Another projection sweep from now on where the joints have come near to their tolerance, as
-    /// `catena run` does.
+    /// Adds a projection sweep from now on if the joints come close to their tolerance, as `catena
+    /// run` does.
     void adapt();
-    /// Bodies in scene order with the velocities of now.
+    /// Returns the bodies in scene order with their present velocities.
     ChainSystem::Snapshot observe();
-    /// kJ/mol, all terms.
+    /// Returns the sum of all terms of the potential energy, kJ/mol.
     double energy();
 
     Scene const& scene() const { return scene_; }
     ChainSystem& system() { return system_; }
-    /// The largest after any step(), and of the last one.
+    /// Largest constraint error after any call of step().
     double constraint_error() const { return error_; }
     double tolerance() const { return scene_.dynamics.constraint_tolerance; }
 
@@ -45,14 +45,14 @@ class CatenaSteps {
     double error_ = 0, last_error_ = 0;
 };
 
-/// The backend of a benchmark that takes one: the GPU's where there is one.
+/// Returns the backend of a benchmark that takes one: the named one, or the GPU if there is one.
 Backend backend_of(BenchRequest const& request);
 
-/// The scene's dynamics as OpenMM's own integrator takes it, on the first GPU where the chains are
-/// on one.
+/// Returns the scene's dynamics in the form of OpenMM's own integrator, on the first GPU if the
+/// chains are on one.
 OwnRun own_run(Scene const& scene, Backend backend);
 
-/// InputError where there are more: "this benchmark is for one rank".
+/// Throws InputError "this benchmark is for one rank" if there are more.
 void need_one_rank(Communicator const& communicator, char const* name);
 
 }  // namespace catena::command

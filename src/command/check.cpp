@@ -1,3 +1,4 @@
+// Implements `catena check`.
 #include <fmt/format.h>
 
 #include "command/commands.hpp"
@@ -11,12 +12,13 @@
 namespace catena::command {
 namespace {
 
-/// What OpenMM makes of the scene: its lines, and the start as it is computed with.
+/// OpenMM's description of the scene, and the start as it is used in computations.
 struct Found {
     std::vector<std::string> openmm;
     StartReport start;
 };
 
+/// Relaxes the start if the scene asks for it and evaluates OpenMM's forces once. Collective.
 Found find(Scene const& scene, Communicator const& communicator) {
     std::optional<RelaxedScene> relaxed =
         relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
@@ -32,6 +34,7 @@ Found find(Scene const& scene, Communicator const& communicator) {
     return found;
 }
 
+/// Returns the numbers of loads and OpenMM's lines as JSON.
 Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
     ForcesOnJoints const found = forces_on_joints(scene);
     Vec3 const& g = scene.forces.gravity;
@@ -45,6 +48,7 @@ Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
             {"openmm", openmm}};
 }
 
+/// Returns the dynamics as JSON; null if the scene has none.
 Json dynamics_json(Scene const& scene, std::optional<StepLimit> const& limit) {
     DynamicsSpec const& d = scene.dynamics;
     if (!d.given) return nullptr;
@@ -59,6 +63,7 @@ Json dynamics_json(Scene const& scene, std::optional<StepLimit> const& limit) {
             {"tolerance", d.tolerance > 0 ? Json(d.tolerance) : Json()}};
 }
 
+/// Returns the kind of handles and their numbers of directions as JSON.
 Json handles_json(Scene const& scene) {
     Directions const d = directions_of(scene);
     Json handles{{"kind", name_of(scene.solver.handles)}};
@@ -67,6 +72,7 @@ Json handles_json(Scene const& scene) {
     return handles;
 }
 
+/// Returns the text that `catena check` prints.
 Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks,
              std::optional<StepLimit> const& limit) {
     std::vector<std::string> const& openmm = found.openmm;

@@ -1,3 +1,4 @@
+// Implements the command line: options with their help, and requests from their values.
 #include "command/command_line.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 namespace catena::command {
 namespace {
 
+/// Values that options accept.
 constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "error", "off"};
 constexpr std::string_view handle_names[] = {"projected", "full", "articulated"};
 constexpr std::string_view joint_names[] = {"link",      "planar",   "spherical",
@@ -25,10 +27,10 @@ constexpr std::string_view bench_names[] = {"list",    "evaluation", "solve",   
                                             "openmm",  "sampling",   "overlap", "figures",
                                             "network", "plan"};
 
-/// For later versions.
+/// Names that are reserved for later versions.
 constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 
-/// Everything as it stands on the command line.
+/// All texts of the command line, before any value is read.
 struct Words {
     CommonOptions common;
     std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, loads,
@@ -39,6 +41,7 @@ struct Words {
          calibrate = false, alike = false;
 };
 
+/// Adds the options that every command has.
 void add_common(CLI::App& command, Words& words) {
     CommonOptions& c = words.common;
     command
@@ -80,6 +83,7 @@ void add_common(CLI::App& command, Words& words) {
             "log lines on standard error: trace | debug | info | warn (default) | error | off")
         ->type_name("LEVEL");
 }
+/// Adds --backend for one backend.
 void add_backend(CLI::App& command, Words& words) {
     command
         .add_option("--backend", words.common.backend,
@@ -87,9 +91,11 @@ void add_backend(CLI::App& command, Words& words) {
                     "together, see --gpu-levels)")
         ->type_name("NAME");
 }
+/// Adds the argument SCENE.
 void add_scene(CLI::App& command, Words& words) {
     command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name("");
 }
+/// Adds --repeat with the given default in its help.
 void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
     command
         .add_option("--repeat", words.repeat,
@@ -97,6 +103,7 @@ void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
         ->type_name("R");
 }
 
+/// Adds --refine.
 void add_refine(CLI::App& command, Words& words) {
     command
         .add_option("--refine", words.common.refine,
@@ -107,6 +114,7 @@ void add_refine(CLI::App& command, Words& words) {
         ->type_name("K");
 }
 
+/// Adds all commands with their options and examples.
 void add_commands(CLI::App& app, Words& words) {
     CLI::App* command = app.add_subcommand("check", "validate a scene and print what it is");
     add_scene(*command, words);
@@ -281,10 +289,12 @@ void add_commands(CLI::App& app, Words& words) {
     }
 }
 
+/// Returns views of the texts.
 std::vector<std::string_view> views(std::vector<std::string> const& texts) {
     return {texts.begin(), texts.end()};
 }
 
+/// Throws InputError for an unknown command.
 [[noreturn]] void refuse_command(CLI::App const& app, std::string const& word) {
     std::vector<std::string> names;
     for (CLI::App const* command : app.get_subcommands({})) names.push_back(command->get_name());
@@ -292,6 +302,7 @@ std::vector<std::string_view> views(std::vector<std::string> const& texts) {
                      remedy_for(word, views(names)));
 }
 
+/// Throws InputError for an unknown option, with the nearest known one as remedy.
 [[noreturn]] void refuse_option(CLI::App const& command, std::string const& word) {
     std::string const option = word.substr(0, word.find('='));
     std::vector<std::string> known;
@@ -306,7 +317,7 @@ std::vector<std::string_view> views(std::vector<std::string> const& texts) {
                      remedy.starts_with("did") ? remedy : see);
 }
 
-/// What CLI11 could not place.
+/// Throws InputError if words are left that CLI11 could not assign.
 void refuse_extras(CLI::App const& app, CLI::App const* command) {
     std::vector<std::string> const left = app.remaining(true);
     if (left.empty()) return;
@@ -319,6 +330,7 @@ void refuse_extras(CLI::App const& app, CLI::App const* command) {
                      "see catena " + command->get_name() + " --help");
 }
 
+/// Throws InputError if an option has an empty value.
 void refuse_empty(CLI::App const& command) {
     for (CLI::Option const* option : command.get_options())
         for (std::string const& value : option->results())
@@ -327,12 +339,14 @@ void refuse_empty(CLI::App const& command) {
                                  "give a value, or leave it out");
 }
 
+/// Replaces line breaks by spaces and removes trailing ones.
 std::string one_line(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     while (!text.empty() && text.back() == ' ') text.pop_back();
     return text;
 }
 
+/// Returns the common options with all values checked.
 CommonOptions checked(CommonOptions c) {
     if (!c.backend.empty()) backend_named("--backend", c.backend);
     if (!c.handles.empty()) known_value("--handles", c.handles, handle_names);
@@ -343,12 +357,14 @@ CommonOptions checked(CommonOptions c) {
     return c;
 }
 
+/// Returns the value of --repeat, or its default.
 int repeat_of(Words const& words, int otherwise) {
     return words.repeat.empty()
                ? otherwise
                : static_cast<int>(whole_number("--repeat", words.repeat, 1, 1000000));
 }
 
+/// Returns a request on one scene with the common options checked.
 template <class R>
 R scene_request(Words const& words, std::string const& command) {
     if (words.scene.empty())
@@ -360,6 +376,7 @@ R scene_request(Words const& words, std::string const& command) {
     return request;
 }
 
+/// Reads --latency and --bandwidth, which must be given together.
 void read_link(Words const& words, PlanRequest& request) {
     static constexpr Unit seconds[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
     static constexpr Unit bytes[] = {{"B/s", 1},    {"kB/s", 1e3},      {"MB/s", 1e6},
@@ -372,6 +389,7 @@ void read_link(Words const& words, PlanRequest& request) {
     request.seconds_a_byte = 1 / number_with_unit("--bandwidth", words.bandwidth, bytes);
 }
 
+/// Returns the request of `catena plan`.
 PlanRequest plan_request(Words const& words) {
     PlanRequest request;
     if (words.calibrate && words.scene.empty())
@@ -398,6 +416,7 @@ PlanRequest plan_request(Words const& words) {
     return request;
 }
 
+/// Returns the request of `catena run`.
 RunRequest run_request(Words const& words) {
     auto request = scene_request<RunRequest>(words, "run");
     if (!words.steps.empty()) request.steps = whole_number("--steps", words.steps, 0);
@@ -415,7 +434,8 @@ RunRequest run_request(Words const& words) {
     return request;
 }
 
-/// The suite has chains of its own, whose errors it looks for, not their times.
+/// Throws InputError for options that contradict --suite, which has its own chains and measures no
+/// times.
 void refuse_with_suite(Words const& words) {
     for (auto const& [option, given] : {std::pair{"--set", !words.common.set.empty()},
                                         {"--repeat", !words.repeat.empty()},
@@ -427,6 +447,7 @@ void refuse_with_suite(Words const& words) {
                              "threads nor on repetition: leave it out");
 }
 
+/// Reads the list of --sizes.
 std::vector<std::int64_t> sizes_of(Words const& words) {
     std::vector<std::int64_t> sizes;
     if (!words.sizes.empty())
@@ -435,6 +456,7 @@ std::vector<std::int64_t> sizes_of(Words const& words) {
     return sizes;
 }
 
+/// Returns the request of `catena report`.
 ReportRequest report_request(Words const& words) {
     ReportRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
@@ -457,6 +479,7 @@ ReportRequest report_request(Words const& words) {
     return request;
 }
 
+/// Returns the request of `catena bench`.
 BenchRequest bench_request(Words const& words) {
     BenchRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
@@ -499,6 +522,7 @@ BenchRequest bench_request(Words const& words) {
     return request;
 }
 
+/// Returns the request of a command.
 Request request_of(std::string const& command, Words const& words) {
     if (command == "check") return scene_request<CheckRequest>(words, command);
     if (command == "plan") return plan_request(words);
@@ -511,6 +535,7 @@ Request request_of(std::string const& command, Words const& words) {
     return request;
 }
 
+/// Returns a request that prints a text.
 Answer answer(std::string text) {
     Answer a;
     a.text = std::move(text);
@@ -532,7 +557,8 @@ Request parse_command_line(int argc, char const* const* argv) {
         "failed or is INVALID; 2 the input is wrong; 3 a run was stopped by a signal and can go "
         "on.");
     add_commands(app, words);
-    app.require_subcommand(0, 1);  // so that "catena bench solve" is no second command
+    // Only one command is accepted, so that "catena bench solve" does not count as two.
+    app.require_subcommand(0, 1);
     app.allow_extras();
     for (CLI::App* each : app.get_subcommands({})) each->allow_extras();
     try {

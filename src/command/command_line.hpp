@@ -1,12 +1,12 @@
-// The command line: what may be asked, and how it is explained.
+// Parses the command line and explains it (--help).
 #pragma once
 
 #include "console/requests.hpp"
 
 namespace catena::command {
 
-/// Throws InputError with one line for whatever is not understood; `not in this version` for what
-/// the contract promises later.
+/// Returns the request on the command line. Throws InputError with one line for anything that is
+/// not understood, and "not in this version" for what is planned.
 Request parse_command_line(int argc, char const* const* argv);
 
 }  // namespace catena::command

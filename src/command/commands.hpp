@@ -1,4 +1,4 @@
-// The work of the commands. All are collective; what they return counts on rank 0.
+// The commands. All are collective; their outcomes are complete on rank 0 only.
 #pragma once
 
 #include "console/outcome.hpp"
@@ -8,33 +8,36 @@
 
 namespace catena::command {
 
-/// What the scene is: chains, bodies, degrees of freedom, handle kinds, forces, memory. `json`:
-/// whether the outcome's is asked for, whose list of chains takes a kilobyte a chain.
+/// Describes the scene: chains, bodies, degrees of freedom, handle kinds, forces and memory. `json`
+/// is true if the outcome's JSON is needed; its list of chains takes about a kilobyte per chain.
 Outcome check_scene(Scene const&, Communicator const&, bool json);
 
-/// What will run, how long it takes, what is left out, and why.
+/// Describes what will run, how long it takes, what is left out, and why.
 Outcome plan_scene(Scene const&, Communicator const&, PlanRequest const&);
-/// Measures every kind of chain, and keeps that.
+/// Measures every kind of chain on this machine and writes the times to the cache.
 Outcome calibrate(Communicator const&, PlanRequest const&);
 
-/// One evaluation, timed, with its residual.
+/// Computes one evaluation repeatedly, with its times and residual.
 Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
 
-/// A simulation with its folder.
+/// Runs a simulation and writes its folder.
 Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 
-/// What `report` measures: the solver's error on all scenes, the integrators' and forces' on those
-/// that have them.
+/// Scenes that `report` measures: the solver's error on all scenes, the errors of integrators and
+/// forces on those that have them.
 struct ReportScenes {
     std::vector<Scene> solver, integrators, forces, drift;
-    std::vector<Scene> slow;  // of the integrators, whose stiff springs hardly vibrate
-    double time = 0;          // of the integrators; 0: 32 steps of each scene's own
-    std::vector<std::string>
-        left_out;  // what is measured of some scenes and not of others, and why
+    /// Scenes for integrators that compare slow motion, whose stiff springs hardly vibrate.
+    std::vector<Scene> slow;
+    /// Simulated time of the comparison of integrators; 0 for 32 steps of each scene's own step.
+    double time = 0;
+    /// Measurements that are left out for some scenes, and why.
+    std::vector<std::string> left_out;
 };
-/// Error against run time, or the stability suite (no scenes); writes report.json, report.html and,
-/// where Python can draw them, pictures.
+/// Measures error against run time; writes report.json, report.html and, if Python can draw them,
+/// pictures.
 Outcome report_scenes(ReportScenes const&, Communicator const&, ReportRequest const&);
+/// Measures the stability suite, which has scenes of its own; writes the same files.
 Outcome report_stability(Communicator const&, ReportRequest const&);
 
 }  // namespace catena::command

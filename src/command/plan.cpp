@@ -1,3 +1,4 @@
+// Implements `catena plan`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,16 +17,20 @@
 namespace catena::command {
 namespace {
 
+/// Returns the axes in which the scene's integrator evaluates.
 Axes axes_for(Scene const& scene) {
     return scene.dynamics.given && !uses_joint_coordinates(scene.dynamics.integrator) ? Axes::world
                                                                                       : Axes::joint;
 }
 
-/// What one evaluation of a group costs in messages.
+/// Collective operations of one evaluation of a group.
 struct Rounds {
-    bool shared = false;                           // a chain is cut by a rank's end
-    int matrices = 0, biases = 0, kinematics = 0;  // collectives a sweep or pass
+    /// True if the end of a rank's range cuts a chain.
+    bool shared = false;
+    /// Collectives per matrix sweep, per bias sweep and per pass of the kinematics.
+    int matrices = 0, biases = 0, kinematics = 0;
 };
+/// Counts the collectives of a group.
 Rounds rounds_of(ChainGroup const& group) {
     Rounds r;
     for (int chain = 0; chain < group.partition.chains(); ++chain)
@@ -35,6 +40,7 @@ Rounds rounds_of(ChainGroup const& group) {
     return r;
 }
 
+/// Returns the number of bodies of each rank.
 std::vector<std::int64_t> shares_of(ChainGroup const& group) {
     std::vector<std::int64_t> shares;
     for (std::size_t r = 0; r + 1 < group.first_of_rank().size(); ++r)
@@ -42,17 +48,20 @@ std::vector<std::int64_t> shares_of(ChainGroup const& group) {
     return shares;
 }
 
+/// Formats the numbers of bodies; for many ranks the smallest and the largest.
 std::string shares_text(std::vector<std::int64_t> const& shares) {
     if (shares.size() <= 8) return fmt::format("{}", fmt::join(shares, ", "));
     auto const [least, most] = std::minmax_element(shares.begin(), shares.end());
     return fmt::format("{} to {} on {} ranks", *least, *most, shares.size());
 }
 
+/// Returns the tree of the longest chain.
 dca::ChainTree const& longest_tree(ChainGroup const& group) {
     return *std::max_element(group.partition.trees.begin(), group.partition.trees.end(),
                              [](auto const& a, auto const& b) { return a.bodies < b.bodies; });
 }
 
+/// Adds the description of a group: blocks, tree, units, collectives and memory.
 void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport const& report) {
     dca::ChainTree const& tree = longest_tree(group);
     Rounds const rounds = rounds_of(group);
@@ -94,10 +103,12 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"solver_memory_bytes", report.memory_bytes}});
 }
 
+/// Sweeps of one time step and their explanation.
 struct StepPlan {
     int matrix_sweeps = 0, bias_sweeps = 0, bias_sweeps_a_drift_sweep = 0;
     std::string text;
 };
+/// Counts the sweeps of the scene's integrator.
 StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     bool const tips = has_jointed_tips(scene);
@@ -157,6 +168,7 @@ StepPlan step_of(Scene const& scene) {
     return {};
 }
 
+/// Adds the integrator and the sweeps of a step.
 void add_dynamics(Text& text, Json& json, Scene const& scene) {
     text.heading("dynamics");
     text.entry("integrator", dynamics_text(scene));
@@ -171,6 +183,7 @@ void add_dynamics(Text& text, Json& json, Scene const& scene) {
          {{"fixed", step.bias_sweeps}, {"each_drift_sweep", step.bias_sweeps_a_drift_sweep}}}};
 }
 
+/// Adds the frames and checkpoints that a run would write.
 void add_output(Text& text, Json& json, Scene const& scene) {
     if (!scene.dynamics.given) return;
     OutputSpec const& o = scene.output;
@@ -190,6 +203,7 @@ void add_output(Text& text, Json& json, Scene const& scene) {
         {"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
 }
 
+/// Adds the estimated memory on host and GPU.
 void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& predictions,
                 int ranks) {
     Memory const memory = memory_of(scene, ranks);
@@ -200,12 +214,14 @@ void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& p
     json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
 }
 
+/// Returns the time step that enters the matrices of implicit joints; 0 for explicit integrators.
 double implicit_step_of(Scene const& scene) {
     return scene.dynamics.given && is_implicit(scene.dynamics.integrator) ? scene.dynamics.step
                                                                           : 0.0;
 }
 
-/// Of the chains themselves: OpenMM is left out.
+/// Measures the phases of an evaluation of the chains without OpenMM. Throws InputError for
+/// implicit-g-baoab.
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
     if (scene.dynamics.given && scene.dynamics.integrator == Integrator::implicit_g_baoab)
         throw InputError("implicit-g-baoab has no evaluation outside a step that could be measured",
@@ -215,6 +231,7 @@ plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communica
     return plan::measure_phases(system, {5, 200, 0.5});
 }
 
+/// Returns the plan for the chosen backend. Collective.
 Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator,
                     PlanRequest const& request, Predictions predictions) {
     ChainSystem const system(scene, axes, communicator, implicit_step_of(scene));

@@ -1,3 +1,4 @@
+// Implements `catena report`.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -24,11 +25,14 @@
 namespace catena::command {
 namespace {
 
-constexpr int integrator_steps =
-    32;  // of a scene's own: the time over which its integrators are compared
+/// Number of a scene's own time steps over which its integrators are compared.
+constexpr int integrator_steps = 32;
+/// Time step and number of steps of the measurement of the energy drift.
 constexpr double drift_step = 0.002;
 constexpr std::int64_t drift_steps = 1000000;
 
+/// Creates the output folder. Throws InputError if that fails or if the folder holds a run.
+/// Collective.
 void make_folder(Communicator const& communicator, std::string const& folder) {
     on_first_rank(communicator, [&] {
         std::error_code error;
@@ -42,7 +46,7 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
     });
 }
 
-/// All that this build and machine have, unless one is named.
+/// Returns the backend that --backend names, or all that this build and machine have.
 std::vector<Backend> backends_of(ReportRequest const& request) {
     if (!request.backend.empty() && request.backend != "auto")
         return {backend_named("--backend", request.backend)};
@@ -52,6 +56,7 @@ std::vector<Backend> backends_of(ReportRequest const& request) {
     return backends;
 }
 
+/// Returns the kind of handles that --handles names, or all kinds.
 std::vector<Handles> handles_of(ReportRequest const& request) {
     std::vector<Handles> all{Handles::projected, Handles::full, Handles::articulated};
     if (!request.handles.empty())
@@ -59,7 +64,7 @@ std::vector<Handles> handles_of(ReportRequest const& request) {
     return all;
 }
 
-/// Text and JSON, and on rank 0 the files.
+/// Returns the outcome of all parts. Rank 0 also writes the files and draws the pictures.
 Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
                  std::vector<std::string> const& left_out, Communicator const& communicator,
                  ReportRequest const& request) {
@@ -96,6 +101,7 @@ Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
     return outcome;
 }
 
+/// Measures the integrators on the scenes of a report.
 ReportPart integrators_of(ReportScenes const& scenes, Communicator const& communicator,
                           ReportRequest const& request) {
     std::vector<IntegratorStudy> studies;
@@ -114,6 +120,8 @@ ReportPart integrators_of(ReportScenes const& scenes, Communicator const& commun
     return integrator_part(studies, drifts);
 }
 
+/// Returns the cases of the stability suite that the request selects. Throws InputError for unknown
+/// words.
 std::vector<StabilityCase> cases_of(ReportRequest const& request) {
     std::vector<StabilityCase> cases =
         request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick)

@@ -1,3 +1,4 @@
+// Implements the choice of scenes for `catena report`.
 #include "command/report_scenes.hpp"
 
 #include "bench/generated.hpp"

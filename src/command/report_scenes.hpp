@@ -1,15 +1,16 @@
-// The scenes of `catena report`.
+// Chooses the scenes of `catena report`.
 #pragma once
 
 #include "command/commands.hpp"
 
 namespace catena::command {
 
-/// Those of a report on no scenes of the user's; with `quick` fewer and smaller ones.
+/// Returns the generated scenes of a report without scenes of the user; fewer and smaller ones with
+/// `quick`.
 ReportScenes generated_report(ReportRequest const&);
 
-/// All for the solver; with `dynamics` and no OpenMM for the integrators, with OpenMM for the
-/// forces.
+/// Sorts the user's scenes. All are for the solver, those with `dynamics` and no OpenMM for the
+/// integrators, those with OpenMM for the forces.
 ReportScenes sorted_for_report(std::vector<Scene>);
 
 }  // namespace catena::command

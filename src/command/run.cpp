@@ -1,3 +1,4 @@
+// Implements `catena run` and its summary in the terminal.
 #include <fmt/format.h>
 
 #include <spdlog/spdlog.h>
@@ -20,8 +21,11 @@
 namespace catena::command {
 namespace {
 
+/// Time at which the program started, in s.
 double const program_start = seconds_now();
 
+/// Returns the folder of the run: --output, the checkpoint's folder, or the scene's name with
+/// "-run".
 std::string output_folder(Scene const& scene, RunRequest const& request) {
     if (!request.output.empty()) return request.output;
     if (request.restart.empty()) return std::filesystem::path(scene.file).stem().string() + "-run";
@@ -29,17 +33,20 @@ std::string output_folder(Scene const& scene, RunRequest const& request) {
     return folder.empty() ? "." : folder.string();
 }
 
+/// Returns a number of an object; NaN if it is missing.
 double number(nlohmann::json const& object, char const* key) {
     auto const found = object.find(key);
     return found == object.end() || !found->is_number() ? NAN : found->get<double>();
 }
 
+/// Returns the mean of a list of numbers.
 double mean(nlohmann::json const& list) {
     double sum = 0;
     for (auto const& value : list) sum += value.get<double>();
     return sum / static_cast<double>(list.size());
 }
 
+/// Describes the ghosts of the domain decomposition.
 std::string ghosts_text(nlohmann::json const& ghosts) {
     return fmt::format(
         "{:.4g} for {:.4g} own beads on a rank, lists made {} in {}; {:.3g} messages, {:.4g} bytes "
@@ -50,7 +57,7 @@ std::string ghosts_text(nlohmann::json const& ghosts) {
         mean(ghosts.at("messages_a_step")), mean(ghosts.at("bytes_a_step")));
 }
 
-/// The bodies of each rank, of many ranks the fewest and the most.
+/// Describes the number of bodies of each rank; for many ranks the smallest and the largest.
 std::string shares_text(nlohmann::json const& parallel) {
     auto const bodies = parallel.at("bodies_of_rank").get<std::vector<std::int64_t>>();
     auto const [least, most] = std::minmax_element(bodies.begin(), bodies.end());
@@ -63,7 +70,7 @@ std::string shares_text(nlohmann::json const& parallel) {
                 : "the ranks' speeds, as measured at the start");
 }
 
-/// Before or after relaxation.
+/// Describes the energy before or after relaxation.
 std::string relaxed_text(nlohmann::json const& forces) {
     double const potential = number(forces, "potential_energy");
     std::string const energy =
@@ -73,7 +80,7 @@ std::string relaxed_text(nlohmann::json const& forces) {
            fmt::format(" (nearest beads {:.3g} nm apart)", number(forces, "nearest_distance"));
 }
 
-/// What was changed of the start that the user gave, and its energy.
+/// Adds what was changed in the start that the user gave, and the energy of the start.
 void add_start(Text& text, nlohmann::json const& start, char const* unit) {
     if (double const change = number(start, "largest_link_change"); change > 0)
         text.entry(
@@ -98,7 +105,7 @@ void add_start(Text& text, nlohmann::json const& start, char const* unit) {
                                number(start, "temperature")));
 }
 
-/// "energy at step 3000: ..." of the first check that failed; empty of none.
+/// Describes the first check that failed, e.g. "energy at step 3000: ..."; empty if none failed.
 std::string failure_of(nlohmann::json const& s) {
     for (auto const& check : s.at("verdict").at("checks"))
         if (!check.at("passed").get<bool>())
@@ -108,6 +115,7 @@ std::string failure_of(nlohmann::json const& s) {
     return "";
 }
 
+/// Returns the summary of a run for the terminal.
 std::string text_of(Scene const& scene, nlohmann::json const& s, std::string const& reason) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
@@ -194,6 +202,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
     return text.str();
 }
 
+/// Returns the error of a run that is not valid or was stopped; empty for any other.
 std::string complaint_of(nlohmann::json const& s, bool whole) {
     nlohmann::json const& run = s.at("run");
     if (std::string const failure = failure_of(s); !failure.empty()) return failure;
@@ -204,8 +213,8 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
                        s.at("files").at("checkpoint.h5").get<std::string>());
 }
 
-/// Articulated handles are refined where the first accelerations need it; of others, and where they
-/// cannot be, a note says how far off these may be. Collective.
+/// Estimates the error of the first accelerations. Refines articulated handles if they need it. For
+/// other handles, and if refinement is impossible, a note states the possible error. Collective.
 void look_at_forward_error(Scene& scene, Communicator const& communicator) {
     if (!scene.dynamics.given) return;
     std::optional<double> const error = forward_error_at_start(scene, communicator);

@@ -1,3 +1,4 @@
+// Implements loading of scenes, output of outcomes, and the handling of errors on all ranks.
 #include "command/session.hpp"
 
 #include <spdlog/spdlog.h>
@@ -25,13 +26,15 @@
 namespace catena::command {
 namespace {
 
+/// Exit status of a run that was stopped by a signal.
 constexpr int stopped_status = 3;
 
-/// Longer than launchers let the other ranks live once one has given up (jobs/common.sh).
+/// Waiting time that is longer than launchers let other ranks live once one rank has ended
+/// (jobs/common.sh).
 constexpr std::chrono::seconds patience(4);
 
-/// With several ranks, an error that others may not know of ends all of them; rank 0, which may
-/// have met the same, has the first word.
+/// Reports an error and returns status 1. With several ranks, an error that the others may not know
+/// of ends all of them. Rank 0, which may have met the same error, speaks first.
 int fail(Communicator const& communicator, std::string const& line) {
     bool const alone = communicator.size() == 1;
     if (!alone && communicator.rank() != 0) std::this_thread::sleep_for(patience);
@@ -40,12 +43,14 @@ int fail(Communicator const& communicator, std::string const& line) {
     return 1;
 }
 
-/// Not only where it matters, hours later or never.
+/// Checks variables of the environment at the start, not only where they are used hours later or
+/// never.
 void check_environment(Communicator const& communicator) {
     gather_choice(variable_of_first_rank(communicator, "CATENA_GATHER"));
     gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE"));
 }
 
+/// Parses the command line, runs the command and converts exceptions to an exit status.
 int run_request(Communicator const& communicator, int argc, char** argv,
                 std::function<int(Communicator const&, Request const&)> const& execute) {
     bool const speaks = communicator.rank() == 0;

@@ -1,4 +1,4 @@
-// One call of the program: the ranks it runs on, what it prints and how it ends.
+// One call of the program: the ranks that it runs on, what it prints and how it ends.
 #pragma once
 
 #include <functional>
@@ -10,16 +10,17 @@
 
 namespace catena::command {
 
+/// Loads scenes and prints outcomes for one command.
 class Session {
   public:
-    /// Sets up the log. InputError when --json names a file that cannot be.
+    /// Starts the log. Throws InputError if --json names a file that cannot be written.
     Session(Communicator const&, CommonOptions const&);
 
     Communicator const& communicator() const { return communicator_; }
-    /// The scene with the options' overrides.
+    /// Loads the scene with the options' overrides. Collective.
     Scene load(std::string const& file) const;
-    /// Prints the text on rank 0 unless --quiet, writes --json. The exit status: 0, 1 where the
-    /// outcome is not valid, 3 where it is not whole. Collective.
+    /// Prints the text on rank 0 unless --quiet, and writes --json. Returns the exit status: 0, 1
+    /// if the outcome is not valid, 3 if it is not whole. Collective.
     int conclude(Outcome const&) const;
 
   private:
@@ -27,8 +28,8 @@ class Session {
     CommonOptions const& options_;
 };
 
-/// Initialises the ranks, reads the command line, runs `execute` and turns whatever is thrown into
-/// one line on standard error and an exit status, the same on every rank: 2 for InputError, else 1.
+/// Initialises the ranks, reads the command line and runs `execute`. Every exception becomes one
+/// line on standard error and an exit status, the same on every rank: 2 for InputError, else 1.
 int guarded(int argc, char** argv,
             std::function<int(Communicator const&, Request const&)> const& execute);
 

@@ -1,3 +1,4 @@
+// Implements `catena solve`.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -24,12 +25,13 @@
 namespace catena::command {
 namespace {
 
+/// Largest number of bodies whose accelerations are part of the JSON.
 constexpr std::int64_t most_bodies_in_json = 10000;
 
-/// The recursive Newton-Euler residual of the worst chain, where the oracle can have it: every body
-/// on this rank, not too many, none joined by links, no forces that it does not know. Of loops of
-/// bodies it says nothing: what their joints' moments are compared with may vanish where forces
-/// pass through the joints.
+/// Returns the recursive Newton-Euler residual of the worst chain, or null where the oracle cannot
+/// compute it. It needs all bodies on this rank, not too many, no links and no forces unknown to
+/// it. Loops of bodies are excluded: the moments that their residuals are relative to may vanish
+/// where forces pass through the joints.
 Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     Scene const& scene = system.scene();
     bool const left_out =
@@ -65,12 +67,14 @@ Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     return worst;
 }
 
+/// Converts vectors to JSON.
 Json vectors_json(std::vector<Vec3> const& vectors) {
     Json list = Json::array();
     for (Vec3 const& v : vectors) list.push_back({v[0], v[1], v[2]});
     return list;
 }
 
+/// Adds the arrays of all bodies: accelerations, forces of joints and tips, forces on beads.
 void add_arrays(Json& json, Scene const& scene, Solution const& s) {
     Json accelerations = Json::array(), forces = Json::array();
     std::size_t body = 0;
@@ -114,10 +118,12 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
     }
 }
 
+/// True if all values are finite.
 bool finite(std::vector<double> const& values) {
     return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
+/// Returns the JSON that does not depend on the solution.
 Json summary_json(ChainSystem const& system, Timing const& timing) {
     Scene const& scene = system.scene();
     Json phases = Json::object();
@@ -143,11 +149,13 @@ Json summary_json(ChainSystem const& system, Timing const& timing) {
             {"sweeps", {{"matrix", timing.matrix_sweeps}, {"bias", timing.bias_sweeps}}}};
 }
 
+/// True if a chain starts with thermal velocities.
 bool starts_thermal(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(),
                        [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
 }
 
+/// Returns the text that `catena solve` prints.
 std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing,
                     std::string const& complaint) {
     Scene const& scene = system.scene();
@@ -173,7 +181,8 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                     duration_text(timing.evaluation.median), timing.evaluation.count,
                     duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                     1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
-    // An evaluation finds matrices and biases at once where it can: apart they take longer.
+    // An evaluation computes matrices and biases in one sweep if it can; separate sweeps take
+    // longer.
     for (auto const& [name, seconds] : timing.phases)
         text.entry("  " + name,
                    duration_text(seconds) + (name.ends_with("sweep") ? ", by itself" : ""));
@@ -216,7 +225,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     return text.str();
 }
 
-/// Seconds of each step.
+/// Refines the solution and returns the seconds of each step. Collective.
 std::vector<double> refine(ChainSystem& system, int steps) {
     std::vector<double> seconds;
     for (int i = 0; i < steps; ++i) {
@@ -227,6 +236,7 @@ std::vector<double> refine(ChainSystem& system, int steps) {
     return seconds;
 }
 
+/// Checks that the HDF5 file of --accelerations can be written. Throws InputError. Collective.
 void prepare_file(Communicator const& communicator, std::string const& file) {
     on_first_rank(communicator, [&] {
         if (file.empty()) return;
@@ -239,6 +249,7 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
     });
 }
 
+/// Returns the reason why a solution is not valid, with a remedy.
 std::string complaint_of(Scene const& scene, ForwardError const& error, double residual,
                          double bound) {
     if (error.is_small() || !(residual <= bound))
@@ -252,6 +263,7 @@ std::string complaint_of(Scene const& scene, ForwardError const& error, double r
                        remedy_of_forward_error(scene, true, {refine, "--handles articulated"}));
 }
 
+/// Solves the scene with the chosen backend. Collective.
 Outcome solve_chosen(Scene const& given, Communicator const& communicator,
                      SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
@@ -265,7 +277,8 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator,
     if (refinements > 0 && system.joint().empty())
         throw InputError("chains of beads and of linked bodies are not refined", "solver.refine",
                          "leave it out");
-    system.close_tips();  // as a run does: velocities then fit them
+    // A run closes the tips likewise; velocities then fit them.
+    system.close_tips();
     if (system.openmm()) {
         system.evaluate(false);
         look_at_start(
@@ -278,8 +291,8 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator,
     json["backend_reason"] = reason;
     json["refinement"] = {{"steps", refinements}, {"seconds_of_each", refinement}};
     std::vector<EnergyTerm> const energies = system.potential_energy();
-    // Arrays of all bodies are made where somebody reads them; what is not finite makes the
-    // residual so.
+    // Arrays of all bodies are built only if they are read. Values that are not finite make the
+    // residual fail as well.
     bool const wanted = scene.bodies() <= most_bodies_in_json ||
                         communicator.max(request.accelerations.empty() ? 0 : 1) > 0;
     double const bound = system.residual_bound();

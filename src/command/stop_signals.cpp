@@ -1,3 +1,4 @@
+// Implements the recording of signals in an atomic number.
 #include "command/stop_signals.hpp"
 
 #include <atomic>
@@ -5,6 +6,7 @@
 namespace catena::command {
 namespace {
 
+/// A recorded signal with its name and the flags of its handler.
 struct Signal {
     int number;
     char const* name;
@@ -19,6 +21,7 @@ constexpr Signal signals[] = {{SIGTERM, "SIGTERM", SA_RESTART},
 std::atomic<int> last{0};
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may not wait");
 
+/// Handler that records the signal.
 extern "C" void note(int signal) { last.store(signal); }
 
 }  // namespace
@@ -32,7 +35,8 @@ StopSignals::StopSignals() {
         action.sa_flags = signals[i].flags;
         ::sigaction(signals[i].number, &action, &before_[i]);
         if (signals[i].number == SIGHUP && before_[i].sa_handler == SIG_IGN)
-            ::sigaction(SIGHUP, &before_[i], nullptr);  // nohup
+            // A SIGHUP that nohup ignores stays ignored.
+            ::sigaction(SIGHUP, &before_[i], nullptr);
     }
 }
 

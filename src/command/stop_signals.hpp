@@ -1,5 +1,5 @@
-// The signals by which a user, a launcher or a batch system asks a run to stop: noted, not obeyed
-// at once.
+// Signals by which a user, a launcher or a batch system asks a run to stop. They are recorded, and
+// the run ends after its current step.
 #pragma once
 
 #include <csignal>
@@ -7,8 +7,9 @@
 
 namespace catena::command {
 
-/// While it lives SIGTERM, SIGUSR1, SIGHUP, SIGXCPU and the first SIGINT are noted; a second SIGINT
-/// ends the process at once. A SIGHUP that was ignored before (nohup) stays ignored. One at a time.
+/// Records SIGTERM, SIGUSR1, SIGHUP, SIGXCPU and the first SIGINT while it lives. A second SIGINT
+/// ends the process at once. A SIGHUP that was ignored before (nohup) stays ignored. Only one
+/// object may exist at a time.
 class StopSignals {
   public:
     StopSignals();
@@ -16,9 +17,9 @@ class StopSignals {
     StopSignals& operator=(StopSignals const&) = delete;
     ~StopSignals();
 
-    /// The last one noted, 0 if none was.
+    /// Returns the number of the last recorded signal; 0 if there was none.
     static int noted();
-    /// "SIGTERM"
+    /// Returns for example "SIGTERM".
     static std::string name_of(int signal);
 
   private:

@@ -1,3 +1,4 @@
+// Implements the search for scripts and Pythons, and runs them with posix_spawn.
 #include "console/helper_programs.hpp"
 
 #include <fcntl.h>
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the folder of the executable and all folders above it, innermost first.
 std::vector<fs::path> folders_above_program() {
     std::error_code error;
     fs::path folder = fs::read_symlink("/proc/self/exe", error);
@@ -23,6 +25,7 @@ std::vector<fs::path> folders_above_program() {
     return folders;
 }
 
+/// Returns the first folder's file that exists.
 std::optional<fs::path> find_file(std::vector<fs::path> const& folders, std::string const& path) {
     for (fs::path const& folder : folders) {
         std::error_code ignored;

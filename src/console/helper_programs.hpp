@@ -1,5 +1,5 @@
-// Programs that stand beside this one: scripts of the source tree, a Python that has what they
-// need, what the build tree holds.
+// Finds and runs programs that accompany this one: scripts of the source tree, a Python with the
+// modules they need, and executables of the build tree.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,18 @@
 
 namespace catena::command {
 
-/// Exit status, -1 where the program could not be started. What it prints is dropped.
+/// Runs a program and drops what it prints. Returns its exit status, or -1 if it could not be
+/// started or was ended by a signal.
 int run_quietly(std::vector<std::string> words);
 
-/// A file by its path in the source tree the program was built in, or in the folder it is started
-/// from.
+/// Finds a file by its path in the source tree that the program was built in, or in the current
+/// folder.
 std::optional<std::filesystem::path> find_in_source_tree(std::string const& path);
-/// A file by its path in the build tree, the program's own folder or one above it.
+/// Finds a file by its path in the build tree: in the program's own folder or one above it.
 std::optional<std::filesystem::path> find_in_build_tree(std::string const& path);
 
-/// A Python that can import a module: that of VIRTUAL_ENV, of a folder `venv` or `peers-venv` above
-/// the program, or on PATH.
+/// Finds a Python that can import a module: the one of VIRTUAL_ENV, of a folder `venv` or
+/// `peers-venv` above the program, or on PATH.
 std::optional<std::string> find_python(std::string const& module);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the reading of numbers, names and lists on the command line.
 #include "console/option_values.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Values of options, read as strictly as a scene's, with messages that name the option.
+// Reads the values of options as strictly as those of a scene. Messages name the option.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,34 @@
 
 namespace catena::command {
 
-/// Digits, or a number without a fraction such as 1e6, in [least, most].
-/// That neither the scene nor one of them is written over; empty: not given, "-": standard output.
+/// Throws InputError if an output file is the scene or two output files are the same. An empty name
+/// means not given, "-" means standard output.
 void require_files_apart(std::string const& scene, std::string const& json,
                          std::string const& accelerations);
 
+/// Reads digits, or a number without a fraction such as 1e6. Throws InputError unless it is in
+/// [least, most].
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least,
                           std::int64_t most = INT64_MAX);
-/// A positive number with one of the units behind it ("1.5us"), times what the unit is worth.
+/// A unit and its value in the base unit.
 struct Unit {
     std::string_view name;
     double worth;
 };
+/// Reads a positive number followed by one of the units ("1.5us"), in the base unit. Throws
+/// InputError for anything else.
 double number_with_unit(std::string const& option, std::string const& text,
                         std::span<Unit const> units);
-/// The value itself when it is among `known`; InputError with the nearest known one otherwise.
+/// Returns the value if it is among `known`. Throws InputError with the nearest known one
+/// otherwise.
 std::string const& known_value(std::string const& option, std::string const& text,
                                std::span<std::string_view const> known);
-/// Parts between commas, none of them empty.
+/// Returns the parts between commas. Throws InputError if one is empty.
 std::vector<std::string> comma_list(std::string const& option, std::string const& text);
-/// Throws "not in this version" for the GPU's, InputError for an unknown one.
+/// Returns the backend of a name. Throws InputError for an unknown one.
 Backend backend_named(std::string const& option, std::string const& text);
 
-/// "did you mean `...`?" or "use one of ...".
+/// Returns "did you mean `...`?" or "use one of ...".
 std::string remedy_for(std::string_view text, std::span<std::string_view const> known);
 
 }  // namespace catena::command

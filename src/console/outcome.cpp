@@ -1,3 +1,4 @@
+// Implements the layout of JSON for people: one key per line, plain lists on one line.
 #include "console/outcome.hpp"
 
 #include <algorithm>
@@ -5,10 +6,12 @@
 namespace catena::command {
 namespace {
 
+/// Returns a value on one line; replaces invalid UTF-8.
 std::string compact(Json const& value) {
     return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// Appends a value, with nested objects and lists on indented lines.
 void append(std::string& text, Json const& value, std::string const& indent) {
     bool const plain = std::none_of(value.begin(), value.end(), [](Json const& entry) {
         return entry.is_structured() && !entry.empty();

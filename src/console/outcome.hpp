@@ -1,4 +1,4 @@
-// What a command found: a text for people, JSON for programs, and whether its checks hold.
+// The result of a command: a text for people, JSON for programs, and whether its checks hold.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,18 +8,19 @@ namespace catena::command {
 
 using Json = nlohmann::ordered_json;
 
-/// Text and JSON count on rank 0.
+/// Result of a command. Text and JSON are complete on rank 0 only.
 struct Outcome {
     std::string text;
     Json json;
     bool valid = true;
-    bool whole = true;           // false: stopped on request before its end
-    std::string complaint = {};  // where it is not valid or whole: what is wrong and what to do,
-                                 // for those who see nothing of `text`
+    /// False if the command was stopped on request before its end.
+    bool whole = true;
+    /// Error and remedy if the outcome is not valid or not whole, for users who do not see `text`.
+    std::string complaint = {};
 };
 
-/// Objects a key a line, lists of plain values on one line. Numbers read back to the same doubles;
-/// what is not finite becomes null.
+/// Returns JSON with one key per line and lists of plain values on one line. Numbers read back to
+/// the same doubles; values that are not finite become null.
 std::string json_text(Json const&);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the drawing of a report's pictures by jobs/report_plot.py.
 #include "console/picture.hpp"
 
 #include "console/helper_programs.hpp"

@@ -1,3 +1,4 @@
+// Implements the preparation of descriptors and signals.
 #include "console/process.hpp"
 
 #include <fcntl.h>
@@ -18,7 +19,8 @@ void prepare_process() {
     for (int const descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
         int const opened =
-            ::open("/dev/null", O_RDWR);  // the lowest number that is free, which is this one
+            // open() returns the lowest free number, which is the closed descriptor.
+            ::open("/dev/null", O_RDWR);
         if (opened > STDERR_FILENO) ::close(opened);
     }
     for (int const number : ignored_signals) std::signal(number, SIG_IGN);

@@ -1,17 +1,18 @@
-// What a process is given by whoever starts it, made fit for one that writes files for hours.
+// Prepares the process: open standard descriptors and ignored signals, so that a program can write
+// files for hours.
 #pragma once
 
 #include <spawn.h>
 
 namespace catena::command {
 
-/// Opens descriptors 0 to 2 on /dev/null where they are closed, so that no file of a run gets their
-/// number. Ignores SIGPIPE and SIGXFSZ, so that write() says EPIPE or EFBIG instead. To be called
+/// Opens descriptors 0 to 2 on /dev/null if they are closed, so that no file of a run gets their
+/// numbers. Ignores SIGPIPE and SIGXFSZ, so that write() returns EPIPE or EFBIG instead. Call this
 /// before anything is opened.
 void prepare_process();
 
-/// For posix_spawn: other programs start with the signals that prepare_process() ignores set back
-/// to their defaults.
+/// Attributes for posix_spawn that reset the signals ignored by prepare_process() to their defaults
+/// in the started program.
 class DefaultSignals {
   public:
     DefaultSignals();

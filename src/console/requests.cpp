@@ -1,3 +1,4 @@
+// Implements overrides from options, and the defaults of benchmarks.
 #include "console/requests.hpp"
 
 namespace catena::command {

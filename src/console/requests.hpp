@@ -1,4 +1,4 @@
-// What the user asked for, a struct a command.
+// Requests of the user: one struct per command, filled from the command line.
 #pragma once
 
 #include <cstdint>
@@ -11,77 +11,108 @@
 
 namespace catena::command {
 
+/// Options that every command has.
 struct CommonOptions {
-    std::vector<std::string> set;                                     // key.path=value
-    std::string backend, gpu_levels, handles, simd, threads, refine;  // empty: the scene's
-    std::string json;  // file; empty: none; "-": standard output, in the place of the text
+    /// Assignments of --set: key.path=value.
+    std::vector<std::string> set;
+    /// Values of the options for keys of `solver`; empty if the scene's values hold.
+    std::string backend, gpu_levels, handles, simd, threads, refine;
+    /// File of --json; empty for none, "-" for standard output instead of the text.
+    std::string json;
     std::string log_level = "warn";
     bool quiet = false;
     std::string command_line;
 };
-/// --set and the options that stand for keys of `solver`, as the scene's reader takes them; the
-/// options win.
+/// Returns --set and the options for keys of `solver` as overrides for the scene's reader. The
+/// options come last and win.
 std::vector<std::string> overrides_of(CommonOptions const&);
 
+/// Options of commands on one scene.
 struct SceneOptions : CommonOptions {
     std::string scene;
 };
+/// Request of `catena check`.
 struct CheckRequest : SceneOptions {};
-struct PlanRequest : SceneOptions {  // the scene may be missing where the machine is calibrated
+/// Request of `catena plan`. The scene may be missing if the machine is calibrated.
+struct PlanRequest : SceneOptions {
     bool explain = false, measure = false, calibrate = false;
-    std::int64_t ranks = 0, hosts = 1;  // 0: no prediction
-    std::string network;                // JSON of `bench network`; empty: none
-    /// Of the link between hosts, in the place of the file's: both or neither.
+    /// Number of ranks to predict; 0 for no prediction.
+    std::int64_t ranks = 0, hosts = 1;
+    /// File with the JSON of `bench network`; empty for none.
+    std::string network;
+    /// Latency in s and s per byte of the link between hosts. They replace the file's values;
+    /// either both are given or neither.
     std::optional<double> latency, seconds_a_byte;
 };
+/// Request of `catena solve`.
 struct SolveRequest : SceneOptions {
     int repeat = 11;
-    std::string accelerations;  // HDF5 file
+    /// HDF5 file; empty for none.
+    std::string accelerations;
 };
+/// Request of `catena run`.
 struct RunRequest : SceneOptions {
     std::optional<std::int64_t> steps;
-    std::string output;  // folder; empty: see output_folder()
+    /// Output folder; empty for the default (output_folder()).
+    std::string output;
     std::string restart;
     bool overwrite = false;
-    bool branch = false;  // at the checkpoint, into a folder of its own
+    /// True if the run branches at the checkpoint into a folder of its own.
+    bool branch = false;
 };
+/// Request of `catena report`.
 struct ReportRequest : CommonOptions {
-    std::vector<std::string> scenes;  // empty: generated ones
-    std::string suite;                // "stability"; empty: error against run time
-    std::vector<std::int64_t> sizes;  // of the suite: coils and dills of these alone
-    std::vector<std::string>
-        cases;  // of the suite: those whose family holds one of these words; empty: all
+    /// Scene files; empty for generated scenes.
+    std::vector<std::string> scenes;
+    /// Name of the suite, "stability"; empty for error against run time.
+    std::string suite;
+    /// Sizes of coils and dills; the suite is restricted to these if not empty.
+    std::vector<std::int64_t> sizes;
+    /// Words of --cases: the suite is restricted to families with one of these words; empty for
+    /// all.
+    std::vector<std::string> cases;
+    /// Output folder.
     std::string output = "catena-report";
     int repeat = 11;
     bool quick = false;
 };
-/// Of `bench sampling`. Times in ps, of each copy.
+/// Options of `bench sampling`. Times are in ps and hold for each copy.
 struct SamplingOptions {
-    std::string scene;  // empty: alpha-synuclein
+    /// Scene file; empty for alpha-synuclein.
+    std::string scene;
     std::int64_t copies = 71;
     std::vector<std::string> methods{"rigid", "bonds", "constraints"};
     std::vector<double> steps{0.01};
     double duration = 1000, discard = 200, every = 1;
-    double equilibration = 1000;  // before all rows
-    double seconds = 0;           // at most, a row; 0: as many as it takes
+    /// Time before all rows.
+    double equilibration = 1000;
+    /// Limit in s for each row; 0 for no limit.
+    double seconds = 0;
 };
+/// Request of `catena bench`.
 struct BenchRequest : CommonOptions {
     std::string name;
-    std::vector<std::int64_t> sizes;  // empty: the benchmark's own
+    /// Numbers of bodies; empty if the benchmark chooses them.
+    std::vector<std::int64_t> sizes;
     std::vector<std::string> joints{"link", "spherical", "revolute"};
-    std::string loads = "wrenches";  // of solve, evaluation and peers, as random_scene()
-    bool alike = false;              // of solve and evaluation: make_alike()
-    std::vector<Backend> backends;   // empty: all of this build
+    /// Loads of solve, evaluation and peers, as for random_scene().
+    std::string loads = "wrenches";
+    /// True if solve and evaluation make all bodies alike (make_alike()).
+    bool alike = false;
+    /// Backends to measure; empty for all of this build.
+    std::vector<Backend> backends;
     std::vector<std::string> figures;
-    std::string output;  // folder, of figures and of overlap's pictures
+    /// Folder for figures, and for the pictures of overlap.
+    std::string output;
     int repeat = 21;
     SamplingOptions sampling;
 };
-/// Bodies that a benchmark takes unless told otherwise; none: its own choice.
+/// Returns the default numbers of bodies of a benchmark; empty if it chooses them itself.
 std::vector<std::int64_t> bench_sizes(std::string const& name);
-/// Whether --figure, --output, --joints, --sizes or --repeat is anything to it.
+/// True if the benchmark has the option --figure, --output, --joints, --alike, --loads, --sizes or
+/// --repeat.
 bool bench_takes(std::string const& name, std::string const& option);
-/// --help and --version.
+/// The text that answers --help or --version.
 struct Answer : CommonOptions {
     std::string text;
 };

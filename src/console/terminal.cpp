@@ -1,3 +1,4 @@
+// Implements output to the terminal and the sink of the log.
 #include "console/terminal.hpp"
 
 #include <spdlog/sinks/base_sink.h>
@@ -15,6 +16,7 @@
 namespace catena::command {
 namespace {
 
+/// Sink of the log that writes printable lines to standard error and flushes each of them.
 class StandardError : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
   protected:
     void sink_it_(spdlog::details::log_msg const& message) override {
@@ -38,7 +40,8 @@ void print(std::string const& text) {
 }
 
 void say_error(std::string const& line) {
-    // What rank 0 shares of a failure is its text alone.
+    // Failures of memory are recognised by their text, because ranks share nothing else of rank 0's
+    // failure.
     bool const memory = line.find("std::bad_alloc") != std::string::npos ||
                         line.find("std::bad_array_new_length") != std::string::npos;
     std::string one = memory ? out_of_memory : printable(line);

@@ -1,22 +1,23 @@
-// What reaches standard output and standard error: valid UTF-8 without control characters, whatever
-// names files brought.
+// Writes to standard output and standard error: valid UTF-8 without control characters, even if
+// file names or scenes contain them.
 #pragma once
 
 #include <string>
 
 namespace catena::command {
 
+/// Message for every failure to allocate memory.
 constexpr char const* out_of_memory =
     "the computation does not fit into memory: run it on more ranks, or make fewer bodies";
 
-/// To standard output, as it is. Quiet where nobody reads it any more (`catena check SCENE | head
-/// -1`); ComputationError where it cannot be written otherwise.
+/// Writes to standard output without changes. Ignores a closed pipe (`catena check SCENE | head
+/// -1`); throws ComputationError for any other failure.
 void print(std::string const& text);
-/// "catena: LINE" on standard error, in one line.
+/// Writes "catena: LINE" to standard error on one line.
 void say_error(std::string const& line);
-/// The log on standard error: "catena: warning: ...". `level`: as spdlog names it.
+/// Starts the log on standard error: "catena: warning: ...". `level` is a level name of spdlog.
 void start_log(std::string const& level);
-/// Whether errors alone are logged.
+/// True if the log shows errors only.
 bool is_quiet();
 
 }  // namespace catena::command

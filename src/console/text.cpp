@@ -1,3 +1,4 @@
+// Implements tables and named values as text and HTML.
 #include "console/text.hpp"
 
 #include <fmt/format.h>

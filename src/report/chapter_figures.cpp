@@ -1,3 +1,4 @@
+// Reads the chapter's figures from the table that is compiled into the program.
 #include "report/chapter_figures.hpp"
 
 #include <sstream>

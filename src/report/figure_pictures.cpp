@@ -1,3 +1,4 @@
+// Draws the figures of `catena bench figures` as SVG.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double microseconds = 1e6, milliseconds = 1e3;
 
+/// Draws the time of each level on one core, threads and the GPU, with the transfers of a cut.
 std::string levels_picture(LevelStudy const& study) {
     CurveFamily family{
         fmt::format("Figure 2.3: where a level belongs; assembly of {} bodies, {} handles",
@@ -36,6 +38,7 @@ std::string levels_picture(LevelStudy const& study) {
     return curve_family(family);
 }
 
+/// Draws one quantity over the number of bodies, with the chapter's curves dashed.
 std::string steps_picture(std::vector<FigurePoint> const& points, FigureQuantity const& quantity,
                           Handles handles) {
     CurveFamily family{fmt::format("Figure {}: {}, {} handles (dashed: the chapter's)",

@@ -1,3 +1,4 @@
+// Implements the tables, the JSON and the files of `catena bench figures`.
 #include "report/figures.hpp"
 
 #include <fmt/format.h>
@@ -21,16 +22,19 @@ namespace {
 
 constexpr double microseconds = 1e6, milliseconds = 1e3;
 
+/// Formats a measured number; "-" if it is missing.
 std::string number(std::optional<double> const& value) {
     if (value && !std::isfinite(*value)) return "not resolved";
     return value ? fmt::format("{:.3g}", *value) : "-";
 }
 char const* verdict(bool valid) { return valid ? "VALID" : "INVALID"; }
 
+/// Converts counts of floating-point operations to JSON.
 Json json_of(Operations const& o) {
     return {{"additions", o.additions}, {"multiplications", o.multiplications}, {"fused", o.fused},
             {"divisions", o.divisions}, {"square_roots", o.square_roots},       {"sum", o.sum()}};
 }
+/// Converts the counts of one kind of handles to JSON.
 Json json_of(HandleOperations const& h) {
     return {{"directions", h.directions},
             {"assembly",
@@ -41,12 +45,13 @@ Json json_of(HandleOperations const& h) {
               {"biases", json_of(h.leaf_biases)},
               {"accelerations", json_of(h.leaf_accelerations)}}}};
 }
+/// Converts a spread of times to JSON; null if it is missing.
 Json json_of(std::optional<Spread> const& s) {
     if (!s) return nullptr;
     return {{"median", s->median}, {"min", s->min}, {"max", s->max}};
 }
 
-/// The lowest levels' share of the merges, and what a merge and a body cost.
+/// Adds Table 2.1: the lowest levels' share of the merges, and the operations per merge and body.
 void add_table(Outcome& outcome) {
     std::int64_t constexpr bodies = 2048;
     std::vector<std::int64_t> const merges = merges_of_levels(bodies);
@@ -88,11 +93,12 @@ void add_table(Outcome& outcome) {
         operations.text();
 }
 
+/// Converts the times of a level to JSON.
 Json json_of(LevelSeconds const& s) {
     return {{"assembly", s.assembly}, {"disassembly", s.disassembly}};
 }
 
-/// "CPU", "GPU", or "-" where there is nothing to compare.
+/// Returns "CPU" or "GPU", the cheaper place for a level; "-" if there is no comparison.
 char const* cheapest_place(LevelPoint const& p) {
     double cpu = p.one_core.assembly;
     if (p.threads) cpu = std::min(cpu, p.threads->assembly);
@@ -102,7 +108,7 @@ char const* cheapest_place(LevelPoint const& p) {
     return !known ? "-" : p.gpu->assembly < cpu ? "GPU" : "CPU";
 }
 
-/// How many of the levels' times there are, and how many of them drown in noise.
+/// Number of the levels' times, and number of those that noise hides.
 struct Resolved {
     int all = 0, missing = 0;
     void add(LevelSeconds const& s) {
@@ -110,6 +116,7 @@ struct Resolved {
             ++all, missing += std::isfinite(value) ? 0 : 1;
     }
 };
+/// Counts the times of all studies.
 Resolved resolved(std::vector<LevelStudy> const& studies) {
     Resolved count;
     for (LevelStudy const& study : studies)
@@ -120,6 +127,7 @@ Resolved resolved(std::vector<LevelStudy> const& studies) {
         }
     return count;
 }
+/// Returns a remark on times that noise hides; empty if there are none.
 std::string resolution_text(std::vector<LevelStudy> const& studies) {
     Resolved const count = resolved(studies);
     if (count.missing == 0) return "";
@@ -129,6 +137,7 @@ std::string resolution_text(std::vector<LevelStudy> const& studies) {
         count.missing, count.all);
 }
 
+/// Adds the table and the JSON of figure 2.3 for one kind of handles.
 void add_levels(Outcome& outcome, LevelStudy const& study) {
     Table table({"level", "merges", "one core", "threads", "GPU", "transfers", "cheapest",
                  "one core", "threads", "GPU"},
@@ -170,6 +179,7 @@ void add_levels(Outcome& outcome, LevelStudy const& study) {
                                           {"valid", study.valid()}});
 }
 
+/// Adds the JSON of all points of figures 2.5 to 2.7.
 void add_points(Outcome& outcome, std::vector<FigurePoint> const& points) {
     outcome.json["points"] = Json::array();
     for (FigurePoint const& p : points) {
@@ -195,8 +205,8 @@ void add_points(Outcome& outcome, std::vector<FigurePoint> const& points) {
     }
 }
 
-/// A row a number of bodies: the cases measured, the worst of their residuals, and the chapter's
-/// row where it has one.
+/// Adds the table of a figure. A row per number of bodies shows the measured cases, the largest of
+/// their residuals, and the chapter's values if it has any.
 void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points,
                   FigureQuantity const& quantity, Handles handles) {
     std::vector<std::string> names;
@@ -240,6 +250,7 @@ void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points,
                     table.text();
 }
 
+/// Creates the output folder. Throws InputError if that fails. Collective.
 void make_folder(Communicator const& communicator, std::string const& folder) {
     on_first_rank(communicator, [&] {
         std::error_code error;

@@ -1,4 +1,4 @@
-// `catena bench figures`: the founding chapter's table and figures.
+// Implements `catena bench figures`: the founding chapter's table and figures on this machine.
 #pragma once
 
 #include "console/outcome.hpp"
@@ -7,30 +7,35 @@
 
 namespace catena::command {
 
+/// Names that --figure accepts.
 inline constexpr std::string_view figure_names[] = {"table-2.1", "2.3", "2.5", "2.6", "2.7"};
 
-/// What was measured; empty where a figure was not asked for.
+/// Measurements; a list is empty if its figure was not asked for.
 struct Figures {
-    std::vector<LevelStudy> levels;   // 2.3, by kind of handles
-    std::vector<FigurePoint> points;  // 2.5 to 2.7
+    /// Measurements of figure 2.3, by kind of handles.
+    std::vector<LevelStudy> levels;
+    /// Measurements of figures 2.5 to 2.7.
+    std::vector<FigurePoint> points;
 };
-/// One of "2.5", "2.6", "2.7": the quantity it shows of a point, and the chapter's name for it.
+/// The quantity that figure 2.5, 2.6 or 2.7 shows, and its name in the chapter.
 struct FigureQuantity {
     char const* figure;
     char const* title;
-    char const* chapter;  // in chapter_figures()
+    /// Key in chapter_figures().
+    char const* chapter;
 };
 inline constexpr FigureQuantity figure_quantities[] = {
     {"2.5", "a full step of RK4", "full_step"},
     {"2.6", "one solve", "solve"},
     {"2.7", "transfers of one solve", "transfer"}};
-/// Seconds; nothing where the case has none.
+/// Returns the seconds of a figure's quantity; empty if the case does not measure it.
 std::optional<Spread> quantity_of(FigurePoint const&, std::string const& figure);
 
-/// SVG files, name and content, of the figures among `asked`.
+/// Returns the figures among `asked` as SVG: pairs of file name and content.
 std::vector<std::pair<std::string, std::string>> draw_figures(
     Figures const&, std::vector<std::string> const& asked);
 
+/// Measures the figures of the request and writes them into its folder. Collective.
 Outcome bench_figures(Communicator const&, BenchRequest const&);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the part of a report on the errors of OpenMM's forces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 namespace catena::command {
 namespace {
 
+/// Converts a study of forces to JSON.
 Json json_of(ForceStudy const& study) {
     Json points = Json::array();
     for (ForcePoint const& p : study.points)
@@ -20,6 +22,7 @@ Json json_of(ForceStudy const& study) {
     return {{"title", study.title}, {"beads", study.beads}, {"points", points}};
 }
 
+/// Returns the table and the picture of a study.
 ReportSection section_of(ForceStudy const& study) {
     Table table({"platform", "precision", "rms error", "largest error", "bound", "time", ""},
                 {0, 1, 6});

@@ -1,3 +1,4 @@
+// Implements the part of a report on the errors of the integrators.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +9,10 @@
 namespace catena::command {
 namespace {
 
+/// Returns the number, or null.
 Json or_null(std::optional<double> const& number) { return number ? Json(*number) : Json(); }
 
+/// Converts a point of an error curve to JSON.
 Json json_of(IntegratorPoint const& p) {
     Json json = {{"step", p.step},
                  {"error", p.error},
@@ -24,6 +27,7 @@ Json json_of(IntegratorPoint const& p) {
     return json;
 }
 
+/// Returns the name of a scheme in the JSON.
 char const* name_of(Scheme scheme) {
     switch (scheme) {
         case Scheme::implicit_springs:
@@ -35,6 +39,7 @@ char const* name_of(Scheme scheme) {
     }
 }
 
+/// Converts a study of integrators to JSON.
 Json json_of(IntegratorStudy const& study) {
     Json curves = Json::array();
     for (IntegratorCurve const& c : study.curves) {
@@ -64,6 +69,7 @@ Json json_of(IntegratorStudy const& study) {
             {"valid", study.valid()}};
 }
 
+/// Converts a study of the energy drift to JSON.
 Json json_of(DriftStudy const& d) {
     return {{"title", d.title},
             {"integrator", d.name},
@@ -76,12 +82,14 @@ Json json_of(DriftStudy const& d) {
             {"valid", d.valid()}};
 }
 
+/// A quantity of a point that a picture shows on one of its axes.
 using Quantity = double (*)(IntegratorPoint const&);
 double error_of(IntegratorPoint const& p) { return p.error; }
 double energy_error_of(IntegratorPoint const& p) { return *p.energy_error; }
 double seconds_of(IntegratorPoint const& p) { return p.seconds.median; }
 double step_of(IntegratorPoint const& p) { return p.step; }
 
+/// Returns a picture of an error over a quantity, with one curve per integrator.
 CurveFamily picture(IntegratorStudy const& study, Quantity x, std::string const& x_label,
                     Quantity error, std::string const& name) {
     CurveFamily family{study.title + ": " + name, x_label, "relative " + name, {}};
@@ -98,7 +106,8 @@ CurveFamily picture(IntegratorStudy const& study, Quantity x, std::string const&
     return family;
 }
 
-/// A line where the last explicit integrator becomes unstable.
+/// Returns the picture of errors over the time step. A line marks the step at which the last
+/// explicit integrator becomes unstable.
 CurveFamily picture_over_step(IntegratorStudy const& study) {
     CurveFamily family = picture(study, step_of, "step", error_of, "error");
     family.title += " over the step";
@@ -114,6 +123,7 @@ CurveFamily picture_over_step(IntegratorStudy const& study) {
     return family;
 }
 
+/// Describes the order or stability of an integrator, with "INVALID" if it fails its promise.
 std::string verdict_of(IntegratorCurve const& c) {
     std::string const verdict = c.as_promised() ? "" : ": INVALID",
                       limit = exponent(c.unstable_from());
@@ -128,6 +138,7 @@ std::string verdict_of(IntegratorCurve const& c) {
     return text + verdict;
 }
 
+/// Returns the table and the pictures of a study.
 ReportSection section_of(IntegratorStudy const& study) {
     auto const is_adaptive = [](IntegratorCurve const& c) { return c.scheme == Scheme::adaptive; };
     bool const any_adaptive = std::any_of(study.curves.begin(), study.curves.end(), is_adaptive);
@@ -172,6 +183,7 @@ ReportSection section_of(IntegratorStudy const& study) {
     return {heading, table, pictures};
 }
 
+/// Returns the table of energy drifts.
 ReportSection section_of(std::vector<DriftStudy> const& drifts) {
     Table table({"scene", "integrator", "step", "steps", "kinetic energy", "scatter of the energy",
                  "drift of all steps", "standard error", ""},

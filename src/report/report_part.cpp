@@ -1,3 +1,4 @@
+// Implements the text and the page of a report.
 #include "report/report_part.hpp"
 
 #include <fmt/format.h>

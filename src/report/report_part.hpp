@@ -1,5 +1,5 @@
-// What a report is made of: parts with sections, each a table with its pictures; printed, written
-// as JSON and laid out as a page.
+// The structure of a report: parts with sections, each with a table and pictures. A report is
+// printed, written as JSON and laid out as a page.
 #pragma once
 
 #include <string>
@@ -12,31 +12,38 @@
 
 namespace catena::command {
 
+/// A table with its heading and pictures.
 struct ReportSection {
     std::string heading;
     Table table;
-    std::vector<CurveFamily> pictures;  // on the page alone
+    /// Pictures; shown on the page only.
+    std::vector<CurveFamily> pictures;
 };
+/// A part of a report with its own verdict.
 struct ReportPart {
-    std::string key,
-        picture;  // in the JSON, and of the picture that a script draws (without .png; empty: none)
+    /// Key in the JSON, and name of the picture that a script draws (without .png; empty for none).
+    std::string key, picture;
     std::string title;
-    std::string note;  // what the numbers mean
+    /// Explains what the numbers mean.
+    std::string note;
     std::vector<ReportSection> sections;
     Json json;
     bool valid = true;
 
-    /// Made at the end where there is none of that heading.
+    /// Returns the section with this heading. Adds a section with the table `empty` if there is
+    /// none.
     ReportSection& section(std::string const& heading, Table const& empty);
 };
 
+/// Returns the part as text: title, note, and all tables.
 std::string text_of(ReportPart const&);
-/// Self-contained; `subtitle`: hardware and build.
+/// Returns a self-contained HTML page. `subtitle` names hardware and build.
 std::string page_of(std::string const& title, std::string const& subtitle,
                     std::vector<ReportPart> const&);
 
+/// Converts a spread of times to JSON.
 Json spread_json(Spread const&);
-/// "1.2e-15"
+/// Returns for example "1.2e-15".
 std::string exponent(double value);
 
 }  // namespace catena::command

@@ -1,3 +1,4 @@
+// Implements the part of a report on the solver's errors.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 namespace catena::command {
 namespace {
 
+/// Converts a study of the solver to JSON.
 Json json_of(SolverStudy const& study) {
     Json points = Json::array();
     for (SolverPoint const& p : study.points)
@@ -32,6 +34,7 @@ Json json_of(SolverStudy const& study) {
             {"points", points}};
 }
 
+/// Returns the table of a study.
 ReportSection section_of(SolverStudy const& study) {
     Table table({"backend", "handles", "threads", "residual", "bound", "forward error", "time",
                  "ns a body", ""},
@@ -53,14 +56,15 @@ ReportSection section_of(SolverStudy const& study) {
     return {heading, table, {}};
 }
 
-/// What chains of several lengths have in common.
+/// Returns the title that chains of several lengths have in common.
 std::string series_of(SolverStudy const& study) {
     std::string const length = fmt::format(", {} bodies", study.bodies);
     return study.title.ends_with(length) ? study.title.substr(0, study.title.size() - length.size())
                                          : study.title;
 }
 
-/// One curve a backend and handle kind, through all studies of a series.
+/// Returns a picture of an error over the run time, with one curve per backend and kind of handles
+/// through all studies of a series.
 CurveFamily picture(std::string const& series, std::vector<SolverStudy const*> const& studies,
                     double SolverPoint::* error, std::string const& name) {
     std::map<std::string, NamedCurve> curves;

@@ -1,3 +1,4 @@
+// Implements the part of a report on the stability suite.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 namespace catena::command {
 namespace {
 
+/// Converts a study of one case to JSON.
 Json json_of(StabilityStudy const& study) {
     Json points = Json::array();
     for (StabilityPoint const& p : study.points) {
@@ -54,6 +56,7 @@ Json json_of(StabilityStudy const& study) {
         {"verdict", name_of(study.verdict())}};
 }
 
+/// Columns of the suite's tables.
 std::vector<std::string> const columns{"case",
                                        "condition",
                                        "growth",
@@ -69,7 +72,8 @@ std::vector<std::string> const columns{"case",
                                        "refined",
                                        ""};
 
-/// The largest of the points with or without articulated handles; empty where one has none.
+/// Returns the largest value of the points with or without articulated handles; empty if one of
+/// these has no value.
 std::string worst(StabilityStudy const& study, bool articulated, auto const& value) {
     double largest = 0;
     bool all = false;
@@ -83,6 +87,7 @@ std::string worst(StabilityStudy const& study, bool articulated, auto const& val
     return all ? exponent(largest) : "";
 }
 
+/// Adds the row of a case.
 void add_row(Table& table, StabilityStudy const& study) {
     using Number = std::optional<double>;
     bool const refused =
@@ -106,6 +111,7 @@ void add_row(Table& table, StabilityStudy const& study) {
          worst(study, true, settled), name_of(study.verdict())});
 }
 
+/// Returns the picture of all forward errors over the growth.
 CurveFamily picture(std::vector<StabilityStudy> const& studies) {
     CurveFamily family{
         "Forward error over growth, all cases", "growth", "forward error (medians)", {}};

@@ -1,3 +1,4 @@
+// Implements the part of a report that compares the stability suite with other programs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 namespace catena::command {
 namespace {
 
+/// Returns the smallest bound of the forward error among the points that have an answer.
 double least_bound(StabilityStudy const& study) {
     double least = std::numeric_limits<double>::infinity();
     for (StabilityPoint const& p : study.points)
@@ -16,14 +18,18 @@ double least_bound(StabilityStudy const& study) {
     return least;
 }
 
-/// Empty where there is none: a bound of no answer, an answer of a peer that has none.
+/// Formats a number; empty if it is not finite, as for a bound or a peer without an answer.
 std::string number(double value) { return std::isfinite(value) ? exponent(value) : ""; }
 
-/// In how many cases of a peer Catena's worst error is the smaller one, as it comes and after
-/// refinement.
+/// Counts the cases in which Catena's largest error is smaller than that of a peer, without and
+/// with refinement.
 struct Score {
-    int ran = 0, within = 0, closer = 0;  // within: neither BEYOND nor LOST
-    int refined = 0, closer_refined = 0;  // within, where all points were refined
+    /// Cases that the peer solved; those that are neither BEYOND nor LOST; and those among the
+    /// latter in which Catena's error is smaller.
+    int ran = 0, within = 0, closer = 0;
+    /// Cases within in which all points were refined, and those in which the refined error is
+    /// smaller.
+    int refined = 0, closer_refined = 0;
 
     void add(StabilityStudy const& study, double error) {
         ++ran;
@@ -37,6 +43,7 @@ struct Score {
     }
 };
 
+/// Returns the table of peers with their scores.
 ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& peers) {
     ReportSection section{
         "peers",
@@ -56,7 +63,8 @@ ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& pee
     return section;
 }
 
-/// Without where in its own source a program says so.
+/// Removes the place in its own source code that a program names in an error message, and shortens
+/// the rest.
 std::string shortened(std::string const& why) {
     std::size_t const place = why.find(" thrown at "),
                       text = place == std::string::npos ? place : why.find(": ", place + 11);
@@ -64,7 +72,7 @@ std::string shortened(std::string const& why) {
     return rest.size() > 100 ? rest.substr(0, 100) + " ..." : rest;
 }
 
-/// The first case of a family that a peer did not do.
+/// Returns the table of the first case of each family that a peer did not solve.
 ReportSection stops(std::vector<StabilityStudy> const& studies) {
     ReportSection section{"not done", Table({"", "family", "from", "why"}, {0, 1, 2, 3}), {}};
     std::vector<std::string> said;

@@ -1,3 +1,4 @@
+// Implements the description of the build and the hardware.
 #include "report/version.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace catena::command {
 
 namespace {
 
-/// Levels of --simd that can run here.
+/// Returns the levels of --simd that this processor can run, widest first.
 std::string simd_names() {
     std::vector<char const*> names;
     for (SimdLevel const level : simd_levels()) names.insert(names.begin(), name_of(level));

@@ -1,3 +1,4 @@
+// Version of the program, contents of its build, and the hardware it runs on.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -5,15 +6,17 @@
 
 namespace catena::command {
 
+/// Returns the version number.
 std::string version();
-/// Several lines: catena, compiler, and what is in the build.
+/// Returns several lines: the version, the compiler, and the libraries of the build.
 std::string version_text();
-/// {"catena", "compiler", "instruction_set", "simd", "mpi", "openmp", "openmm", "hdf5", "cuda"}
+/// Returns {"catena", "compiler", "flags", "instruction_set", "simd", "mpi", "openmp", "openmm",
+/// "hdf5", "cuda"}.
 nlohmann::ordered_json version_json();
-/// {"processor", "hardware_threads", "gpu"}: what a time was measured on; "gpu" is null where none
-/// can be used.
+/// Returns {"processor", "hardware_threads", "gpu"}, the hardware that times are measured on. "gpu"
+/// is null if no GPU can be used.
 nlohmann::ordered_json hardware_json();
-/// "2 threads on AMD EPYC 7B13, NVIDIA H200"
+/// Returns for example "2 threads on AMD EPYC 7B13, NVIDIA H200".
 std::string hardware_text();
 
 }  // namespace catena::command
