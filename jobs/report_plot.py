@@ -172,7 +172,7 @@ def forces(report, hardware):
 
 
 def stability(report, hardware):
-    """Forward error over growth, a dot a case, triangles by articulated handles, open ones refined as often as helps, crosses by other programs."""
+    """Forward error over growth, a dot a case, triangles by articulated handles, open ones refined repeatedly, crosses by other programs."""
     figure, (axes,) = panels(1, f"Stability suite: forward error over growth\n{hardware}", "growth of roundings", "forward error")
     figure.set_size_inches(8, 5.5)
     backends, peers = {}, {}

@@ -34,7 +34,7 @@ void require_possible_threads(int threads, std::string const& where) {
     if (threads <= most) return;
     throw InputError(
         std::to_string(threads) + " threads on " + std::to_string(processors) + " processors",
-        where, "take as many as there are processors, or 0");
+        where, "use at most the number of processors, or 0");
 }
 
 }  // namespace catena

@@ -28,8 +28,8 @@ GatherChoice gather_choice(std::string const& text) {
         if (parsed.ec == std::errc() && parsed.ptr == end && ranks > 0) return {Stages::two, ranks};
     }
     throw InputError(
-        "`" + text + "` is no way to gather", "CATENA_GATHER",
-        "auto, one-stage, two-stage, or two-stage:G, where G ranks of a host count as a host");
+        "`" + text + "` is not a way to gather", "CATENA_GATHER",
+        "use auto, one-stage, two-stage, or two-stage:G, where G ranks of a host count as a host");
 }
 
 bool GatherWay::two_stages_pay(std::int64_t ranks, std::int64_t hosts) {

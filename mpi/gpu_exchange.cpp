@@ -9,8 +9,8 @@ GpuExchange gpu_exchange_choice(std::string const& text) {
     if (text.empty() || text == "auto" || text == "direct")
         return GpuExchange::direct_where_possible;
     if (text == "host") return GpuExchange::host;
-    throw InputError("`" + text + "` is no way for GPUs to exchange numbers", "CATENA_GPU_EXCHANGE",
-                     "use auto, direct or host");
+    throw InputError("`" + text + "` is not a way for GPUs to exchange numbers",
+                     "CATENA_GPU_EXCHANGE", "use auto, direct or host");
 }
 
 }  // namespace catena

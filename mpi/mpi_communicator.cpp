@@ -37,8 +37,8 @@ class MpiLibrary {
         check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
         owned_ = true;
         if (provided < MPI_THREAD_FUNNELED)
-            throw ComputationError("MPI allows no threads beside it (" + message_passing_library() +
-                                   "): use one with MPI_THREAD_FUNNELED");
+            throw ComputationError("MPI does not allow threads (" + message_passing_library() +
+                                   "): use an MPI with MPI_THREAD_FUNNELED");
     }
     MpiLibrary(MpiLibrary&& other) noexcept : owned_(std::exchange(other.owned_, false)) {}
     MpiLibrary& operator=(MpiLibrary&&) = delete;

@@ -19,7 +19,7 @@ inline void check_mpi(int code, char const* call) {
     int length = 0;
     MPI_Error_string(code, text, &length);
     throw ComputationError(std::string("MPI failed: ") + text + " (" + call +
-                           "): see whether every rank and its host are still up");
+                           "): check that every rank and its host are still running");
 }
 
 /// Returns the MPI communicator of these ranks; MPI_COMM_NULL if they do not communicate by MPI.

@@ -11,9 +11,9 @@ namespace {
 
 cudaDeviceProp properties() {
     int device = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     cudaDeviceProp found;
-    check(cudaGetDeviceProperties(&found, device), "say what it is");
+    check(cudaGetDeviceProperties(&found, device), "report its properties");
     return found;
 }
 
@@ -66,18 +66,18 @@ std::string choose_device(Communicator const& communicator) {
 
 std::int64_t free_memory(Communicator const& communicator) {
     std::size_t free = 0, all = 0;
-    check(cudaMemGetInfo(&free, &all), "say how much memory is free");
+    check(cudaMemGetInfo(&free, &all), "report its free memory");
     int const gpus = devices(), sharing = (communicator.ranks_on_host() + gpus - 1) / gpus;
     return static_cast<std::int64_t>(free) / sharing;
 }
 
 std::int64_t stacks(std::int64_t bytes_of_thread) {
     int device = 0, multiprocessors = 0, threads = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
-          "say how large it is");
+          "report its size");
     check(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device),
-          "say how large it is");
+          "report its size");
     return bytes_of_thread * multiprocessors * threads;
 }
 

@@ -19,9 +19,9 @@ cudaError_t status_of_kernel_image() {
 
 bool knows_clusters() {
     int device = 0, clusters = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     check(cudaDeviceGetAttribute(&clusters, cudaDevAttrClusterLaunch, device),
-          "say whether it has clusters");
+          "report its clusters");
     cudaFuncAttributes attributes;
     return clusters != 0 && cudaFuncGetAttributes(&attributes, nothing) == cudaSuccess &&
            attributes.ptxVersion >= 90;
@@ -29,29 +29,29 @@ bool knows_clusters() {
 
 std::size_t most_shared_bytes() {
     int device = 0, bytes = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     check(cudaDeviceGetAttribute(&bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device),
-          "say how large it is");
+          "report its size");
     return static_cast<std::size_t>(bytes);
 }
 
 int multiprocessors() {
     int device = 0, count = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, device),
-          "say how large it is");
+          "report its size");
     return count;
 }
 
 int blocks_at_once() {
     int device = 0, can = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     check(cudaDeviceGetAttribute(&can, cudaDevAttrCooperativeLaunch, device),
-          "say whether its blocks run at once");
+          "report its cooperative launches");
     int shared = 0;
 #if CUDART_VERSION >= 12050
     check(cudaDeviceGetAttribute(&shared, cudaDevAttrMpsEnabled, device),
-          "say whether programs share it");
+          "report whether programs share it (MPS)");
 #endif
     return can != 0 && shared == 0 ? multiprocessors() : 0;
 }

@@ -26,7 +26,7 @@ inline bool early_launches_are_known() {
     constexpr int since = 12030;
     static bool const known = [] {
         int driver = 0;
-        check(cudaDriverGetVersion(&driver), "say how new its driver is");
+        check(cudaDriverGetVersion(&driver), "report its driver version");
         return CUDART_VERSION >= since && driver >= since && knows_clusters();
     }();
     return known;
@@ -91,7 +91,7 @@ void allow_shared(void (*kernel)(Parameters...), std::size_t bytes) {
         check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel),
                                    cudaFuncAttributeMaxDynamicSharedMemorySize,
                                    static_cast<int>(bytes)),
-              "have enough shared memory");
+              "provide enough shared memory");
 }
 
 }  // namespace catena::cuda

@@ -24,7 +24,9 @@ inline void check(cudaError_t status, char const* doing) {
 /// Non-blocking CUDA stream, independent of the default stream.
 class Stream {
   public:
-    Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "make a stream"); }
+    Stream() {
+        check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "create a stream");
+    }
     ~Stream() {
         if (stream_) cudaStreamDestroy(stream_);
     }
@@ -44,14 +46,14 @@ class Event {
     explicit Event(For use) {
         check(cudaEventCreateWithFlags(
                   &event_, use == For::clock ? cudaEventDefault : cudaEventDisableTiming),
-              "make an event");
+              "create an event");
     }
     ~Event() {
         if (event_) cudaEventDestroy(event_);
     }
     Event(Event const&) = delete;
     Event& operator=(Event const&) = delete;
-    void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "mark a moment"); }
+    void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "record an event"); }
     /// Makes `stream` wait until the point recorded last is reached.
     void hold(cudaStream_t stream) const {
         check(cudaStreamWaitEvent(stream, event_, 0), "order its work");
@@ -61,7 +63,7 @@ class Event {
     /// were created For::clock.
     double seconds_since(Event const& other) const {
         float milliseconds = 0;
-        check(cudaEventElapsedTime(&milliseconds, other.event_, event_), "say how long it took");
+        check(cudaEventElapsedTime(&milliseconds, other.event_, event_), "measure a time");
         return 1e-3 * static_cast<double>(milliseconds);
     }
 
@@ -81,7 +83,7 @@ class Graph {
         check(cudaStreamEndCapture(stream, &graph), "record its work");
         cudaError_t const status = cudaGraphInstantiate(&graph_, graph, 0);
         cudaGraphDestroy(graph);
-        check(status, "take its work as a graph");
+        check(status, "record its work as a graph");
     }
     ~Graph() { cudaGraphExecDestroy(graph_); }
     Graph(Graph const&) = delete;
@@ -103,7 +105,7 @@ class PinnedBuffer {
         void* memory = nullptr;
         check(
             cudaHostAlloc(&memory, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable),
-            "find memory of the host");
+            "allocate memory of the host");
         data_ = static_cast<T*>(memory);
     }
     ~PinnedBuffer() { cudaFreeHost(data_); }
@@ -152,7 +154,7 @@ class Buffer {
     explicit Buffer(std::size_t count) : count_(count) {
         if (count == 0) return;
         void* memory = nullptr;
-        check(cudaMalloc(&memory, count * sizeof(T)), "find memory");
+        check(cudaMalloc(&memory, count * sizeof(T)), "allocate memory");
         data_ = static_cast<T*>(memory);
         check(cudaMemset(data_, 0, count * sizeof(T)), "clear memory");
         check(cudaStreamSynchronize(nullptr), "clear memory");

@@ -27,16 +27,16 @@ bool equal(cudaUUID_t const& a, cudaUUID_t const& b) { return std::memcmp(&a, &b
 /// reachable.
 bool reaches(int device, std::vector<cudaUUID_t> const& others) {
     int count = 0;
-    check(cudaGetDeviceCount(&count), "say how many there are");
+    check(cudaGetDeviceCount(&count), "report the number of devices");
     for (int other = 0; other < count; ++other) {
         cudaDeviceProp gpu{};
-        check(cudaGetDeviceProperties(&gpu, other), "say what it is");
+        check(cudaGetDeviceProperties(&gpu, other), "report its properties");
         bool const asked = std::any_of(others.begin(), others.end(), [&](cudaUUID_t const& uuid) {
             return equal(uuid, gpu.uuid);
         });
         int can = 1;
         if (asked && other != device)
-            check(cudaDeviceCanAccessPeer(&can, device, other), "say whom it reaches");
+            check(cudaDeviceCanAccessPeer(&can, device, other), "report the GPUs that it reaches");
         if (can == 0) return false;
     }
     return true;
@@ -47,8 +47,8 @@ bool reaches(int device, std::vector<cudaUUID_t> const& others) {
 std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     int device = 0;
     cudaDeviceProp gpu{};
-    check(cudaGetDevice(&device), "say which it is");
-    check(cudaGetDeviceProperties(&gpu, device), "say what it is");
+    check(cudaGetDevice(&device), "report its number");
+    check(cudaGetDeviceProperties(&gpu, device), "report its properties");
     std::vector<cudaUUID_t> all(static_cast<std::size_t>(communicator.size()));
     communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)),
                             std::as_writable_bytes(std::span(all)),
@@ -73,7 +73,7 @@ bool apart_on_one_host(Communicator const& communicator) {
         return false;
     std::vector<cudaUUID_t> const all = gpus_of_ranks(communicator);
     int device = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     return most_alike(all) == 1 && reaches(device, all);
 }
 
@@ -122,7 +122,7 @@ std::vector<double*> take_spare(Communicator const& communicator) {
 /// if some rank cannot reach another. Collective.
 std::vector<double*> mapped(Communicator const& communicator) {
     void* own = nullptr;
-    check(cudaMalloc(&own, capacity * sizeof(double)), "find memory");
+    check(cudaMalloc(&own, capacity * sizeof(double)), "allocate memory");
     std::vector<double*> base;
     for (void* const there : map_each_others(communicator, own))
         base.push_back(static_cast<double*>(there));
@@ -146,8 +146,8 @@ int most_ranks_of_a_gpu(Communicator const& communicator) {
 bool gpus_are_alike(Communicator const& communicator) {
     int device = 0;
     cudaDeviceProp gpu{};
-    check(cudaGetDevice(&device), "say which it is");
-    check(cudaGetDeviceProperties(&gpu, device), "say what it is");
+    check(cudaGetDevice(&device), "report its number");
+    check(cudaGetDeviceProperties(&gpu, device), "report its properties");
     std::vector<char> all(static_cast<std::size_t>(communicator.size()) * sizeof(gpu.name));
     communicator.all_gather(
         std::as_bytes(std::span(gpu.name)), std::as_writable_bytes(std::span(all)),

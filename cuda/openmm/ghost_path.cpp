@@ -211,8 +211,7 @@ class GhostPath final : public GpuPath {
         }
         if (halo_.communicator().sum(holds ? 0 : 1) > 0)
             throw SharedError(
-                "a list of pairs was kept though a bead is farther from where it was made than it "
-                "lasts");
+                "a list of pairs was kept although a bead has moved beyond its margin");
         if (anew) listed_at_ = std::move(x);
     }
 
@@ -244,8 +243,8 @@ class GhostPath final : public GpuPath {
         if (in().empty()) return;
         check(cudaMemcpyAsync(in().data(), inboxes_->arrived<double>(), in().size_bytes(),
                               cudaMemcpyDeviceToHost, stream_),
-              "take ghosts");
-        check(cudaStreamSynchronize(stream_), "take ghosts");
+              "receive ghosts");
+        check(cudaStreamSynchronize(stream_), "receive ghosts");
     }
 
     /// Checks on the host, at the first evaluation, that all positions are finite.
@@ -285,7 +284,7 @@ class GhostPath final : public GpuPath {
         upload(first_.of(table.first.size()), table.first.data(), table.first.size());
         upload(place_of_shown_.of(table.place.size()), table.place.data(), table.place.size());
         if (lists().farthest) upload(shown_from_.of(3 * x.size()), x.front().data, 3 * x.size());
-        check(cudaStreamSynchronize(stream_), "take lists");
+        check(cudaStreamSynchronize(stream_), "receive lists");
         shown_.first = (*first_).data();
         shown_.place = (*place_of_shown_).data();
         shown_.shown = show_.of(3 * lists().sent.size()).data();
@@ -310,10 +309,10 @@ class GhostPath final : public GpuPath {
         if (all > ghosts) {
             check(cudaMemcpyAsync((*arrived_).data() + 3 * ghosts, lists().aside.data(),
                                   (all - ghosts) * sizeof(Vec3), cudaMemcpyHostToDevice, stream_),
-                  "take lists");
+                  "receive lists");
             put(static_cast<std::int64_t>(all - ghosts), ghosts_from(ghosts), stream_);
         }
-        check(cudaStreamSynchronize(stream_), "take lists");
+        check(cudaStreamSynchronize(stream_), "receive lists");
     }
 
     /// Returns the description of ghosts from number `first` on, for put().
@@ -337,7 +336,7 @@ class GhostPath final : public GpuPath {
         else
             check(cudaMemcpyAsync((*arrived_).data(), in().data(), in().size_bytes(),
                                   cudaMemcpyHostToDevice, stream_),
-                  "take ghosts");
+                  "receive ghosts");
         put(static_cast<std::int64_t>(in().size()), arrived, stream_);
     }
 

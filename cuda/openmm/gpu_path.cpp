@@ -47,8 +47,8 @@ class SingleRankPath final : public GpuPath {
         std::int64_t const bead = take_trouble();
         if (bead >= 0)
             throw ComputationError("the position of bead " + std::to_string(bead + 1) +
-                                   ", or OpenMM's force on it, is not finite: take a smaller step, "
-                                   "or a start without overlaps");
+                                   ", or OpenMM's force on it, is not finite: use a smaller "
+                                   "dynamics.step, or a start without overlaps");
     }
 
   private:
@@ -128,8 +128,7 @@ std::int64_t GpuPath::take_trouble() {
 
 std::vector<Vec3> GpuPath::positions() {
     if (beads_.empty())
-        throw ComputationError(
-            "positions on the GPU were asked for before there was an evaluation");
+        throw ComputationError("positions on the GPU were requested before the first evaluation");
     std::vector<Vec3> x;
     x.reserve(plan_.particle.size());
     for (DeviceBeads* group : beads_) {
@@ -160,7 +159,7 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
     std::vector<DeviceBead> beads(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_of(plan_.particle[i], x[i]);
     upload(*own_, beads.data(), beads.size());
-    check(cudaStreamSynchronize(stream_), "take OpenMM's order");
+    check(cudaStreamSynchronize(stream_), "receive OpenMM's order");
     for (DeviceBeads* group : beads_)
         check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
     OpenMmArrays const arrays = openmm_->arrays();
@@ -188,7 +187,7 @@ void GpuPath::note_list(bool anew) {
     double* const listed = listed_.of(twice ? numbers : numbers / 2).data();
     check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)),
                           cudaMemcpyDeviceToDevice, stream_),
-          "take lists");
+          "receive lists");
     auto const lasts = static_cast<float>(openmm_->list_lasts());
     if (twice)
         particles_.double_listed = listed;

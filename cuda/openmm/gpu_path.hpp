@@ -127,7 +127,7 @@ class GpuPath : public DevicePath {
         if (count > 0)
             check(cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice,
                                   stream_),
-                  "take OpenMM's order");
+                  "receive OpenMM's order");
     }
 
     DevicePathPlan plan_;

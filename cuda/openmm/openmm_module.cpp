@@ -65,12 +65,12 @@ std::string const& why_no_device_path() { return module().why_not; }
 std::string why_pairs_cannot_be_shared() {
     return module().shares_pairs && module().shares_pairs()
                ? ""
-               : "this OpenMM's kernel for pairs is not one that can be told which";
+               : "the pair kernel of this OpenMM cannot be restricted to a share of pairs";
 }
 
 int chosen_device() {
     int device = 0;
-    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDevice(&device), "report its number");
     return device;
 }
 

@@ -77,11 +77,11 @@ void PairShare::place(std::span<std::int32_t const> own, std::span<std::int32_t 
     auto const upload = [](Room<Buffer<std::int32_t>>& to, std::span<std::int32_t const> from) {
         check(cudaMemcpy(to.of(from.size()).data(), from.data(), from.size_bytes(),
                          cudaMemcpyHostToDevice),
-              "take OpenMM's order");
+              "receive OpenMM's order");
     };
     upload(place_of_own_, own);
     upload(place_of_others_, others);
-    check(cudaStreamSynchronize(nullptr), "take OpenMM's order");
+    check(cudaStreamSynchronize(nullptr), "receive OpenMM's order");
 }
 
 void PairShare::send_positions(float const* position, GhostInboxes const& inboxes,
@@ -162,7 +162,7 @@ void PairShare::carry_by_host(cudaStream_t stream) {
     if (received() > 0)
         check(cudaMemcpyAsync(arrived_.data(), in_->data(), bytes(received()),
                               cudaMemcpyHostToDevice, stream),
-              "take forces");
+              "receive forces");
 }
 
 }  // namespace catena::cuda

@@ -158,9 +158,9 @@ class DeviceBlocks {
     /// a block allow only one block per multiprocessor.
     static std::int64_t runs_of_block(ChainGroup const& group) {
         int device = 0, multiprocessors = 0;
-        check(cudaGetDevice(&device), "say which it is");
+        check(cudaGetDevice(&device), "report its number");
         check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
-              "say how large it is");
+              "report its size");
         std::int64_t longest = 1;
         for (dca::Piece const& piece : group.pieces)
             longest = std::max(longest, (piece.count + dca::longest_run - 1) / dca::longest_run);

@@ -66,14 +66,14 @@ class DeviceCrossing {
     void download(Buffer<double> const& from, std::vector<double>& to) const {
         check(cudaMemcpyAsync(to.data(), from.data(), to.size() * sizeof(double),
                               cudaMemcpyDeviceToHost, space_.stream()),
-              "give back items");
+              "return items");
         space_.wait();
     }
     /// Enqueues a copy of numbers from the host.
     void upload(std::vector<double> const& from, Buffer<double> const& to) const {
         check(cudaMemcpyAsync(to.data(), from.data(), from.size() * sizeof(double),
                               cudaMemcpyHostToDevice, space_.stream()),
-              "take items");
+              "receive items");
     }
 
   private:

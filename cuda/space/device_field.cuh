@@ -37,7 +37,7 @@ class Scratch {
     Scratch(std::int64_t numbers, cudaStream_t stream) : stream_(stream) {
         void* memory = nullptr;
         check(cudaMallocAsync(&memory, static_cast<std::size_t>(numbers) * sizeof(double), stream),
-              "find memory");
+              "allocate memory");
         data_ = static_cast<double*>(memory);
     }
     ~Scratch() { cudaFreeAsync(data_, stream_); }

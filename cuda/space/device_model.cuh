@@ -13,7 +13,7 @@ class FixedField {
   public:
     explicit FixedField(Field<D> const& host) : field_(host.size()) {
         field_.upload(host.view(), nullptr);
-        check(cudaStreamSynchronize(nullptr), "take the model");
+        check(cudaStreamSynchronize(nullptr), "receive the model");
     }
     /// Returns the view of all bodies, with the halo.
     ConstView<D> view() const { return field_.view(); }
@@ -33,7 +33,7 @@ class AlikeField {
           one_tile_(one_tile_serves(host)),
           field_(one_tile_ ? gpu_order::tile : size_) {
         field_.upload(host.view(), nullptr);
-        check(cudaStreamSynchronize(nullptr), "take the model");
+        check(cudaStreamSynchronize(nullptr), "receive the model");
     }
     ConstView<D> view() const {
         ConstView<D> const all = field_.view();

@@ -175,7 +175,7 @@ class DeviceSpace {
     T get(T const* place) const {
         T value;
         check(cudaMemcpyAsync(&value, place, sizeof(T), cudaMemcpyDeviceToHost, stream()),
-              "give back a value");
+              "return a value");
         wait();
         return value;
     }
@@ -183,7 +183,7 @@ class DeviceSpace {
     template <class T>
     void put(T* place, T const& value) const {
         check(cudaMemcpyAsync(place, &value, sizeof(T), cudaMemcpyHostToDevice, stream()),
-              "take a value");
+              "receive a value");
         wait();  // `value` may go out of scope
     }
     /// Returns the numbers of body k. Waits.
@@ -377,7 +377,7 @@ class DeviceSpace {
     /// Sets all bytes of the answer to `byte`.
     void set_answer(int byte) const {
         check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()),
-              "be asked");
+              "be queried");
     }
     /// Applies `change` to a host field and uploads it.
     template <int D, class Change>

@@ -57,7 +57,7 @@ class ClusterLaunch {
         // Clusters of this size are not portable: not every GPU with clusters supports them.
         check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel),
                                    cudaFuncAttributeNonPortableClusterSizeAllowed, 1),
-              "have large clusters");
+              "provide large clusters");
         int clusters = 0;
         if (cudaOccupancyMaxActiveClusters(&clusters, kernel, &config) == cudaSuccess)
             return clusters > 0;

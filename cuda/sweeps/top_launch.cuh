@@ -45,7 +45,7 @@ class TopLaunch {
         int of_multiprocessor = 0;
         check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
                   &of_multiprocessor, kernel, static_cast<int>(grid.threads), grid.shared_bytes),
-              "say how many blocks it runs at once");
+              "report the number of resident blocks");
         return grid.blocks <=
                static_cast<unsigned>(of_multiprocessor * (multiprocessors() - spare));
     }

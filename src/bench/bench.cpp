@@ -20,33 +20,28 @@ namespace {
 Outcome list() {
     Outcome outcome;
     outcome.text =
-        "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for "
-        "every backend of the processor "
-        "(--backend "
-        "cuda: the GPU's)\n"
-        "evaluation  with everything read and written in place: many evaluations of random chains "
-        "one after the other (cuda, one\n"
-        "            rank: as one graph); of links and spherical joints the solver alone in "
-        "absolute coordinates, its memory traffic and "
-        "the floor\n"
-        "            that it sets, of other joints kinematics, loads and rates as well\n"
-        "peers       forward dynamics of random chains beside Pinocchio, Simbody and MuJoCo, and "
-        "where each of them stops\n"
-        "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and "
-        "with constraints\n"
-        "sampling    what alpha-synuclein, or a scene's chain, samples on rigid links, harmonic "
-        "bonds and constraints at several steps: "
-        "size,\n"
-        "            configurational temperature, the largest usable step of each and its ns/day\n"
-        "overlap     a step with forces through the host, with and without the matrix sweep under "
-        "way meanwhile\n"
-        "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this "
-        "machine, beside the chapter's numbers\n"
-        "            (--figure, --output)\n"
-        "network     latency and bandwidth between ranks, and the solver's own gathers; catena "
-        "plan --network takes what --json writes\n"
-        "plan        the planner's predictions of an evaluation beside what is measured, and its "
-        "choices beside the best of all\n";
+        "solve       matrix sweep, bias sweep and whole evaluation of random chains, time per\n"
+        "            body, for every backend of the processor (--backend cuda: of the GPU)\n"
+        "evaluation  many evaluations of random chains in a row with inputs and outputs in\n"
+        "            place (cuda on one rank: as one graph); links and spherical joints: the\n"
+        "            solver alone in absolute coordinates, its memory traffic and the resulting\n"
+        "            lower bound of the time; other joints: with kinematics, loads and rates\n"
+        "peers       forward dynamics of random chains compared with Pinocchio, Simbody and\n"
+        "            MuJoCo, and where each of them stops\n"
+        "openmm      time per step of proteins at 330 mg/ml compared with OpenMM's own\n"
+        "            integrator, with harmonic bonds and with constraints\n"
+        "sampling    what alpha-synuclein, or the chain of a scene, samples on rigid links,\n"
+        "            harmonic bonds and constraints at several time steps: size,\n"
+        "            configurational temperature, the largest usable step of each and its\n"
+        "            ns/day\n"
+        "overlap     time per step with forces through the host, with and without the matrix\n"
+        "            sweep running meanwhile\n"
+        "figures     Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 of the founding chapter on\n"
+        "            this machine, compared with the chapter's numbers (--figure, --output)\n"
+        "network     latency and bandwidth between ranks, and the solver's own gathers; catena\n"
+        "            plan --network reads the JSON of --json\n"
+        "plan        predictions of the planner compared with measured evaluations, and its\n"
+        "            choices compared with the best ones\n";
     outcome.json = {{"benchmarks",
                      {"evaluation", "solve", "peers", "openmm", "sampling", "overlap", "figures",
                       "network", "plan"}}};
@@ -98,7 +93,7 @@ Measured measure(Scene& scene, std::string const& joint, Backend backend,
                0};
     m.residual = system.residual();
     m.bound = system.residual_bound();
-    spdlog::info("{} {} {}: {:.3g} ns a body", joint, m.bodies, m.backend,
+    spdlog::info("{} {} {}: {:.3g} ns per body", joint, m.bodies, m.backend,
                  m.a_body(m.timing.evaluation));
     return m;
 }
@@ -152,9 +147,9 @@ Outcome ended(Outcome outcome, std::string const& what, Table const& table,
 
 /// Describes the loads of a benchmark.
 std::string words_of(std::string const& loads) {
-    if (loads == "none") return "; gravity alone";
-    return loads == "torques" ? "; gravity and torques of joints"
-                              : "; gravity, torques of joints and a wrench on every body";
+    if (loads == "none") return "; gravity only";
+    return loads == "torques" ? "; gravity and joint torques"
+                              : "; gravity, joint torques and a wrench on every body";
 }
 
 /// Measures sweeps and evaluations for all backends, joints and sizes.
@@ -189,7 +184,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
             }
         }
     std::string const what =
-        fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too{}",
+        fmt::format("ns per body, median of {}; an evaluation includes kinematics and loads{}",
                     request.repeat, words_of(request.loads));
     return ended(std::move(outcome), what, table, communicator);
 }
@@ -245,8 +240,8 @@ AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend,
 /// others.
 std::vector<Backend> backends_at_once(BenchRequest const& request) {
     if (!request.handles.empty() && request.handles != name_of(Handles::projected))
-        throw InputError(request.handles + " handles need a sweep after the other", "--handles",
-                         "use projected ones");
+        throw InputError(request.handles + " handles need separate matrix and bias sweeps",
+                         "--handles", "use projected handles");
     std::vector<Backend> chosen = request.backends;
     if (chosen.empty()) {
         chosen = cpu_backends();
@@ -254,8 +249,9 @@ std::vector<Backend> backends_at_once(BenchRequest const& request) {
     }
     for (Backend const backend : chosen) {
         if (backend == Backend::serial || backend == Backend::cuda_levels)
-            throw InputError(std::string(name_of(backend)) + " takes one sweep after the other",
-                             "--backend", "use segments, openmp or cuda");
+            throw InputError(
+                std::string(name_of(backend)) + " computes separate matrix and bias sweeps",
+                "--backend", "use segments, openmp or cuda");
     }
     return chosen;
 }
@@ -263,7 +259,7 @@ std::vector<Backend> backends_at_once(BenchRequest const& request) {
 /// Measures whole evaluations for all backends, joints and sizes.
 Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = backends_at_once(request);
-    Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor",
+    Table table({"joint", "bodies", "backend", "threads", "us", "ns per body", "GB/s", "floor/time",
                  "residual", "bound", ""},
                 {0, 2, 10});
     Outcome outcome = begun("evaluation", communicator);
@@ -316,10 +312,9 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
             }
         }
     std::string const what = fmt::format(
-        "an evaluation, inputs and outputs in place, median of {}; links and spherical joints the "
-        "solver alone, others with kinematics, "
-        "loads and rates{}; GB/s counts what must be read and written once; floor: two sweeps over "
-        "what is read at 4.2 TB/s",
+        "time of an evaluation with inputs and outputs in place, median of {}; links and spherical "
+        "joints: the solver only, others: with kinematics, loads and rates{}; GB/s counts every "
+        "input and output once; floor: two passes over the inputs at 4.2 TB/s",
         request.repeat, words_of(request.loads));
     return ended(std::move(outcome), what, table, communicator);
 }
@@ -328,9 +323,8 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
 
 Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
     if (request.handles == name_of(Handles::articulated) && request.name != "list")
-        throw InputError("articulated handles are not measured by bench " + request.name,
-                         "--handles",
-                         "take projected or full; `catena report` shows them beside these");
+        throw InputError("articulated handles are not measured by catena bench " + request.name,
+                         "--handles", "use projected or full; `catena report` compares all three");
     if (request.name == "list") return list();
     if (request.name == "figures") return bench_figures(communicator, request);
     if (request.name == "network") return bench_network(communicator, request);

@@ -18,10 +18,10 @@ Json json_of(std::optional<Link> const& link) {
 
 /// Describes a link: latency and bandwidth.
 std::string text_of(std::optional<Link> const& link) {
-    if (!link) return "none to measure";
+    if (!link) return "none";
     std::string const rate = link->seconds_a_byte > 0
                                  ? fmt::format("{:.3g} GB/s", 1e-9 / link->seconds_a_byte)
-                                 : "beyond measure";
+                                 : "too fast to measure";
     return duration_text(link->latency) + ", " + rate;
 }
 
@@ -44,7 +44,7 @@ Json rows_of(std::vector<TimedMessage> const& messages, Table& table, Model cons
 Outcome bench_network(Communicator const& communicator, BenchRequest const& request) {
     if (communicator.size() == 1)
         throw InputError("one rank sends no messages", "catena bench network",
-                         "start it by mpirun on two at least");
+                         "start it with mpirun on at least two ranks");
     NetworkTimes const times = time_network(communicator, request.repeat);
     Network const& network = times.network;
     Outcome outcome;
@@ -72,10 +72,10 @@ Outcome bench_network(Communicator const& communicator, BenchRequest const& requ
     text.heading(fmt::format(
         "messages between {} on {}, {}; the fastest of {}", counted(times.ranks, "rank", "ranks"),
         counted(times.hosts, "host", "hosts"), message_passing_library(), request.repeat));
-    text.entry("on a host", text_of(network.near));
+    text.entry("within a host", text_of(network.near));
     text.entry("between hosts", text_of(network.far));
-    text.entry("gathers", fmt::format("{:.3g} times what the model says; {}",
-                                      network.gather_overhead, times.way.text()));
+    text.entry("gathers", fmt::format("{:.3g} times the model's time; {}", network.gather_overhead,
+                                      times.way.text()));
     text.add(table);
     outcome.text = text.str();
     return outcome;

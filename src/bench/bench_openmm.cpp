@@ -128,7 +128,7 @@ OwnFound try_constraints(std::int64_t beads, BenchRequest const& request,
         ::waitpid(child, &status, 0);
         found.fail(fmt::format("no step within {} s, packing included", patience.count()));
     } else if (::read(ends[0], &found, sizeof(found)) != sizeof(found)) {
-        found.fail("it ended without a word");
+        found.fail("the process ended without a result");
     }
     ::close(ends[0]);
     return found;
@@ -319,7 +319,7 @@ std::vector<std::int64_t> sizes_of(BenchRequest const& request,
 /// Writes the phases of steps as a page, in the manner of the founding chapter's Fig. 2.7.
 void write_pictures(std::string const& folder, std::string const& pictures) {
     std::string const intro =
-        "<h1>What is hidden behind the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";
+        "<h1>Work that runs during the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";
     write_text_file(folder + "/overlap.html", html_page("Catena: overlap", intro + pictures));
 }
 
@@ -426,9 +426,8 @@ Outcome bench_overlap(Communicator const& communicator, BenchRequest const& requ
     outcome.json["valid"] = outcome.valid;
     if (!request.output.empty()) write_pictures(request.output, pictures);
     outcome.text = fmt::format(
-        "One step of 10 fs, forces by {}, median of {} blocks in turn; a gain above \"at most\", "
-        "the matrix sweep's share of a step, is "
-        "the noise of the forces' times. {}\n",
+        "One step of 10 fs, forces by {}, median of {} blocks in turn; a gain above \"at most\" "
+        "(the matrix sweep's share of a step) is noise of the forces' times. {}\n",
         openmm_version(), request.repeat, hardware_text());
     outcome.text += table.text();
     outcome.complaint =

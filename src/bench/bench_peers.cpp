@@ -30,14 +30,15 @@ void check(BenchRequest const& request, Communicator const& communicator) {
         throw InputError("peers run on one rank", "catena bench peers", "run it without mpirun");
     for (std::string const& joint : request.joints)
         if (joint != "link" && joint != "spherical" && joint != "revolute" && joint != "planar")
-            throw InputError("`" + joint + "` is not written for the peers", "--joints",
+            throw InputError("`" + joint + "` joints are not supported by the peers", "--joints",
                              "use link, spherical, revolute or planar");
     for (std::int64_t const bodies : request.sizes)
         if (bodies > most_bodies)
             throw InputError(fmt::format("{} bodies", bodies), "--sizes",
-                             "take 1e6 at most: what answers are compared with ends there");
+                             "use at most 1e6, the limit of the reference solution");
     if (!request.set.empty())
-        throw InputError("the peers' chains are given", "--set", "choose --sizes and --joints");
+        throw InputError("the chains of this benchmark are fixed", "--set",
+                         "choose --sizes and --joints");
 }
 
 /// Converts the limits to JSON.
@@ -95,7 +96,7 @@ Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
     check(request, communicator);
     std::sort(request.sizes.begin(), request.sizes.end());
     Runners peers;
-    Table table({"joint", "bodies", "by", "threads", "ns a body", "of Catena's", "error", "bound",
+    Table table({"joint", "bodies", "by", "threads", "ns per body", "over Catena", "error", "bound",
                  "residual", ""},
                 {0, 2, 9});
     Outcome outcome;
@@ -119,20 +120,17 @@ Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
             spdlog::info("{} bodies on {} joints: measured", bodies, joint);
         }
     outcome.text = fmt::format(
-        "ns a body of forward dynamics, positions to accelerations, loads: {}; blocks of {} in "
-        "turn, medians of {}; of Catena's: over its "
-        "quickest "
-        "whole evaluation on one core; error: the largest of a joint's acceleration, over the "
-        "largest acceleration; its bound: 32 depth "
-        "2^-53 times "
-        "the growth of roundings, depth the tree's or, of a peer, the number of bodies. {}; "
-        "Catena: {}, {}\n",
+        "Forward dynamics from positions to accelerations, ns per body; loads: {}; blocks of {} in "
+        "turn, medians of {}. Over Catena: relative to its quickest whole evaluation on one core. "
+        "Error: the largest error of a joint acceleration, relative to the largest acceleration. "
+        "Its bound: 32 depth 2^-53 times the growth of rounding errors; the depth is that of the "
+        "tree or, for a peer, the number of bodies. {}; Catena: {}, {}\n",
         request.loads, duration_text(block_seconds), request.repeat, hardware_text(),
         compiler_name(), instruction_set());
     outcome.text += table.text();
     peers.describe(outcome);
     outcome.json["valid"] = outcome.valid;
-    outcome.complaint = "an error or a residual of Catena's above its bound: see the results";
+    outcome.complaint = "an error or a residual over Catena above its bound: see the results";
     return outcome;
 }
 

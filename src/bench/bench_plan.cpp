@@ -206,11 +206,9 @@ Outcome bench_plan(Communicator const& communicator, BenchRequest const& request
     outcome.json["worst_choice_slower_by"] = worst.choice;
     outcome.json["valid"] = outcome.valid;
     outcome.text = fmt::format(
-        "An evaluation, predicted over measured, the shortest of several and their median; worst: "
-        "of all arrangements; best: the least "
-        "median of all arrangements that give the same "
-        "bits. "
-        "{}; {}, {}\n",
+        "Time of an evaluation, predicted over measured; measured times are the shortest of "
+        "several and their median. Worst: ratio of all arrangements farthest from 1. Best: "
+        "smallest median of all arrangements that give the same bits. {}; {}, {}\n",
         hardware_text(), compiler_name(), instruction_set());
     outcome.text += table.text();
     outcome.text += fmt::format(

@@ -116,8 +116,8 @@ std::string rate_text(double ns_per_day) {
 
 /// Returns the table of all rows.
 std::string table_of(std::vector<SamplingRow> const& rows) {
-    Table table({"links", "step fs", "ns in all", "Rg nm", "Ree nm", "cosine", "T conf. K",
-                 "T kin. K", "link error", "a step", "ns/day", ""},
+    Table table({"links", "step fs", "total ns", "Rg nm", "Ree nm", "cosine", "T conf. K",
+                 "T kin. K", "link error", "per step", "ns/day", ""},
                 {0, 11});
     for (SamplingRow const& row : rows) {
         if (row.state != "VALID" && row.state != "INVALID") {
@@ -154,16 +154,16 @@ std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
         }
     }
     std::string text =
-        "Bias of Rg against the same method's smallest step, of the configurational temperature "
-        "against that of the thermostat. Usable: "
-        "both below 1 %, and their errors; shown: even with two standard errors more.\n" +
+        "Bias of Rg relative to the same method's smallest step, and of the configurational "
+        "temperature relative to that of the thermostat. Usable: both and their errors are below 1 "
+        "%; shown: even with two standard errors more.\n" +
         table.text();
     for (SamplingMethodVerdict const& each : verdicts) {
         if (each.rows.size() == 1) continue;
         text += fmt::format("  {}: largest usable step ", name_of(each.method));
         if (!each.allowed) {
             bool const refuted = !each.rows[1]->valid() || each.bias[1].refuted();
-            text += refuted ? "none but the reference's\n" : "not to be told: sample longer\n";
+            text += refuted ? "only the reference\n" : "unknown: sample longer\n";
             continue;
         }
         text += fmt::format("{} fs ({}), {} ns/day", femtoseconds(each.allowed->step),
@@ -198,13 +198,11 @@ std::string heading(SamplingCopies const& copies, SamplingOptions const& options
     Scene const& scene = copies.model();
     return fmt::format(
         "{} of {} ({} beads), {} K, friction {}/ps, without a box; {} ps discarded, a sample every "
-        "{} ps, {} ps on rigid links before.\n"
-        "Catena's g-BAOAB on rigid links (rigid-fixman: with the Fixman potential, its chains on "
-        "the host), {}'s LangevinMiddle with "
-        "harmonic bonds and constraints. {}\n"
-        "Errors: standard ones by blocking, copies pooled (* no plateau). ns/day: of the copies "
-        "side by side, without their samples; every "
-        "copy counts in \"ns in all\".\n",
+        "{} ps, after {} ps on rigid links.\nCatena's g-BAOAB on rigid links (rigid-fixman: with "
+        "the Fixman potential, its chains on the host), {}'s LangevinMiddle with harmonic bonds "
+        "and constraints. {}\nErrors are standard errors by blocking over all copies (*: no "
+        "plateau). ns/day is that of copies run side by side, without sampling; \"total ns\" is "
+        "the sum over copies.\n",
         counted(copies.copies(), "copy", "copies"),
         name_of_chain(scene.chains.front().name, copies.copies()), copies.beads_of_copy(),
         scene.dynamics.temperature, scene.dynamics.friction, options.discard, options.every,
@@ -219,11 +217,10 @@ std::string distances_text(std::vector<SamplingRow> const& rows) {
         rounding = std::max(rounding, row.rounding);
     }
     std::string const far = fmt::format(
-        "Single precision, where OpenMM has it, rounds positions by {:.0e} nm at most.\n",
-        rounding);
+        "Single precision, if OpenMM uses it, rounds positions by at most {:.0e} nm.\n", rounding);
     if (!std::isfinite(nearest)) return far;
-    return fmt::format("Copies came no nearer to each other than {:.4g} nm; forces reach {} nm. ",
-                       nearest, SamplingCopies::cutoff()) +
+    return fmt::format("Copies stayed at least {:.4g} nm apart; forces reach {} nm. ", nearest,
+                       SamplingCopies::cutoff()) +
            far;
 }
 
@@ -296,9 +293,8 @@ Outcome bench_sampling(Communicator const& communicator, BenchRequest const& req
     Outcome outcome;
     outcome.json = head(copies, options, request);
     outcome.complaint =
-        "links off by more than their tolerance, copies that met, means that are not finite, or a "
-        "method without samples at its smallest "
-        "step: see the results";
+        "link errors above their tolerance, copies that met, means that are not finite, or a "
+        "method without samples at its smallest step: see the results";
     auto const say = [&](std::string const& line) {
         if (!request.quiet) std::fputs((line + "\n").c_str(), stderr);
     };

@@ -33,10 +33,10 @@ PeerProgram python_peer(std::string const& name, std::string const& module,
     PeerProgram program{name, {}, options, ""};
     auto const script = find_in_source_tree(path);
     auto const python = script ? find_python(module) : std::nullopt;
-    if (!script) program.missing = path + " is not beside this program";
+    if (!script) program.missing = path + " was not found near this program";
     if (script && !python)
-        program.missing = "no Python here imports " + module + " (PyPI: " + package +
-                          "; tests/bench/peers/README.md says where to put it)";
+        program.missing = "no Python was found that imports " + module + " (PyPI: " + package +
+                          "; see tests/bench/peers/README.md)";
     if (script && python) program.words = {*python, script->string()};
     return program;
 }
@@ -87,7 +87,7 @@ Peer::Peer(PeerProgram const& program, std::string const& chain_file,
     // Sockets are used because writing to a pipe that nobody reads would end this program.
     int ends[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-        throw ComputationError("no socket to talk to another program");
+        throw ComputationError("cannot open a socket to another program");
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
@@ -118,7 +118,7 @@ bool Peer::is_ready() {
         return !description_.contains(key) || description_.at(key).is_string();
     };
     if (!description_.is_object() || !is_text("stops") || !is_text("version") || !is_text("method"))
-        stop("it said what cannot be read: " + answer);
+        stop("unreadable answer: " + answer);
     else if (description_.contains("stops"))
         stop(description_.at("stops").get<std::string>());
     return stopped_.empty();
@@ -137,7 +137,7 @@ double Peer::time(int evaluations) {
     char* end = nullptr;
     double const seconds = std::strtod(answer.c_str(), &end);
     if (stopped_.empty() && (end == answer.c_str() || !(seconds >= 0)))
-        stop("it said what is no time: " + answer);
+        stop("the answer is not a time: " + answer);
     return stopped_.empty() ? seconds : -1;
 }
 
@@ -156,7 +156,7 @@ void Peer::ask(std::string const& question) {
     char some[100];
     ssize_t const count = ::recv(talk_, some, sizeof(some), MSG_DONTWAIT | MSG_PEEK);
     if (count > 0) rest_.append(some, static_cast<std::size_t>(count));
-    if (!rest_.empty()) stop("it said what nobody asked for: " + rest_.substr(0, 100));
+    if (!rest_.empty()) stop("unexpected output: " + rest_.substr(0, 100));
     ::send(talk_, question.data(), question.size(), MSG_NOSIGNAL);
 }
 
@@ -178,8 +178,7 @@ std::string Peer::line(std::chrono::duration<double> patience, std::string const
         char some[4096];
         ssize_t const count = ready > 0 ? ::read(talk_, some, sizeof(some)) : 0;
         if (count > 0) rest_.append(some, static_cast<std::size_t>(count));
-        if (rest_.size() > longest_answer)
-            stop("it does not end its line: " + rest_.substr(0, 100));
+        if (rest_.size() > longest_answer) stop("unterminated line: " + rest_.substr(0, 100));
         if (ready == 0)
             stop(fmt::format("{} takes more than {}", doing, duration_text(patience.count())));
         if (ready > 0 && count <= 0) stop(how_it_ended());
@@ -191,7 +190,7 @@ std::string Peer::line(std::chrono::duration<double> patience, std::string const
 std::string Peer::how_it_ended() {
     int status = 0;
     for (int tenths = 0; ::waitpid(child_, &status, WNOHANG) == 0; ++tenths) {
-        if (tenths == 10) return "it closed its output and went on";
+        if (tenths == 10) return "it closed its output and kept running";
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     child_ = -1;

@@ -207,11 +207,11 @@ std::string not_for_peers(Scene const& scene) {
     ForceSpec const& forces = scene.forces;
     if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 ||
         forces.angular_drag != 0)
-        return "not one chain alone without drag and OpenMM";
+        return "not a single chain without drag and OpenMM";
     ChainSpec const& chain = scene.chains.front();
     if (chain.tip != Tip::free) return "a closed chain";
     if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
-    if (chain.is_beads()) return chain.base == Base::free ? "" : "beads that hang on the ground";
+    if (chain.is_beads()) return chain.base == Base::free ? "" : "beads fixed to the ground";
     if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among))
         return "joints neither revolute nor spherical";
     return chain.bodies.driven.empty() && !resists(chain.bodies.drag) ? ""

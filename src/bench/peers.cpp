@@ -37,7 +37,7 @@ void Peers::write(std::vector<double> const& table) const {
               static_cast<std::streamsize>(table.size() * sizeof(double)));
     if (!out.flush())
         throw ComputationError("the chain cannot be written for the peers (" + file("chain") +
-                               "): is there room?");
+                               "): is the disk full?");
 }
 
 std::unique_ptr<Peer> Peers::start(PeerProgram const& program) const {

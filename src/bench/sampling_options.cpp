@@ -23,10 +23,10 @@ double number_between(std::string const& option, std::string const& text, double
     double value = 0;
     if (scene::parse_number(text, value) != scene::NumberFault::none)
         throw InputError(fmt::format("`{}` is not a number", text), option,
-                         fmt::format("give one from {} to {}", least, most));
+                         fmt::format("give a number from {} to {}", least, most));
     if (!(value >= least && value <= most))
-        throw InputError(fmt::format("{} is not from {} to {}", text, least, most), option,
-                         "give a number between these");
+        throw InputError(fmt::format("{} is not between {} and {}", text, least, most), option,
+                         "give a number in this range");
     return value;
 }
 
@@ -43,7 +43,7 @@ void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
                                         {"--seconds", words.seconds}})
         if (!given.empty())
             throw InputError(
-                fmt::format("{} is nothing to catena bench {}",
+                fmt::format("catena bench {1} does not take {0}",
                             option == std::string("SCENE") ? "`" + given + "`" : option, name),
                 "command line", "leave it out");
 }
@@ -53,24 +53,23 @@ void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
 void add_sampling(CLI::App& bench, SamplingOptionTexts& words) {
     auto const add = [&](char const* option, std::string& word, char const* type,
                          char const* what) {
-        bench.add_option(option, word, std::string("of sampling: ") + what)->type_name(type);
+        bench.add_option(option, word, std::string("for sampling: ") + what)->type_name(type);
     };
     add("SCENE", words.scene, "",
         "a scene of one chain with CALVADOS 2 (default: alpha-synuclein)");
     add("--copies", words.copies, "N", "chains side by side that never meet (default 71)");
     add("--methods", words.methods, "M,...",
-        "rigid, rigid-fixman, bonds, constraints: links of Catena, without and with the Fixman "
-        "potential, of OpenMM's harmonic bonds and "
-        "of its constraints (default: all but rigid-fixman)");
-    add("--steps", words.steps, "H,...", "ps (default 0.01)");
-    add("--duration", words.duration, "T", "ps sampled of each copy (default 1000)");
-    add("--discard", words.discard, "T", "ps of each row before that (default 200)");
-    add("--every", words.every, "T", "ps between samples (default 1)");
+        "rigid, rigid-fixman, bonds, constraints: Catena's rigid links, without and with the "
+        "Fixman potential; OpenMM's harmonic bonds and constraints (default: all but "
+        "rigid-fixman)");
+    add("--steps", words.steps, "H,...", "time steps, ps (default 0.01)");
+    add("--duration", words.duration, "T", "sampled time of each copy, ps (default 1000)");
+    add("--discard", words.discard, "T", "time of each row before sampling, ps (default 200)");
+    add("--every", words.every, "T", "time between samples, ps (default 1)");
     add("--equilibrate", words.equilibration, "T",
-        "ps on rigid links from the scene's start to where all rows start (default: five times "
-        "--discard)");
+        "time on rigid links before all rows, ps (default: five times --discard)");
     add("--seconds", words.seconds, "S",
-        "a row ends after so long, with what it has sampled (default: none does)");
+        "limit of the run time of each row, s (default: no limit)");
 }
 
 SamplingOptions sampling_options(SamplingOptionTexts const& words, std::string const& name,
@@ -100,7 +99,7 @@ SamplingOptions sampling_options(SamplingOptionTexts const& words, std::string c
     if (options.every > options.duration)
         throw InputError(fmt::format("{} ps between samples are more than the {} ps sampled",
                                      options.every, options.duration),
-                         "--every", "give less, or a longer --duration");
+                         "--every", "give a shorter time, or a longer --duration");
     for (double const step : options.steps)
         if (options.every > most_steps * step || (!words.every.empty() && options.every < step))
             throw InputError(fmt::format("{} ps between samples are {} steps of {} ps",

@@ -256,12 +256,13 @@ void judge(SamplingRow& row, double tolerance) {
     row.state = "INVALID";
     if (row.samples == 0) {
         row.state = "too short";
-        row.why = "no sample within --seconds: the time went into what is discarded";
+        row.why = "no sample within --seconds: the discarded part took all the time";
     } else if (!(row.link_error <= tolerance)) {
-        row.why = fmt::format("links are off by {:.1e} of their length, allowed are {:.0e}",
-                              row.link_error, tolerance);
+        row.why =
+            fmt::format("links have errors of {:.1e} of their length, the tolerance is {:.0e}",
+                        row.link_error, tolerance);
     } else if (!(row.nearest > SamplingCopies::cutoff())) {
-        row.why = fmt::format("two copies came as near as {:.3g} nm, forces reach {} nm",
+        row.why = fmt::format("two copies came within {:.3g} nm of each other, forces reach {} nm",
                               row.nearest, SamplingCopies::cutoff());
     } else if (!std::isfinite(row.gyration.mean + row.end_to_end.mean + row.cosine.mean +
                               row.temperature.mean)) {
@@ -336,7 +337,7 @@ void equilibrate(SamplingCopies& copies, BenchRequest const& request,
     Progress progress(request.quiet, 0, blocks * of_block, step, false);
     auto const fail = [step](std::string const& why) {
         throw ComputationError(
-            fmt::format("before the rows, on rigid links with dynamics.step {} ps: {}", step, why));
+            fmt::format("equilibration on rigid links with dynamics.step {} ps: {}", step, why));
     };
     try {
         for (std::int64_t block = 0; block < blocks; ++block) {
@@ -349,7 +350,7 @@ void equilibrate(SamplingCopies& copies, BenchRequest const& request,
     progress.finish();
     Moment const now = mover->now();
     if (!(now.link_error <= mover->tolerance()))
-        fail(fmt::format("links are off by {:.1e} of their length", now.link_error));
+        fail(fmt::format("links have errors of {:.1e} of their length", now.link_error));
     if (!(copies.nearest(now.position) > SamplingCopies::cutoff())) fail("copies have met");
     copies.start_from(now.position);
 }

@@ -178,7 +178,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         Node const& item = node.items[k];
         for (char const* const key : {"com", "inertia", "wrench", "drag", "beads"})
             if (Node const* const extra = item.find(key))
-                fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key),
+                fail(*extra, fmt::format("key `{}` does not apply to a point bead on a link", key),
                      "leave it out or change `joint`");
         Fields const body(item, {"mass", "position", "velocity", "residue", "joint"});
         made.beads.mass.push_back(positive(body.need("mass", "mass: 1.0")));

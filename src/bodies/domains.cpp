@@ -79,8 +79,9 @@ class LinkedBuilder {
     void add_domain(Domain const& domain, Node const& node) {
         RigidBody const body = body_of(beads_, domain);
         if (!(body.moments[0] > least_ratio * body.moments[2]))
-            fail(node, fmt::format("the beads of {} stand on one line: a thin rod", domain.name),
-                 "take in a residue beside it, or leave the domain out");
+            fail(node,
+                 fmt::format("the beads of {} lie on one line and form a thin rod", domain.name),
+                 "include a residue next to it, or leave the domain out");
         add(domain.first, body.mass, body.com, Vec3::zero());
         linked_.inertia.push_back(
             Sym3{{body.moments[0], 0, body.moments[1], 0, 0, body.moments[2]}});
@@ -146,7 +147,10 @@ class Numbering {
         std::string const span =
             fmt::format("residues {} to {}", shown(pair.items[0].text), shown(pair.items[1].text));
         if (domain.last < domain.first + 2)
-            fail(pair, span + " are no rigid body: it needs three that do not stand on one line",
+            fail(pair,
+                 span +
+                     " do not form a rigid body, which needs three residues that do not lie on one "
+                     "line",
                  remedy());
         domain.name = span;
         return domain;
@@ -167,7 +171,7 @@ class Numbering {
             fail(pair, fmt::format("residue {} is not in the file", shown(end.text)), remedy());
         if (found->second.size() > 1)
             fail(pair,
-                 fmt::format("{} residues of the file bear the number {}", found->second.size(),
+                 fmt::format("{} residues of the file have the number {}", found->second.size(),
                              shown(end.text)),
                  "give each residue its own number or insertion code");
         return found->second[0];
@@ -204,7 +208,7 @@ std::vector<Domain> read_domains(Node const& rigid, std::size_t residues,
                 fail(item,
                      fmt::format("{} overlap the domain{}", domain.name,
                                  other.name.substr(std::string("residues").size())),
-                     "give each residue to one domain");
+                     "assign each residue to one domain");
         domains.push_back(domain);
     }
     std::sort(domains.begin(), domains.end(),

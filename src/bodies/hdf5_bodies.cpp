@@ -81,7 +81,7 @@ class Hdf5Bodies {
             bodies_.mass[k] = v[0];
         });
         vectors("com", bodies_.com, [](std::size_t, Vec3&) {});
-        need("inertia", "a tensor a body, about its centre of mass");
+        need("inertia", "one tensor per body, about its centre of mass");
         bodies_.inertia.resize(table_.rows());
         table_.for_each(
             "inertia", {{3, 3}, {6}}, [&](std::size_t k, double const* v, std::size_t width) {
@@ -106,7 +106,7 @@ class Hdf5Bodies {
 
     /// Reads `joint_type` [n]: names, or the numbers of `types`.
     void read_joints() {
-        need("joint_type", "a number or a name a body");
+        need("joint_type", "one number or one name per body");
         bodies_.joint.resize(table_.rows());
         if (table_.is_text("joint_type")) {
             table_.for_each_text("joint_type", [&](std::size_t k, std::string const& text) {
@@ -115,7 +115,7 @@ class Hdf5Bodies {
                                  [&](auto const& type) { return type.first == text; });
                 if (found == std::end(types))
                     table_.refuse("joint_type", k,
-                                  fmt::format("`{}` is no joint type", shown(text)),
+                                  fmt::format("`{}` is not a joint type", shown(text)),
                                   "use the names of `joint.type`");
                 set_joint(k, found->second);
             });
@@ -124,7 +124,7 @@ class Hdf5Bodies {
         table_.for_each("joint_type", {{}}, [&](std::size_t k, double const* v, std::size_t) {
             auto const number = static_cast<std::size_t>(std::clamp(v[0], 0.0, 255.0));
             if (number >= std::size(types) || static_cast<double>(number) != v[0])
-                table_.refuse("joint_type", k, fmt::format("{} is no joint type", v[0]),
+                table_.refuse("joint_type", k, fmt::format("{} is not a joint type", v[0]),
                               "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 "
                               "prismatic, 7 helical");
             set_joint(k, types[number].second);
@@ -203,7 +203,7 @@ class Hdf5Bodies {
             if (bodies_.joint[k] != JointType::helical) return;
             if (v[0] == 0)
                 table_.refuse("pitch", k, "a helical joint without pitch",
-                              "give its shift a radian, or use a revolute joint");
+                              "give its shift per radian, or use a revolute joint");
             bodies_.pitch[k] = v[0];
         });
     }
@@ -251,7 +251,7 @@ class Hdf5Bodies {
             for (double const x : v.data)
                 if (!(x >= 0))
                     table_.refuse(name, k, fmt::format("{} {} is negative", name, x),
-                                  "give 0 or numbers above it");
+                                  "give 0 or positive numbers");
         });
     }
 
@@ -276,7 +276,7 @@ class Hdf5Bodies {
         table_.for_each("drag", {{2}}, [&](std::size_t k, double const* v, std::size_t) {
             if (!(v[0] >= 0 && v[1] >= 0))
                 table_.refuse("drag", k, fmt::format("drag {}, {} is negative", v[0], v[1]),
-                              "give 0 or numbers above it");
+                              "give 0 or positive numbers");
             bodies_.drag[k] = {v[0], v[1]};
         });
     }
@@ -292,7 +292,7 @@ class Hdf5Bodies {
 BodyArrays read_hdf5_bodies(std::string const& path, Base base) {
     std::string const end = trial([&] { Hdf5Bodies(path, base).read(); }, limits_for_file(path));
     if (!end.empty())
-        throw InputError("the file is damaged, HDF5 breaks on it: " + end, shown_path(path),
+        throw InputError("the file is damaged, HDF5 fails to read it: " + end, shown_path(path),
                          "write the file again");
     return Hdf5Bodies(path, base).read();
 }

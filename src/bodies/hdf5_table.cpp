@@ -70,7 +70,7 @@ Status Hdf5Table::sound(Status status, std::string const& name) const {
 Hdf5Table::Hdf5Table(std::string const& path, std::string const& counted) : path_(path) {
     file_ = hdf5::File(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     if (!file_)
-        throw InputError("the file is not there or no HDF5 file: " + shown(hdf5::cause()),
+        throw InputError("the file does not exist or is not an HDF5 file: " + shown(hdf5::cause()),
                          shown_path(path), "check the path");
     if (!has(counted))
         refuse(counted, whole, "the dataset is missing", "add it: its rows are the bodies");
@@ -89,9 +89,10 @@ void Hdf5Table::refuse_too_large(std::string const& name) const {
     double const rows = static_cast<double>(rows_),
                  claimed = rows * static_cast<double>(H5Tget_size(type.get()));
     if (claimed > best_compression * static_cast<double>(H5Dget_storage_size(data.get())))
-        refuse(name, whole,
-               fmt::format("the dataset has {} rows, which the file does not hold", rows_),
-               "write the whole of it");
+        refuse(
+            name, whole,
+            fmt::format("the dataset has {} rows, but the file does not contain them all", rows_),
+            "write the whole dataset");
     // The check precedes all allocations, which could end the process.
     auto const present = static_cast<double>(memory_limit());
     if (rows * bytes_a_body > present)
@@ -134,7 +135,7 @@ std::size_t Hdf5Table::for_each(std::string const& name, std::vector<Shape> cons
         }
         refuse(name, whole,
                fmt::format("the dataset has shape {}, not {}", shape_text(shape), wanted),
-               "give one row a body");
+               "give one row per body");
     }
     refuse_unless_numbers(data, name);
     std::size_t width = 1;
@@ -168,12 +169,12 @@ void Hdf5Table::for_each_text(std::string const& name, ReadText const& read) con
     if (shape != std::vector<hsize_t>{rows_})
         refuse(name, whole,
                fmt::format("the dataset has shape {}, not [{}]", shape_text(shape), rows_),
-               "give one text a body");
+               "give one text per body");
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
     if (H5Tis_variable_str(type.get()) > 0) return for_each_variable_text(data, name, read);
     std::size_t const length = H5Tget_size(type.get());
     if (length == 0 || length > longest_text)
-        refuse(name, whole, fmt::format("the dataset holds texts of {} bytes", length),
+        refuse(name, whole, fmt::format("the dataset contains texts of {} bytes", length),
                fmt::format("give {} or fewer", longest_text));
     refuse_large_chunks(data, name);
     std::vector<char> block(std::min(rows_, rows_a_block) * length);
@@ -240,7 +241,7 @@ std::vector<hsize_t> Hdf5Table::shape_of(hdf5::Dataset const& data, std::string 
 void Hdf5Table::refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
     if (!is_number(type))
-        refuse(name, whole, "the dataset holds no numbers", "store it as float64");
+        refuse(name, whole, "the dataset contains no numbers", "store it as float64");
     refuse_large_chunks(data, name);
 }
 

@@ -63,7 +63,7 @@ VariableTexts::VariableTexts(hdf5::File const& file, hdf5::Dataset const& data, 
     if (::fstat(descriptor_, &about) != 0) damaged("the file cannot be read");
     size_ = static_cast<std::uint64_t>(about.st_size);
     if (elements_ > size_ || count > (size_ - elements_) / element_size)
-        damaged("the dataset ends behind the file");
+        damaged("the dataset extends beyond the end of the file");
 }
 
 std::string VariableTexts::at(std::size_t k) {
@@ -73,14 +73,15 @@ std::string VariableTexts::at(std::size_t k) {
     if (length == 0) return {};
     Collection const& objects = collection(address);
     auto const found = objects.find(static_cast<unsigned>(number(element, 12, 4)));
-    if (found == objects.end()) damaged("it is not where the dataset says");
-    if (length > found->second.size()) damaged("it is shorter than the dataset says");
+    if (found == objects.end()) damaged("there is no text at the address in the dataset");
+    if (length > found->second.size())
+        damaged("the text is shorter than the length in the dataset");
     std::string text = found->second.substr(0, length);
     return text.substr(0, text.find('\0'));
 }
 
 std::string VariableTexts::bytes(std::uint64_t from, std::uint64_t count) const {
-    if (from > size_ || count > size_ - from) damaged("an address lies behind the file's end");
+    if (from > size_ || count > size_ - from) damaged("an address lies beyond the end of the file");
     std::string read(count, '\0');
     for (std::uint64_t done = 0; done < count;) {
         ssize_t const some =
@@ -100,24 +101,24 @@ VariableTexts::Collection const& VariableTexts::collection(std::uint64_t address
 }
 
 VariableTexts::Collection VariableTexts::parsed(std::uint64_t at) {
-    if (at > size_ || base_ > size_ - at) damaged("an address lies behind the file's end");
+    if (at > size_ || base_ > size_ - at) damaged("an address lies beyond the end of the file");
     std::string const head = bytes(base_ + at, collection_head);
     std::uint64_t const size = number(head, 8, 8);
     if (!head.starts_with("GCOL") || head[4] != 1 || size < collection_head)
-        damaged("there is no heap where the dataset says");
+        damaged("there is no heap at the address in the dataset");
     std::string const all = bytes(base_ + at, size);
     // Sound collections are disjoint, so that their sizes cannot add up to more than the file.
     parsed_ += size;
-    if (parsed_ > size_) damaged("heaps lie over one another");
+    if (parsed_ > size_) damaged("two heaps overlap");
     Collection objects;
     for (std::uint64_t place = collection_head; size - place >= object_head;) {
         auto const of = static_cast<unsigned>(number(all, place, 2));
         std::uint64_t const length = number(all, place + 8, 8);
         if (of == 0) break;  // the rest of the collection is free
         place += object_head;
-        if (length > size - place) damaged("an object ends behind its heap");
+        if (length > size - place) damaged("an object extends beyond its heap");
         if (!objects.emplace(of, all.substr(place, length)).second)
-            damaged("two objects have one number");
+            damaged("two objects have the same number");
         // Objects are padded to multiples of eight bytes.
         std::uint64_t const padded = (length + 7) / 8 * 8;
         if (padded > size - place) break;

@@ -41,7 +41,7 @@ void check_keys(Node const& joint, JointType type, std::vector<std::string_view>
     for (Node const& item : joint.items)
         if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end())
             fail(item,
-                 fmt::format("key `{}` means nothing for a {} joint", item.key, name_of(type)),
+                 fmt::format("key `{}` does not apply to a {} joint", item.key, name_of(type)),
                  "leave it out or correct `type`");
 }
 
@@ -89,8 +89,8 @@ Vec3 resistance(Node const& node, JointType type) {
     for (double const x : v.data)
         if (!(x >= 0))
             fail(node, fmt::format("{} {} is negative", node.key, x),
-                 node.kind == Node::Kind::list ? "give 0 or numbers above it"
-                                               : "give 0 or a number above it");
+                 node.kind == Node::Kind::list ? "give 0 or positive numbers"
+                                               : "give 0 or a positive number");
     return v;
 }
 
@@ -137,7 +137,7 @@ void read_geometry(Fields const& joint, Entry& entry) {
         entry.pitch = number(pitch);
         if (entry.pitch == 0)
             fail(pitch, "a helical joint without pitch",
-                 "give its shift a radian, or use a revolute joint");
+                 "give its shift per radian, or use a revolute joint");
     }
     if (Node const* const rotation_node = joint.find("rotation"))
         entry.rotation = rotation(*rotation_node);
@@ -149,7 +149,7 @@ void read_geometry(Fields const& joint, Entry& entry) {
 PrescribedMotion read_course(Node const& node) {
     Fields const fields(node, {"offset", "rate", "amplitude", "frequency", "phase"});
     if (node.items.empty())
-        fail(node, "the motion says nothing",
+        fail(node, "the motion has no parameters",
              "add one of `offset`, `rate`, `amplitude`, `frequency`, `phase`, or use a weld");
     PrescribedMotion course;
     auto const take = [&](char const* key, double& value) {
@@ -169,7 +169,7 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
     if (entry.type == JointType::universal) {
         if (motion.kind != Node::Kind::list || motion.items.size() != 2)
             fail(motion, describe(motion) + " is not two motions",
-                 "give a list of two maps, one an axis");
+                 "give a list of two maps, one per axis");
         for (Node const& item : motion.items) entry.motion.push_back(read_course(item));
     } else {
         entry.motion.push_back(read_course(motion));
@@ -236,8 +236,8 @@ TipEntry read_tip_joint(Node const& node, bool ring) {
     for (char const* const key : {"anchor", "q"})
         if (Node const* const given = ring ? joint.find(key) : nullptr)
             fail(*given,
-                 fmt::format("key `{}` means nothing for the joint that closes a ring", key),
-                 "leave it out: the bodies say it");
+                 fmt::format("key `{}` does not apply to the joint that closes a ring", key),
+                 "leave it out: the bodies define it");
     if (type == JointType::free)
         fail(*node.find("type"), "a free joint at the tip restricts nothing", "write `tip: free`");
     std::vector<std::string_view> keys =

@@ -114,8 +114,8 @@ std::optional<Fault> make_inertia(Mat3 const& m, Sym3& j) {
                         std::max(a, 0.0), std::max(b, 0.0), std::max(c, 0.0)),
             "give the point mass or thin rod a bead radius r: add 0.4 m r^2 to the diagonal"};
     if (a + b < c - slack)
-        return Fault{fmt::format("no rigid body has the principal moments {:.6g}, {:.6g}, {:.6g}: "
-                                 "they break the triangle inequality",
+        return Fault{fmt::format("the principal moments {:.6g}, {:.6g}, {:.6g} violate the "
+                                 "triangle inequality of rigid bodies",
                                  a, b, c),
                      "the largest may not exceed the sum of the other two"};
     return std::nullopt;

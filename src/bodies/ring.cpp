@@ -63,7 +63,7 @@ void check_ring(ChainSpec const& chain, Node const& node) {
         fail(node, "a ring on a fixed base", "write `base: free`, or join the tip to the ground");
     std::size_t const least = chain.is_beads() || chain.is_linked() ? 3 : 2;
     if (chain.size() < least)
-        fail(node, fmt::format("{} bodies do not make a ring", chain.size()),
+        fail(node, fmt::format("{} bodies do not form a ring", chain.size()),
              fmt::format("give it {} or more", least));
 }
 
@@ -87,9 +87,9 @@ void close_ring(ChainSpec& chain, Node const& node, Scene& scene) {
         "joint holds it",
         open.distance, open.angle);
     if (open.distance <= closable * length && open.angle <= closable)
-        return scene.note(what + ", which is closed by the least change of the joints");
+        return scene.note(what + ": the smallest change of the joints closes it");
     fail(node, what,
-         fmt::format("bring the bodies within {:.3g} and {:.3g} rad of it, or correct "
+         fmt::format("move the bodies to within {:.3g} and {:.3g} rad of it, or correct "
                      "`translation` and `rotation`",
                      closable * length, closable));
 }

@@ -79,7 +79,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     Directions const d = directions_of(scene);
     Text text;
     text.heading(title_of(scene));
-    text.entry("units", scene.si ? "si: numbers are taken as they are" : "md: nm, ps, amu, kJ/mol");
+    text.entry("units",
+               scene.si ? "si: numbers are used without conversion" : "md: nm, ps, amu, kJ/mol");
     text.entry("chains", std::to_string(scene.chains.size()));
     text.entry("bodies", std::to_string(scene.bodies()));
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
@@ -100,11 +101,10 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("integrator", dynamics_text(scene));
     if (limit) text.entry("longest stable step", catena::text_of(*limit, scene));
     text.heading("memory");
-    text.entry(
-        ranks == 1 ? "estimate" : "estimate, each rank",
-        fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()),
-                    bytes_text(memory.scene), bytes_text(memory.state), bytes_text(memory.solver),
-                    openmm.empty() ? "" : "; OpenMM not counted"));
+    text.entry(ranks == 1 ? "estimate" : "estimate per rank",
+               fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()),
+                           bytes_text(memory.scene), bytes_text(memory.state),
+                           bytes_text(memory.solver), openmm.empty() ? "" : "; without OpenMM"));
     for (std::string const& note : notes_on(scene, limit)) text.note(note);
     text.heading("The scene is valid.");
     return text;

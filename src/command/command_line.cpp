@@ -52,31 +52,29 @@ void add_common(CLI::App& command, Words& words) {
     command
         .add_option("--handles", c.handles,
                     "directions that the solver's blocks carry: projected (default) | full (6x6, "
-                    "beads 3x3) | articulated (open chains on "
-                    "joints: keeps the digits of badly conditioned ones)")
+                    "beads 3x3) | articulated (for ill-conditioned open chains on joints)")
         ->type_name("KIND");
     command
         .add_option("--threads", c.threads,
-                    "threads a rank of openmp, and of what GPUs leave to the host (0: its cores "
-                    "over its ranks)")
+                    "threads per rank, for openmp and for work that GPUs leave to the host (0: "
+                    "cores of the host divided by its ranks)")
         ->type_name("N");
     command
         .add_option("--simd", c.simd,
-                    "runs of bodies side by side in the processor's vectors: auto (default: the "
-                    "widest) | avx512 | avx2 | off")
+                    "vector instructions for runs of bodies: auto (default: the widest) | avx512 | "
+                    "avx2 | off")
         ->type_name("LEVEL");
     command
         .add_option("--gpu-levels", c.gpu_levels,
-                    "of cuda-levels: how many of the tree's lowest levels the GPU assembles and "
-                    "disassembles, 0 to all: K, or UP,DOWN; from 1 "
-                    "on bodies too (auto: as predicted)")
+                    "for cuda-levels: number of lowest tree levels that the GPU assembles (UP) and "
+                    "disassembles (DOWN), 0 to all; from 1 on also the bodies (auto: as predicted)")
         ->type_name("UP[,DOWN]");
     command
-        .add_option("--json", c.json,
-                    "also write what is printed as JSON; - writes it to standard output in the "
-                    "place of the text")
+        .add_option(
+            "--json", c.json,
+            "also write the results as JSON; - writes them to standard output instead of the text")
         ->type_name("FILE");
-    command.add_flag("--quiet", c.quiet, "print nothing but errors");
+    command.add_flag("--quiet", c.quiet, "print errors only");
     command
         .add_option(
             "--log-level", c.log_level,
@@ -99,7 +97,7 @@ void add_scene(CLI::App& command, Words& words) {
 void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
     command
         .add_option("--repeat", words.repeat,
-                    std::string("timed evaluations of each kind (default ") + otherwise + ")")
+                    std::string("number of timed evaluations (default ") + otherwise + ")")
         ->type_name("R");
 }
 
@@ -108,38 +106,38 @@ void add_refine(CLI::App& command, Words& words) {
     command
         .add_option("--refine", words.common.refine,
                     "steps of iterative refinement of solutions in joint coordinates (default: the "
-                    "scene's solver.refine, 0): 1 or 2 bring "
-                    "back what nearly parallel revolute joints, light bodies between heavy ones "
-                    "and thin bodies lose")
+                    "scene's solver.refine, 0): 1 or 2 restore the digits lost to nearly parallel "
+                    "revolute joints, light bodies between heavy ones and thin bodies")
         ->type_name("K");
 }
 
 /// Adds all commands with their options and examples.
 void add_commands(CLI::App& app, Words& words) {
-    CLI::App* command = app.add_subcommand("check", "validate a scene and print what it is");
+    CLI::App* command = app.add_subcommand("check", "validate a scene and describe it");
     add_scene(*command, words);
     command->footer(
         "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml "
         "--set chains[0].count=10 --json -");
 
     command = app.add_subcommand(
-        "plan", "print what will run, what an evaluation takes, what is left out, and why");
+        "plan", "print what will run, how long an evaluation takes, what is left out, and why");
     add_scene(*command, words);
-    command->add_flag("--explain", words.explain, "also measure what is saved by what is left out");
+    command->add_flag("--explain", words.explain,
+                      "also measure the time that is saved by what is left out");
     command->add_flag("--measure", words.measure,
-                      "also measure an evaluation, beside what was predicted");
+                      "also measure an evaluation and compare it with the prediction");
     command->add_flag("--calibrate", words.calibrate,
-                      "measure every kind of chain on this machine, for all later predictions (a "
-                      "scene may be left out)");
+                      "measure every kind of chain on this machine, for all later predictions "
+                      "(SCENE may be left out)");
     command
         ->add_option("--ranks", words.ranks,
-                     "predict the time of a step, computing and messages, on up to so many ranks")
+                     "predict the time per step, computing and messages, on up to P ranks")
         ->type_name("P");
-    command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")
+    command->add_option("--hosts", words.hosts, "number of hosts of these ranks (default 1)")
         ->type_name("H");
     command
         ->add_option("--network", words.network,
-                     "what mpirun ... catena bench network --json FILE measured, for --ranks")
+                     "network for --ranks, written by mpirun ... catena bench network --json FILE")
         ->type_name("FILE");
     command
         ->add_option("--latency", words.latency,
@@ -157,14 +155,14 @@ void add_commands(CLI::App& app, Words& words) {
         "network.json");
 
     command = app.add_subcommand(
-        "solve", "compute accelerations and joint forces once, timed, with their residual");
+        "solve", "compute accelerations and joint forces of the start, with times and residual");
     add_scene(*command, words);
     add_repeat(*command, words, "11");
     add_refine(*command, words);
     command
-        ->add_option(
-            "--accelerations", words.accelerations,
-            "write accelerations and forces of joints and tips, of any number of bodies (HDF5)")
+        ->add_option("--accelerations", words.accelerations,
+                     "write accelerations and the forces of joints and tips, for any number of "
+                     "bodies (HDF5)")
         ->type_name("FILE");
     command->footer(
         "Examples:\n  catena solve inputs/arm.yaml --json arm.json\n"
@@ -175,54 +173,52 @@ void add_commands(CLI::App& app, Words& words) {
     add_scene(*command, words);
     command
         ->add_option("--steps", words.steps,
-                     "last step, counted from the scene's start, in the place of dynamics.steps")
+                     "last step, counted from the scene's start, instead of dynamics.steps")
         ->type_name("N");
     command
-        ->add_option(
-            "--output", words.output,
-            "folder (default: the scene's name with -run; with --restart the checkpoint's)")
+        ->add_option("--output", words.output,
+                     "output folder (default: the scene's name with -run; with --restart the "
+                     "checkpoint's folder)")
         ->type_name("DIR");
-    command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
-    command->add_flag("--branch", words.branch,
-                      "with --restart and --output: start a new run from the checkpoint, with "
-                      "another temperature, friction, seed, step, box, forces "
-                      "or integrator (in the same coordinates); without --steps for dynamics.steps "
-                      "further steps");
+    command->add_option("--restart", words.restart, "continue from a checkpoint")
+        ->type_name("FILE");
+    command->add_flag(
+        "--branch", words.branch,
+        "with --restart and --output: start a new run from the checkpoint, with another "
+        "temperature, friction, seed, step, box, forces or integrator (in the same coordinates); "
+        "without --steps it runs dynamics.steps further steps");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     add_refine(*command, words);
     command->footer(
-        "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
-        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
-        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --branch --set "
-        "dynamics.temperature=310 --output warm\n"
-        "SIGINT, SIGTERM, SIGUSR1, SIGHUP or SIGXCPU on any rank: all finish their step, write a "
-        "checkpoint and end with status 3.");
+        "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n  catena "
+        "run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n  catena run "
+        "inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --branch --set "
+        "dynamics.temperature=310 --output warm\nAfter SIGINT, SIGTERM, SIGUSR1, SIGHUP or SIGXCPU "
+        "on any rank, all ranks finish their step, write a checkpoint and exit with status 3.");
 
     command = app.add_subcommand("report",
-                                 "error against run time of solver, integrators and forces, as "
-                                 "page, tables, JSON and pictures");
+                                 "measure errors against run time of solver, integrators and "
+                                 "forces; write a page, tables, JSON and pictures");
     command
         ->add_option("SCENE", words.scenes,
-                     "scene files (default: generated chains); integrators are compared where a "
-                     "scene has `dynamics` without OpenMM, "
-                     "forces where it has OpenMM")
+                     "scene files (default: generated chains); integrators are compared if a scene "
+                     "has `dynamics` without OpenMM, forces if it has OpenMM")
         ->type_name("");
     command
         ->add_option("--suite", words.suite,
-                     "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth "
-                     "of roundings, errors, bounds, verdicts; "
-                     "without --quick beside Simbody and Pinocchio where they are here "
-                     "(tests/bench/peers/README.md)")
+                     "stability: measure chains that are hard to solve instead, up to 2^20 bodies: "
+                     "growth of rounding errors, errors, bounds, verdicts; without --quick also "
+                     "Simbody and Pinocchio if installed (tests/bench/peers/README.md)")
         ->type_name("NAME");
     command
         ->add_option("--sizes", words.sizes,
-                     "of the suite: coils and dills of so many bodies alone")
+                     "for --suite: only coils and dills with these numbers of bodies")
         ->type_name("N,...");
     command
         ->add_option("--cases", words.cases,
-                     "of the suite: those whose family's name holds one of these")
+                     "for --suite: only families whose names contain one of these words")
         ->type_name("WORD,...");
-    command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
+    command->add_flag("--quick", words.quick, "fewer and smaller cases, less than a minute");
     command
         ->add_option("--output", words.output,
                      "folder for report.html, report.json and pictures (default catena-report)")
@@ -233,16 +229,15 @@ void add_commands(CLI::App& app, Words& words) {
         "inputs/random-link.yaml --repeat 51 --output errors\n"
         "  catena report --suite stability --output stability");
 
-    command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
-    command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
+    command = app.add_subcommand("bench", "run reproducible benchmarks, with residuals");
+    command->add_option("NAME", words.name, "benchmark; `list` describes all")->type_name("");
     add_sampling(*command, words.sampling);
     command
         ->add_option("--sizes", words.sizes,
-                     "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out "
-                     "above 1e6; peers: 100,200,500,1e3,1e4,1e5; "
-                     "openmm: 140,9940,99960,1000020, "
-                     "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to "
-                     "2048; plan: 16,32 to 1048576)")
+                     "numbers of bodies (default of solve and evaluation: 1e3,1e4,1e5, the oracle "
+                     "is left out above 1e6; peers: 100,200,500,1e3,1e4,1e5; openmm: "
+                     "140,9940,99960,1000020; overlap: the last three, in whole chains of 140 "
+                     "beads; figures: 2,4,8 to 2048; plan: 16,32 to 1048576)")
         ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,
@@ -251,30 +246,29 @@ void add_commands(CLI::App& app, Words& words) {
                      "evaluation: link,spherical; peers takes these and planar)")
         ->type_name("J,...");
     command
-        ->add_option("--loads", words.loads,
-                     "of solve, evaluation and peers, beside gravity: none | torques of joints | "
-                     "wrenches (default), in ground axes on "
-                     "every body, too")
+        ->add_option(
+            "--loads", words.loads,
+            "for solve, evaluation and peers, in addition to gravity: none | torques (of joints) | "
+            "wrenches (default: joint torques and wrenches in ground axes on every body)")
         ->type_name("LOADS");
     command->add_flag("--alike", words.alike,
-                      "of solve and evaluation: bodies that have the same mass, inertia and joints "
+                      "for solve and evaluation: all bodies have the same mass, inertia and joints "
                       "(default: random ones)");
     add_repeat(*command, words, "21");
     command
         ->add_option("--backend", words.backends,
-                     "serial, segments, openmp, cuda, cuda-levels (default: those of the processor "
-                     "in this build; openmm, overlap and "
-                     "sampling take one, cuda where there is a GPU)")
+                     "serial, segments, openmp, cuda, cuda-levels (default: all of this build for "
+                     "processors; openmm, overlap and sampling take one, cuda if there is a GPU)")
         ->type_name("B,...");
     command
         ->add_option(
             "--figure", words.figures,
-            "of figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
+            "for figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
         ->type_name("F,...");
     command
         ->add_option("--output", words.output,
-                     "folder for figures.json and pictures (default catena-figures); of overlap "
-                     "for pictures")
+                     "folder for figures.json and pictures (default catena-figures); for overlap: "
+                     "folder for pictures")
         ->type_name("DIR");
     command->footer(
         "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link "
@@ -382,7 +376,7 @@ void read_link(Words const& words, PlanRequest& request) {
     static constexpr Unit bytes[] = {{"B/s", 1},    {"kB/s", 1e3},      {"MB/s", 1e6},
                                      {"GB/s", 1e9}, {"Mbit/s", 1.25e5}, {"Gbit/s", 1.25e8}};
     if (words.latency.empty() != words.bandwidth.empty())
-        throw InputError("--latency and --bandwidth go together", "command line",
+        throw InputError("--latency and --bandwidth must be given together", "command line",
                          "give both, as in --latency 1.5us --bandwidth 12.5GB/s");
     if (words.latency.empty()) return;
     request.latency = number_with_unit("--latency", words.latency, seconds);
@@ -405,14 +399,14 @@ PlanRequest plan_request(Words const& words) {
     read_link(words, request);
     if (request.ranks == 0 && (!words.hosts.empty() || !words.network.empty() || request.latency))
         throw InputError("--hosts, --network or --latency without --ranks", "command line",
-                         "say for how many ranks: --ranks P");
+                         "give the number of ranks: --ranks P");
     if (request.ranks > 0 && request.hosts > request.ranks)
-        throw InputError("more hosts than ranks", "command line", "give each host a rank at least");
+        throw InputError("more hosts than ranks", "command line",
+                         "give each host at least one rank");
     if (request.ranks > 0 && request.network.empty() && !request.latency)
         throw InputError("--ranks without --network", "command line",
-                         "measure it by mpirun -np 2 catena bench network --json network.json, "
-                         "then add --network network.json; or give "
-                         "--latency and --bandwidth");
+                         "measure it with mpirun -np 2 catena bench network --json network.json, "
+                         "then add --network network.json; or give --latency and --bandwidth");
     return request;
 }
 
@@ -430,7 +424,7 @@ RunRequest run_request(Words const& words) {
             "name the checkpoint with --restart and a folder of the branch's own with --output");
     if (request.overwrite && !request.restart.empty())
         throw InputError("both --overwrite and --restart", "command line",
-                         "a restart goes on with what is there: leave --overwrite out");
+                         "a restart continues the existing run: leave --overwrite out");
     return request;
 }
 
@@ -443,7 +437,7 @@ void refuse_with_suite(Words const& words) {
                                         {"--gpu-levels", !words.common.gpu_levels.empty()}})
         if (given)
             throw InputError("both --suite and " + std::string(option), "command line",
-                             "the suite has chains of its own, and its errors hang neither on "
+                             "the suite has its own chains, and its errors depend neither on "
                              "threads nor on repetition: leave it out");
 }
 
@@ -465,7 +459,7 @@ ReportRequest report_request(Words const& words) {
     if (!words.suite.empty()) request.suite = known_value("--suite", words.suite, suite_names);
     if (!request.suite.empty() && !request.scenes.empty())
         throw InputError("both --suite and a scene", "command line",
-                         "the suite has chains of its own: leave the scene out");
+                         "the suite has its own chains: leave the scene out");
     if (!request.suite.empty()) refuse_with_suite(words);
     for (auto const& [option, given] :
          {std::pair{"--sizes", words.sizes}, {"--cases", words.cases}})
@@ -494,8 +488,9 @@ BenchRequest bench_request(Words const& words) {
           Given{"--joints", words.joints}, Given{"--sizes", words.sizes},
           Given{"--repeat", words.repeat}, Given{"--loads", words.loads}, Given{"--alike", alike}})
         if (!given.empty() && !bench_takes(request.name, option))
-            throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name),
-                             "command line", "leave it out");
+            throw InputError(
+                fmt::format("catena bench {1} does not take {0}", option, request.name),
+                "command line", "leave it out");
     request.sizes = bench_sizes(request.name);
     if (request.name == "evaluation") request.joints = {"link", "spherical"};
     if (request.name == "plan")
@@ -505,7 +500,8 @@ BenchRequest bench_request(Words const& words) {
     for (std::string const& joint : request.joints) {
         known_value("--joints", joint, joint_names);
         if (words.alike && joint == "mixed")
-            throw InputError("mixed joints are not alike", "--alike", "leave it out, or mixed");
+            throw InputError("mixed joints cannot be alike", "--alike",
+                             "leave out --alike or `mixed`");
     }
     if (!words.loads.empty()) request.loads = words.loads;
     request.alike = words.alike;
@@ -552,10 +548,9 @@ Request parse_command_line(int argc, char const* const* argv) {
     bool version_asked = false;
     app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
     app.footer(
-        "catena COMMAND --help explains a command. mpirun -np P catena ... works for every "
-        "one.\nExit status: 0 good; 1 the computation "
-        "failed or is INVALID; 2 the input is wrong; 3 a run was stopped by a signal and can go "
-        "on.");
+        "catena COMMAND --help explains a command. Commands run in parallel with mpirun -np P "
+        "catena ...\nExit status: 0 success; 1 the computation failed or is INVALID; 2 the input "
+        "is wrong; 3 a run was stopped by a signal and can be continued.");
     add_commands(app, words);
     // Only one command is accepted, so that "catena bench solve" does not count as two.
     app.require_subcommand(0, 1);

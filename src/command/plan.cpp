@@ -69,21 +69,22 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
     text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"),
                              group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
-    text.entry("tree", fmt::format("{} bodies: runs of {}, {} of them, then {} levels of merges; "
-                                   "depth {}; table version {}",
+    text.entry("tree", fmt::format("{0} bodies: {2} runs of up to {1} bodies, then {3} levels of "
+                                   "merges; depth {4}; table version {5}",
                                    tree.bodies, tree.run_length, tree.runs, tree.levels(),
                                    tree.depth(), dca::tree_table_version));
     text.entry("units",
-               fmt::format("{} (whole ones go to ranks; the tree above them is every rank's own)",
+               fmt::format("{} (one rank computes each; every rank computes the tree above them)",
                            tree.units));
-    text.entry("bodies of the ranks", shares_text(shares));
-    text.entry("collectives",
-               rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}",
-                                           rounds.matrices, rounds.biases,
-                                           rounds.kinematics > 0 ? "1" : "none") +
-                                   (report.direct_exchange ? "; from GPU to GPU" : "")
-                             : "none: no chain is shared by ranks");
-    text.entry("solver's memory",
+    text.entry("bodies per rank", shares_text(shares));
+    text.entry(
+        "collectives",
+        rounds.shared
+            ? fmt::format("matrices {} per sweep, biases {} per sweep, kinematics {}",
+                          rounds.matrices, rounds.biases, rounds.kinematics > 0 ? "1" : "none") +
+                  (report.direct_exchange ? "; from GPU to GPU" : "")
+            : "none: no chain is shared by ranks");
+    text.entry("solver memory",
                bytes_text(static_cast<double>(report.memory_bytes)) + " on this rank");
     list.push_back({{"kind", group.kind()},
                     {"chains", group.partition.chains()},
@@ -114,8 +115,8 @@ StepPlan step_of(Scene const& scene) {
     bool const tips = has_jointed_tips(scene);
     int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
     std::string const chosen = fmt::format(
-        "s is the fewest at the start that close the joints to {:g}, later one more where they do "
-        "not",
+        "s is the smallest number that closes the joints to {:g} at the start; a run adds one when "
+        "they no longer close",
         ConstrainedIntegrator::early * d.constraint_tolerance);
     switch (d.integrator) {
         case Integrator::staggered:
@@ -139,12 +140,11 @@ StepPlan step_of(Scene const& scene) {
         case Integrator::dormand_prince:
         case Integrator::velocity_verlet: {
             int const evaluations = sweeps_a_step(d, tips).matrices;
-            std::string const inner = d.tolerance > 0
-                                          ? fmt::format(
-                                                " for each inner step, of which there are as many "
-                                                "as tolerance {:g} asks for",
-                                                d.tolerance)
-                                          : "";
+            std::string const inner =
+                d.tolerance > 0
+                    ? fmt::format(" for each inner step (tolerance {:g} determines their number)",
+                                  d.tolerance)
+                    : "";
             return {evaluations + corrections, evaluations + corrections, 0,
                     fmt::format("{}{}: a matrix sweep and a bias sweep each; {}",
                                 counted(evaluations, "evaluation", "evaluations"), inner,
@@ -175,7 +175,7 @@ void add_dynamics(Text& text, Json& json, Scene const& scene) {
     json["dynamics"] = nullptr;
     if (!scene.dynamics.given) return;
     StepPlan const step = step_of(scene);
-    text.entry("a step", step.text);
+    text.entry("per step", step.text);
     json["dynamics"] = {
         {"integrator", name_of(scene.dynamics.integrator)},
         {"matrix_sweeps_a_step", step.matrix_sweeps},
@@ -194,8 +194,8 @@ void add_output(Text& text, Json& json, Scene const& scene) {
     double const size =
         8.0 * numbers * static_cast<double>(scene.bodies()) * static_cast<double>(frames);
     text.heading("output");
-    text.entry("every", fmt::format("{} steps: {} frames, trajectory about {}", o.every, frames,
-                                    bytes_text(size)));
+    text.entry("frames", fmt::format("{}, one every {} steps; trajectory about {}", frames, o.every,
+                                     bytes_text(size)));
     text.entry("checkpoints", o.checkpoint_every > 0
                                   ? fmt::format("every {} steps and at the end", o.checkpoint_every)
                                   : "at the end");
@@ -207,10 +207,10 @@ void add_output(Text& text, Json& json, Scene const& scene) {
 void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& predictions,
                 int ranks) {
     Memory const memory = memory_of(scene, ranks);
-    text.heading("memory, each rank");
+    text.heading("memory per rank");
     text.entry("host", bytes_text(memory.sum()));
     text.entry("GPU", bytes_text(predictions.gpu_memory) + " with backend cuda" +
-                          (predictions.no_gpu.empty() ? "" : ", if there were one"));
+                          (predictions.no_gpu.empty() ? "" : ", if there were a GPU"));
     json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
 }
 
@@ -225,7 +225,7 @@ double implicit_step_of(Scene const& scene) {
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
     if (scene.dynamics.given && scene.dynamics.integrator == Integrator::implicit_g_baoab)
         throw InputError("implicit-g-baoab has no evaluation outside a step that could be measured",
-                         "--measure", "leave it out, and see what a run's steps take");
+                         "--measure", "leave it out, and see the time per step of a run");
     scene.forces.openmm.reset();
     ChainSystem system(scene, axes, communicator, implicit_step_of(scene));
     return plan::measure_phases(system, {5, 200, 0.5});
@@ -258,15 +258,15 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     if (!json["gpu_levels"].is_null())
         text.entry("levels on the GPU",
                    json["gpu_levels"].get<std::string>() +
-                       " of the lowest (up,down); the others on the host's threads");
+                       " of the lowest levels (up,down); the host's threads compute the others");
     text.entry("ranks", std::to_string(communicator.size()));
     if (communicator.size() > 1) text.entry("gathers", way.text());
     if (scene.solver.balance)
         text.entry("balance", communicator.size() == 1
-                                  ? "nothing to do on one rank"
-                                  : "`run` measures the ranks and cuts the chains by their speeds; "
-                                    "below they are equal");
-    text.entry("threads a rank", std::to_string(system.executor().threads()));
+                                  ? "no effect on one rank"
+                                  : "`run` measures the speeds of the ranks and divides the chains "
+                                    "accordingly; this plan assumes equal speeds");
+    text.entry("threads per rank", std::to_string(system.executor().threads()));
     for (std::size_t i = 0; i < reports.size(); ++i)
         add_group(text, json["groups"], *system.groups()[i], reports[i]);
     add_memory(text, json, scene, predictions, communicator.size());
@@ -279,8 +279,8 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
         for (std::size_t i = 0; i < json["openmm"].size(); ++i)
             text.entry(i == 0 ? "OpenMM" : "", json["openmm"][i].get<std::string>());
         text.entry("",
-                   "on path host the matrix sweep runs while it computes: matrices do not wait for "
-                   "forces");
+                   "on path host the matrix sweep runs during OpenMM's forces, because matrices do "
+                   "not depend on forces");
     }
     add_dynamics(text, json, scene);
     add_messages(text, json, system, request, predictions);
@@ -320,7 +320,7 @@ Outcome calibrate(Communicator const& communicator, PlanRequest const& request) 
                 "{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
                 counted(static_cast<long long>(planner.calibration().points()), "point", "points"),
                 seconds_now() - start,
-                file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME"
+                file.empty() ? "there is no folder to keep them: set XDG_CACHE_HOME"
                              : "kept in " + file);
             outcome.json = {{"machine", planner.machine().identity},
                             {"points", planner.calibration().points()},

@@ -38,11 +38,11 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (error || !std::filesystem::is_directory(folder))
-            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder,
-                             "name another");
+            throw InputError("the folder cannot be created: " + error.message(),
+                             "--output " + folder, "name another folder");
         if (holds_run(folder))
-            throw InputError("the folder holds a run, whose report.html would be replaced",
-                             "--output " + folder, "name another");
+            throw InputError("the folder contains a run, whose report.html would be replaced",
+                             "--output " + folder, "name another folder");
     });
 }
 
@@ -136,8 +136,8 @@ std::vector<StabilityCase> cases_of(ReportRequest const& request) {
             std::set<std::string> families;
             for (StabilityCase const& each : cases) families.insert(each.family);
             throw InputError(
-                "no family of cases has '" + word + "'", "--cases",
-                fmt::format("take parts of these names: {}", fmt::join(families, "; ")));
+                "no family of cases contains '" + word + "'", "--cases",
+                fmt::format("use parts of these names: {}", fmt::join(families, "; ")));
         }
     if (!words.empty())
         std::erase_if(cases, [&](StabilityCase const& each) {
@@ -187,7 +187,8 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
 
 Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
     if (communicator.size() > 1)
-        throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"),
+        throw InputError("the stability suite runs on one rank, not on " +
+                             counted(communicator.size(), "rank", "ranks"),
                          "--suite", "run it without mpirun");
     std::vector<Backend> const backends = backends_of(request);
     std::vector<StabilityCase> const cases = cases_of(request);
@@ -215,7 +216,7 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
     }
     if (studies.empty())
         throw InputError("nothing to solve: " + left_out.back(), "--handles " + request.handles,
-                         "take projected or full handles, or cases of open chains of bodies");
+                         "use projected or full handles, or cases of open chains of bodies");
     std::vector<ReportPart> parts{stability_part(studies)};
     if (peers) {
         for (std::string const& line : peers->not_run()) left_out.push_back(line);

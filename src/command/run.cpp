@@ -207,7 +207,7 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
     nlohmann::json const& run = s.at("run");
     if (std::string const failure = failure_of(s); !failure.empty()) return failure;
     if (whole) return "";
-    return fmt::format("stopped by {} at step {} of {}: go on with --restart {}",
+    return fmt::format("stopped by {} at step {} of {}: continue with --restart {}",
                        StopSignals::name_of(run.at("stopped_by").get<int>()),
                        run.at("last_step").get<std::int64_t>(), run.at("steps").get<std::int64_t>(),
                        s.at("files").at("checkpoint.h5").get<std::string>());
@@ -223,8 +223,8 @@ void look_at_forward_error(Scene& scene, Communicator const& communicator) {
     bool const unasked = refinable && few && scene.solver.handles == Handles::articulated &&
                          scene.solver.refine == 0;
     if (!error || *error <= (unasked ? refined_beyond : largest_forward_error)) return;
-    std::string const found =
-        fmt::format("the first accelerations may be off by {:.1e} of the largest", *error);
+    std::string const found = fmt::format(
+        "the first accelerations may have errors of {:.1e}, relative to the largest", *error);
     if (unasked) {
         scene.solver.refine = 2;
         return scene.note(found + ": every solution is refined by two steps (solver.refine)");
@@ -233,7 +233,7 @@ void look_at_forward_error(Scene& scene, Communicator const& communicator) {
         scene, refinable,
         {scene.solver.refine < 2 ? "solver.refine: 2" : "a larger solver.refine",
          "solver.handles: articulated"});
-    scene.note(found + (remedy.empty() ? "" : ": take " + remedy));
+    scene.note(found + (remedy.empty() ? "" : ": use " + remedy));
 }
 
 }  // namespace

@@ -85,11 +85,11 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
         if (file.empty() || file == "-") return;
         std::error_code ignored;
         if (std::filesystem::is_directory(file, ignored))
-            throw InputError("a folder is no file for JSON", "--json " + file.string(),
+            throw InputError("this is a folder, not a file", "--json " + file.string(),
                              "name a file");
         if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path(), ignored))
             throw InputError("no such folder: " + file.parent_path().string(),
-                             "--json " + file.string(), "make it, or name another file");
+                             "--json " + file.string(), "create it, or name another file");
     });
 }
 

@@ -172,12 +172,12 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     for (std::size_t i = 0; system.openmm() && i < system.openmm()->description().size(); ++i)
         text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
     if (json["velocities"] == "thermal")
-        text.entry("velocities", fmt::format("thermal, {} K, seed {}, as a run's first",
+        text.entry("velocities", fmt::format("thermal, {} K, seed {}, as at the start of a run",
                                              scene.dynamics.temperature, scene.dynamics.seed));
     if (json["relaxation"].is_string()) text.entry("relaxation", json["relaxation"]);
     text.entry(
         "time",
-        fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body",
+        fmt::format("{}, median of {} ({} to {}); {:.4g} ns per body",
                     duration_text(timing.evaluation.median), timing.evaluation.count,
                     duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                     1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
@@ -185,7 +185,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     // longer.
     for (auto const& [name, seconds] : timing.phases)
         text.entry("  " + name,
-                   duration_text(seconds) + (name.ends_with("sweep") ? ", by itself" : ""));
+                   duration_text(seconds) + (name.ends_with("sweep") ? ", on its own" : ""));
     std::vector<double> const refinement = json["refinement"]["seconds_of_each"];
     if (!refinement.empty())
         text.entry("refinement",
@@ -203,8 +203,8 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
             : fmt::format(
                   "residual {:.2e}, {}", inverse.get<double>(),
                   error.is_null()
-                      ? "as information"
-                      : "which grows with the condition number: the estimated error counts"));
+                      ? "for information only"
+                      : "which grows with the condition number; the estimated error decides"));
     text.entry(
         "estimated error",
         error.is_null()
@@ -214,7 +214,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                   error.get<double>(), json["estimated_error_bound"].get<double>()));
     if (int const more = json["refinement"]["steps_unasked"]; more > 0)
         text.entry(
-            "", fmt::format("after {} of refinement, which articulated handles take on their own",
+            "", fmt::format("after {} of refinement, which articulated handles use automatically",
                             counted(more, "step", "steps")));
     text.entry("residual",
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)",
@@ -245,7 +245,7 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
         std::error_code ignored;
         if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
             throw InputError("no such folder: " + folder.string(), "--accelerations " + file,
-                             "make it, or name another file");
+                             "create it, or name another file");
     });
 }
 
@@ -254,11 +254,11 @@ std::string complaint_of(Scene const& scene, ForwardError const& error, double r
                          double bound) {
     if (error.is_small() || !(residual <= bound))
         return fmt::format(
-            "residual {:.2e}, bound {:.2e}: compare with --refine 2 or, of open chains on joints, "
+            "residual {:.2e}, bound {:.2e}: compare with --refine 2 or, for open chains on joints, "
             "--handles articulated",
             residual, bound);
     char const* const refine = scene.solver.refine < 2 ? "--refine 2" : "more steps of --refine";
-    return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: take {}",
+    return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: use {}",
                        *error.estimate, largest_forward_error,
                        remedy_of_forward_error(scene, true, {refine, "--handles articulated"}));
 }
@@ -275,7 +275,7 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator,
     ChainSystem system(scene, Axes::joint, communicator);
     int const refinements = scene.solver.refine;
     if (refinements > 0 && system.joint().empty())
-        throw InputError("chains of beads and of linked bodies are not refined", "solver.refine",
+        throw InputError("chains of beads or linked bodies cannot be refined", "solver.refine",
                          "leave it out");
     // A run closes the tips likewise; velocities then fit them.
     system.close_tips();

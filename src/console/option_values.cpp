@@ -30,10 +30,11 @@ void require_files_apart(std::string const& scene, std::string const& json,
     for (auto const& [option, file] :
          {std::pair{"--json", json}, {"--accelerations", accelerations}})
         if (is_same(file, scene))
-            throw InputError("the scene would be written over", std::string(option) + " " + file,
+            throw InputError("the scene would be overwritten", std::string(option) + " " + file,
                              "name another file");
     if (is_same(json, accelerations))
-        throw InputError("--json and --accelerations name one file", "command line", "name two");
+        throw InputError("--json and --accelerations name the same file", "command line",
+                         "name two files");
 }
 
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least,
@@ -44,14 +45,14 @@ std::int64_t whole_number(std::string const& option, std::string const& text, st
     std::int64_t const largest = std::min(most, std::int64_t{9'000'000'000'000'000});
     if (whole && value > static_cast<double>(largest))
         throw InputError(fmt::format("{} is above {}", text, largest), option,
-                         fmt::format("give a whole number up to {}", largest));
+                         fmt::format("give a whole number of at most {}", largest));
     if (!whole || value < -9.0e15)
         throw InputError(fmt::format("`{}` is not a whole number", text), option,
-                         fmt::format("give one from {} on", least));
+                         fmt::format("give a whole number of at least {}", least));
     auto const number = static_cast<std::int64_t>(value);
     if (number < least)
         throw InputError(fmt::format("{} is below {}", number, least), option,
-                         fmt::format("give a whole number from {} on", least));
+                         fmt::format("give a whole number of at least {}", least));
     return number;
 }
 

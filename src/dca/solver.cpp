@@ -19,7 +19,7 @@ std::vector<double> ChainSolver::time_evaluations(ConfigurationView const& confi
 }
 
 void ChainSolver::invert(InverseView const& /*out*/) {
-    throw ComputationError("this solver keeps nothing of the inverse of its matrix");
+    throw ComputationError("this solver does not keep the inverse of its matrix");
 }
 
 void add_tree(ChainGroup const& group, Communicator const& communicator, SolverReport& report) {

@@ -233,7 +233,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
 
     void evaluate() override {
         if (rotors() > 0)
-            throw std::logic_error("forces of implicit joints are known within a step alone");
+            throw std::logic_error("forces of implicit joints are known within a step only");
         trouble_.check();
         set_loads();
         solver_->solve(loads(), found());

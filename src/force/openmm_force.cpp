@@ -211,7 +211,8 @@ void OpenMmForces::wait() {
 void OpenMmForces::finish(View<3> forces) {
     wait();
     if (!std::exchange(under_way_, false))
-        throw ComputationError("OpenMM's forces were asked for before their computation was begun");
+        throw ComputationError(
+            "OpenMM's forces were requested before their computation was started");
     try {
         if (error_) std::rethrow_exception(error_);
     } catch (ComputationError const&) {
@@ -228,7 +229,7 @@ void OpenMmForces::finish(View<3> forces) {
 std::vector<EnergyTerm> OpenMmForces::energies() {
     wait();
     if (!evaluated_ && !device_)
-        throw ComputationError("OpenMM's energies were asked for before it was given positions");
+        throw ComputationError("OpenMM's energies were requested before it received positions");
     std::vector<double> values(model_.terms.size());
     std::string failure;
     try {
@@ -260,7 +261,7 @@ void OpenMmForces::forces_again(View<3> forces) {
 std::vector<std::string> OpenMmForces::description() const {
     std::vector<std::string> lines{
         platform_.name() == "CPU"
-            ? fmt::format("{}, platform CPU, threads a rank: {}", openmm_version(),
+            ? fmt::format("{}, platform CPU, threads per rank: {}", openmm_version(),
                           platform_.threads)
             : fmt::format("{}, platform {}", openmm_version(), platform_.name())};
     lines.push_back("terms: " + (model_.terms.empty() ? std::string("none") : join(model_.terms)));
@@ -269,8 +270,8 @@ std::vector<std::string> OpenMmForces::description() const {
     int const cores = cores_of_rank(communicator_);
     if (path_.runs_on_worker() && cores < 2)
         lines.push_back(
-            "warning: OpenMM's worker thread has no core of its own (bind ranks to two cores or "
-            "more, or path: inline)");
+            "warning: OpenMM's worker thread has no core of its own (bind ranks to two or more "
+            "cores, or set forces.openmm.path: inline)");
     if (platform_.threads > cores)
         lines.push_back(fmt::format("warning: {} threads share {} cores of this rank",
                                     platform_.threads, cores));
@@ -348,11 +349,11 @@ void on_all(Communicator const& communicator, Action const& action) {
 OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
                      Communicator const& communicator, std::string const& where) {
     if (beads.size() == 0)
-        throw InputError("OpenMM has nothing to act on", where,
+        throw InputError("OpenMM has no beads to act on", where,
                          "give the scene a chain of beads, or leave forces.openmm out");
     if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))
-        throw InputError(fmt::format("OpenMM's forces have no builder \"{}\"", spec.builder), where,
-                         "take builder: calvados2, or system: and topology:");
+        throw InputError(fmt::format("`{}` is not a builder of OpenMM's forces", spec.builder),
+                         where, "use builder: calvados2, or system: and topology:");
     OpenMmModel model =
         spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
     if (communicator.size() > 1 && !spec.replicate)
@@ -373,7 +374,7 @@ std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& sys
     if (std::adjacent_find(first.begin(), first.end()) != first.end()) return "a rank has no beads";
     if (std::string why = why_not_by_pairs(system); !why.empty()) return why;
     if (spec.split == "auto" && beads.size() > most_beads_of_a_gpu)
-        return "there may be no room for so many beads on each GPU";
+        return "each GPU may have too little memory for this many beads";
     return cuda::why_pairs_cannot_be_shared();
 }
 
@@ -382,17 +383,16 @@ std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& sys
 bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads,
                    Communicator const& communicator, std::string const& why_no_device) {
     if (spec.replicate && spec.split != "auto")
-        throw InputError("forces.openmm.replicate leaves nothing to split",
+        throw InputError("forces.openmm.replicate excludes a split",
                          beads.scene_file + ": forces.openmm.split", "leave one of them out");
     if (communicator.size() == 1 || spec.replicate || spec.split == "ghosts") return false;
     std::string why_not =
         first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
-    if (why_not.empty() && !cuda::gpus_are_alike(communicator))
-        why_not = "their GPUs are not alike";
+    if (why_not.empty() && !cuda::gpus_are_alike(communicator)) why_not = "their GPUs differ";
     if (spec.split == "pairs" && !why_not.empty())
-        throw InputError(fmt::format("ranks cannot share out OpenMM's pairs: {}", why_not),
+        throw InputError(fmt::format("ranks cannot divide OpenMM's pairs: {}", why_not),
                          beads.scene_file + ": forces.openmm.split",
-                         "take auto or ghosts, or chains of beads, --backend cuda and pair forces "
+                         "use auto or ghosts, or chains of beads, --backend cuda and pair forces "
                          "with a cutoff on GPUs");
     return why_not.empty() &&
            (spec.split == "pairs" || cuda::gpus_may_write_to_each_other(communicator));
@@ -410,7 +410,7 @@ auto accepted(std::string const& where, Action const& action) {
     } catch (std::exception const& e) {  // OpenMM's exceptions have no more specific common base
         throw InputError(
             fmt::format("OpenMM refuses these forces: {}", scene::shown(e.what(), longest_message)),
-            where, "mend the System, or take another platform");
+            where, "correct the System, or use another platform");
     }
 }
 

@@ -214,7 +214,7 @@ void PairForces::audit(std::span<Vec3 const> own_positions, std::span<Vec3 const
                        return here[0] == there[0] && here[1] == there[1] && here[2] == there[2];
                    });
     if (communicator_.sum(equal ? 0 : 1) > 0)
-        throw SharedError("a rank computes with beads of others that are not where they are");
+        throw SharedError("a rank uses outdated positions of other ranks' beads");
 }
 
 std::vector<Vec3> PairForces::forces_again() {

@@ -47,11 +47,11 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads,
         throw InputError(
             fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
             openmm_key(beads.scene_file, "platform"),
-            fmt::format("take one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
+            fmt::format("use one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
     if (!spec.precision.empty() && spec.precision != "single" && spec.precision != "mixed" &&
         spec.precision != "double")
-        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision),
-                         openmm_key(beads.scene_file, "precision"), "take single, mixed or double");
+        throw InputError(fmt::format("`{}` is not a precision of OpenMM", spec.precision),
+                         openmm_key(beads.scene_file, "precision"), "use single, mixed or double");
 
     OpenMmPlatform chosen;
     chosen.platform = &OpenMM::Platform::getPlatformByName(name);

@@ -112,9 +112,10 @@ void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> b
     for (std::size_t k = 0; k < vectors.size(); ++k)
         for (int c = 0; c < 3; ++c)
             if (!std::isfinite(vectors[k][c]))
-                throw ComputationError(fmt::format(
-                    "{} of bead {} is not finite: take a smaller step, or a start without overlaps",
-                    what, bead[k] + 1));
+                throw ComputationError(
+                    fmt::format("{} of bead {} is not finite: use a smaller dynamics.step, or a "
+                                "start without overlaps",
+                                what, bead[k] + 1));
 }
 
 std::unique_ptr<RankForces> make_whole_forces(RankPlan const& plan) {

@@ -44,8 +44,7 @@ Distribution read_distribution(Node const& node) {
     if (values.key == "choice") {
         std::vector<double> all;
         for (Node const& value : list(values).items) all.push_back(positive(value));
-        if (all.empty())
-            fail(values, "there is nothing to choose from", "give at least one number");
+        if (all.empty()) fail(values, "the list of choices is empty", "give at least one number");
         return {Distribution::Kind::choice, all};
     }
     std::vector<double> const two = numbers(values, 2);
@@ -54,8 +53,8 @@ Distribution read_distribution(Node const& node) {
             fail(values,
                  fmt::format("a normal distribution with mean {} and standard deviation {}", two[0],
                              two[1]),
-                 "give a mean above 0 and a standard deviation of 0 or more: what is drawn is "
-                 "redrawn until it is above 0");
+                 "give a mean above 0 and a standard deviation of 0 or more: values are redrawn "
+                 "until they are above 0");
         return {Distribution::Kind::normal, two};
     }
     if (!(two[0] > 0 && two[1] >= two[0]))

@@ -158,9 +158,8 @@ void StartFit::project(Chain const& chain, Change const& worst) {
                                chain.beads.position[k] - chain.beads.position[k - 1]) > 0;
     if (!closed)
         fail(from_,
-             fmt::format(
-                 "no small change of the positions of chain `{}` gives its links their lengths",
-                 shown(chain.name)),
+             fmt::format("no small change of positions gives the links of chain `{}` their lengths",
+                         shown(chain.name)),
              remedy_);
     record(chain, worst, given);
 }
@@ -202,7 +201,7 @@ void StartFit::refuse(Chain const& chain, Change const& worst,
     bool const mended = named.from < named.to || named.from - named.to <= relaxed_ * named.to;
     if (mended && !scene_.relax) remedy += ", or `relax: true`";
     if (named.from > named.to && !scene_.box)
-        remedy += " (of a chain wrapped into a box: give `box`)";
+        remedy += " (if the chain is wrapped into a box, give `box`)";
     fail_at(from_, "bead", static_cast<std::int64_t>(named.link) + 1, what, remedy);
 }
 
@@ -235,7 +234,7 @@ std::string StartFit::nearest_text(Chain const& chain) const {
                        });
     NearPair const& worst = pairs[pairs.size() / 2];
     std::string const others =
-        pairs.size() < 2 ? "" : fmt::format(", and {} more pairs as near", pairs.size() - 1);
+        pairs.size() < 2 ? "" : fmt::format(", and {} more such pairs", pairs.size() - 1);
     return fmt::format("; beads {} and {} overlap: {:.3g} {} apart{}", worst.first + 1,
                        worst.second + 1, worst.distance, unit(), others);
 }

@@ -329,7 +329,7 @@ void ChainSystem::require_arrays(std::map<std::string, std::vector<double>> cons
                 found == arrays.end() ||
                 found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
                 throw InputError("the checkpoint lacks the array " + name + " for this scene",
-                                 "--restart", "take a checkpoint of this scene and integrator");
+                                 "--restart", "use a checkpoint of this scene and integrator");
     });
 }
 

@@ -151,7 +151,7 @@ nlohmann::json ClosedSteps::summary() const {
 std::string ClosedSteps::text() const {
     if (steps_ == 0) return "";
     return std::to_string(steps_) + (steps_ == 1 ? " step" : " steps") + " from step " +
-           std::to_string(first_) + " on took up to " + std::to_string(most_sweeps_) +
+           std::to_string(first_) + " on needed up to " + std::to_string(most_sweeps_) +
            " projection sweeps to close the joints";
 }
 

@@ -150,7 +150,7 @@ void ConstrainedIntegrator::choose_sweeps() {
     line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance
          << " within " << most_sweeps << " sweeps of a step of " << scheme_.step << " (error "
          << last_error_ << "): "
-         << (last_error_ < 1e-13 ? "that is rounding, ask for no less than 1e-12"
+         << (last_error_ < 1e-13 ? "this is rounding error, use a tolerance of 1e-12 or more"
                                  : "choose a smaller dynamics.step");
     throw ComputationError(line.str());
 }

@@ -63,7 +63,8 @@ class DormandPrinceSteps final : public JointIntegrator {
                 bool const reaches = inner.length == left;
                 inner.end = start + (reaches ? h : done + inner.length);
                 if (inner.length <= 16 * eps * std::max(inner.end, h))
-                    refuse(start + done, inner.length, "no shorter step is a step");
+                    refuse(start + done, inner.length,
+                           "the inner step cannot be shortened further");
                 bool const there = advance(inner);
                 if (tolerance_ > 0 &&
                     !control_.accepts(inner.length, there ? error(inner.length) : HUGE_VAL))
@@ -137,7 +138,7 @@ class DormandPrinceSteps final : public JointIntegrator {
     [[noreturn]] void refuse(double time, double length, char const* why) const {
         std::ostringstream line;
         line << why << " for dynamics.tolerance " << tolerance_ << " at time " << time
-             << " (the last asked for is " << length
+             << " (the last inner step is " << length
              << " long): raise the tolerance, or look at the forces and joints there";
         throw SharedError(line.str());
     }

@@ -36,8 +36,8 @@ std::string failure_in_step(std::int64_t step, std::string const& what, Scene co
     std::string const cause = dca::cause_of_lost_matrix;
     auto const at = text.find(cause);
     if (!has_started || at == std::string::npos) return text;
-    return text.insert(at, fmt::format("dynamics.step = {:.6g} is too long for forces and speeds "
-                                       "there{}: choose a smaller one; else ",
+    return text.insert(at, fmt::format("dynamics.step = {:.6g} is too long for the forces and "
+                                       "speeds there{}: choose a smaller one; otherwise ",
                                        scene.dynamics.step, stiffest_spring(scene)));
 }
 

@@ -218,12 +218,12 @@ std::string text_of(StepLimit const& limit, Scene const& scene) {
 std::string note_of_step(Scene const& scene, std::optional<StepLimit> const& limit) {
     double const step = scene.dynamics.step;
     if (!limit || step <= near * limit->step) return "";
-    std::string const longest = "the longest stable one, " + text_of(*limit, scene);
+    std::string const longest = "the longest stable step, " + text_of(*limit, scene);
     if (step > limit->step && limit->whole)
         throw InputError(fmt::format("a step of {:.4g} is longer than {}", step, longest),
                          scene.file + ": dynamics.step",
                          "choose a smaller one, or an implicit integrator");
-    return fmt::format("dynamics.step = {:.4g} is {} {}: half of that keeps energy better", step,
+    return fmt::format("dynamics.step = {:.4g} is {} {}: half of it conserves energy better", step,
                        step > limit->step ? "longer than" : "near", longest);
 }
 

@@ -130,9 +130,8 @@ class AllWriters final : public Writers {
 
 std::string why_not_by_all(Communicator const& communicator) {
     if (handle_of(communicator) == MPI_COMM_NULL) return "these ranks are not MPI's";
-    return is_quiet_about_failures()
-               ? "OMPIO keeps quiet about writes that fail (OMPI_MCA_io=^ompio)"
-               : "";
+    return is_quiet_about_failures() ? "OMPIO does not report writes that fail (OMPI_MCA_io=^ompio)"
+                                     : "";
 }
 
 std::unique_ptr<Writers> all_writers(Communicator const& communicator) {

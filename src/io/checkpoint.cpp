@@ -100,7 +100,7 @@ Checkpoint read_checkpoint(std::string const& file) {
     if (!exists) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_checkpoint(file);
     bool const has_previous = std::filesystem::exists(previous, unseen);
-    std::string const remedy = has_previous ? "use the one before, " + previous : "start anew";
+    std::string const remedy = has_previous ? "use the previous one, " + previous : "start anew";
     std::unique_ptr<OpenedCheckpoint const> const opened_file = open_checkpoint(file, remedy);
     OpenedCheckpoint const& opened = *opened_file;
     try {
@@ -110,7 +110,7 @@ Checkpoint read_checkpoint(std::string const& file) {
         CheckpointRead read =
             read_checkpoint_file({handle.get(), file, reading_checkpoint}, Arrays::keep, {});
         if (read.checksum != checksum_of(read.contents, read.sizes, read.of_values))
-            throw ComputationError("its checksum does not fit its contents");
+            throw ComputationError("its checksum does not match its contents");
         return std::move(read.contents);
     } catch (InputError const&) {
         throw;

@@ -18,7 +18,7 @@ constexpr std::int64_t format_version = 3;
 void require_key(std::string const& key, std::string const& file) {
     if (key.empty() || key == "." || key.find('/') != std::string::npos)
         throw ComputationError("cannot write the checkpoint (" + file + "): '" + key +
-                               "' is no name for a dataset");
+                               "' is not a name for a dataset");
 }
 
 /// Writes the entries of a map as datasets of a new group, by the function `put`.
@@ -99,7 +99,7 @@ std::string get_note(Place const& group, std::string const& key) {
     std::size_t const length = H5Tget_size(type.get());
     if (entry.size != 1 || H5Tget_class(type.get()) != H5T_STRING ||
         H5Tis_variable_str(type.get()) > 0 || length > bytes_of_file(group))
-        throw ComputationError(key + " is no text");
+        throw ComputationError(key + " is not a text");
     std::string text(length, '\0');
     check(H5Dread(entry.data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()),
           group.file, group.doing);
@@ -131,7 +131,7 @@ std::string get_fixed_text(Place const& root, std::string const& name) {
     Attribute const attribute(
         check(H5Aopen(root.id, name.c_str(), H5P_DEFAULT), root.file, root.doing));
     Type const type(check(H5Aget_type(attribute.get()), root.file, root.doing));
-    if (H5Tis_variable_str(type.get()) > 0) throw ComputationError(name + " is no text");
+    if (H5Tis_variable_str(type.get()) > 0) throw ComputationError(name + " is not a text");
     return get_text(root, name);
 }
 
@@ -255,7 +255,7 @@ void put_checksum(std::string const& name, std::string const& file, std::uint64_
 
 CheckpointRead read_checkpoint_file(Place const& root, Arrays wish, Reader reader) {
     if (get_fixed_text(root, "format") != format)
-        throw ComputationError("it tells of no checkpoint");
+        throw ComputationError("it does not describe a checkpoint");
     if (get_integer(root, "version") != format_version)
         throw InputError("a checkpoint of another version of Catena", root.file,
                          "restart with the version that wrote it");

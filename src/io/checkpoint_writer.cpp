@@ -184,7 +184,7 @@ struct CheckpointWriter::Draft {
         std::uint64_t const all = sum_over(communicator, read.of_values);
         on_first_rank(communicator, [&] {
             if (read.checksum != checksum_of(read.contents, read.sizes, all))
-                refuse("its checksum does not fit its contents");
+                refuse("its checksum does not match its contents");
         });
     }
     [[noreturn]] void refuse(std::string const& why) const {

@@ -79,7 +79,7 @@ std::string broken_seal(std::string const& file) {
                            told + std::uint64_t{seal_size});
     std::string expected = seal_of(found);
     expected.resize(seal_size);
-    return seal == expected ? "" : "its checksum does not fit its contents";
+    return seal == expected ? "" : "its checksum does not match its contents";
 }
 
 }  // namespace catena

@@ -34,8 +34,8 @@ std::int64_t kept_size(std::string const& file, std::string const& header,
                        Continuation const& go_on) {
     std::string const beside = Continuation::way_beside;
     if (!std::filesystem::exists(file))
-        throw InputError("no table of observables to go on with", file,
-                         "put it back, or " + beside);
+        throw InputError("there is no table of observables to continue", file,
+                         "restore it, or " + beside);
     std::string const text = read_text_file(file);
     if (!text.starts_with(header))
         throw InputError("the table of observables has other columns than this run", file,
@@ -48,7 +48,7 @@ std::int64_t kept_size(std::string const& file, std::string const& header,
         auto const step = step_of(std::string_view(text).substr(kept, end - kept));
         if (!step)
             throw InputError("not a record of observables", file + ", line " + std::to_string(line),
-                             "mend the line, or " + beside);
+                             "correct the line, or " + beside);
         if (*step > go_on.after_step) break;
         kept = end + 1;
         ++records;
@@ -57,7 +57,7 @@ std::int64_t kept_size(std::string const& file, std::string const& header,
         throw InputError(fmt::format("the table of observables has lost lines: {} of the {} before "
                                      "the checkpoint are there",
                                      records, go_on.records),
-                         file, "put the whole file back, or " + beside);
+                         file, "restore the whole file, or " + beside);
     return static_cast<std::int64_t>(kept);
 }
 
@@ -78,7 +78,7 @@ double number(std::string const& cell, std::string const& where) {
     auto const [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (error == std::errc::result_out_of_range) return std::strtod(cell.c_str(), nullptr);
     if (error != std::errc() || end != cell.data() + cell.size())
-        throw InputError("not a number: '" + cell + "'", where, "mend the table");
+        throw InputError("not a number: '" + cell + "'", where, "correct the table");
     return value;
 }
 
@@ -141,7 +141,7 @@ ObservablesTable read_observables(std::string const& file) {
         if (cells.size() != table.names.size())
             throw InputError(
                 fmt::format("{} cells for {} columns", cells.size(), table.names.size()), where,
-                "mend the table");
+                "correct the table");
         for (std::size_t k = 0; k < cells.size(); ++k)
             table.columns[k].push_back(number(cells[k], where));
     }

@@ -70,7 +70,7 @@ struct Frame {
 struct Continuation {
     /// Advice in error messages about files that cannot be continued.
     static constexpr char const* way_beside =
-        "go on in another folder: --restart CHECKPOINT --output OTHER";
+        "continue in another folder: --restart CHECKPOINT --output OTHER";
 
     Continuation(std::int64_t step, std::int64_t least = 0)
         : after_step(step), records(least) {}  // NOLINT(google-explicit-constructor)

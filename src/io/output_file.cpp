@@ -62,7 +62,7 @@ OutputFile OutputFile::create(std::string const& file) {
 }
 
 OutputFile OutputFile::create_anew(std::string const& file) {
-    if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail("remove what is there", file, errno);
+    if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail("remove the old file", file, errno);
     return {open_file(file, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW), file};
 }
 
@@ -74,8 +74,8 @@ bool OutputFile::is_in_place() const {
 
 OutputFile OutputFile::append(std::string const& file, std::int64_t size) {
     OutputFile out(open_file(file, O_WRONLY), file);
-    if (::ftruncate(out.descriptor_, size) != 0) fail("cut to size", file, errno);
-    if (::lseek(out.descriptor_, 0, SEEK_END) < 0) fail("go to the end", file, errno);
+    if (::ftruncate(out.descriptor_, size) != 0) fail("truncate", file, errno);
+    if (::lseek(out.descriptor_, 0, SEEK_END) < 0) fail("seek to the end", file, errno);
     return out;
 }
 
@@ -169,13 +169,13 @@ void make_output_folder(std::string const& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
-        throw InputError("the output folder cannot be made: " + error.message(), folder,
-                         "name another with --output");
+        throw InputError("the output folder cannot be created: " + error.message(), folder,
+                         "name another folder with --output");
 }
 
 std::string read_text_file(std::string const& file) {
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError("cannot be read", file, "check that the file exists and may be read");
+    if (!in) throw InputError("cannot be read", file, "check that the file exists and is readable");
     std::ostringstream text;
     text << in.rdbuf();
     if (in.bad()) throw InputError("cannot be read", file, "check the disk");

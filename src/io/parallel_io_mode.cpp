@@ -95,7 +95,7 @@ std::string why_not_together(Communicator const& communicator,
 void require_wished(RequestedIoMode wish, ParallelIoMode const& way, std::string const& file) {
     if (wish == RequestedIoMode::collective && !way.why_not.empty())
         throw InputError("ranks cannot write together, " + way.why_not, file,
-                         "leave CATENA_HDF5=collective out: the root writes");
+                         "leave CATENA_HDF5=collective out: rank 0 then writes");
 }
 
 }  // namespace catena

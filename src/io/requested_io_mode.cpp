@@ -12,8 +12,8 @@ RequestedIoMode file_wish(std::string const& word) {
     if (word.empty()) return RequestedIoMode::best;
     if (word == "root") return RequestedIoMode::root;
     if (word == "collective") return RequestedIoMode::collective;
-    throw InputError("no way to write files: " + word, "CATENA_HDF5",
-                     "say root or collective, or leave it out");
+    throw InputError("not a way to write files: " + word, "CATENA_HDF5",
+                     "use root or collective, or leave it out");
 }
 
 RequestedIoMode requested_io_mode_of_run(Communicator const& communicator) {

@@ -282,11 +282,11 @@ class H5mdWriter final : public TrajectoryWriter {
     /// Opens an existing file after a trial, and removes the frames after the continuation's step.
     void open(Continuation const& go_on) {
         if (!std::filesystem::exists(name_))
-            throw InputError("no trajectory to go on with", name_,
-                             std::string("put it back, or ") + Continuation::way_beside);
+            throw InputError("there is no trajectory to continue", name_,
+                             std::string("restore it, or ") + Continuation::way_beside);
         if (std::string const end = trial([&] { look_through(); }, limits_for_file(name_));
             !end.empty())
-            throw InputError("the trajectory is damaged, HDF5 breaks on it: " + end, name_,
+            throw InputError("the trajectory is damaged, HDF5 fails to read it: " + end, name_,
                              Continuation::way_beside);
         Properties const access = access_of(*writers_, name_);
         file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
@@ -307,7 +307,7 @@ class H5mdWriter final : public TrajectoryWriter {
             throw InputError(
                 "the trajectory has lost frames: " + std::to_string(kept - steps.begin()) +
                     " of the " + std::to_string(go_on.records) + " before the checkpoint are there",
-                name_, std::string("put the whole file back, or ") + Continuation::way_beside);
+                name_, std::string("restore the whole file, or ") + Continuation::way_beside);
         at_.frames = static_cast<hsize_t>(kept - steps.begin());
         if (at_.frames > 0) at_.last_step = steps[at_.frames - 1];
         for (Series* series : series_.present()) series->cut(place(), at_.frames);
@@ -340,7 +340,7 @@ class H5mdWriter final : public TrajectoryWriter {
                                std::to_string(step) + "): " + why);
     }
     [[noreturn]] void refuse_arrays() const {
-        refuse(step_, "the frame's arrays do not fit the topology");
+        refuse(step_, "the frame's arrays do not match the topology");
     }
 
     std::string name_;

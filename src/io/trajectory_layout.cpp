@@ -193,7 +193,7 @@ class Builder {
 void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
     bool const present = has(root, group);
     if (present != wanted)
-        refuse(root, std::string(present ? "holds " : "holds no ") + what +
+        refuse(root, std::string(present ? "contains " : "contains no ") + what +
                          (present ? " that" : " but") + " this run " +
                          (wanted ? "writes them" : "does not write"));
 }

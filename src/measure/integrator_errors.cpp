@@ -44,9 +44,10 @@ Springs springs_of(Scene const& scene) {
 }
 /// Returns why springs are treated by explicit integrators only.
 std::string why_explicit_alone(Springs springs) {
-    if (springs == Springs::on_gpu) return "they work on the host";
+    if (springs == Springs::on_gpu) return "they run on the host";
     if (springs == Springs::uneven)
-        return "a joint has springs along some of its coordinates alone, or ten decades apart";
+        return "a joint has springs along only some of its coordinates, or its stiffnesses differ "
+               "by ten decades";
     return "";
 }
 
@@ -179,7 +180,7 @@ IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::in
         }
         point.seconds = spread_of(seconds);
     } catch (ComputationError const&) {
-        point.no_error = "came to no end";
+        point.no_error = "did not finish";
     }
     return point;
 }
@@ -262,17 +263,17 @@ bool IntegratorStudy::valid() const {
 
 std::string why_integrators_cannot_be_compared(Scene const& scene) {
     if (scene.forces.openmm)
-        return "OpenMM's forces have steps at their cutoffs, and lists of their own";
+        return "OpenMM's forces are discontinuous at their cutoffs and have lists of their own";
     if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
         return "its drag changes with velocities";
     for (ChainSpec const& c : scene.chains) {
         if (c.velocities == StartVelocities::thermal)
-            return "its start is thermal, another one for every integrator";
+            return "its start is thermal and differs between integrators";
         if (!c.bodies.drag.empty() || !c.bodies.damping.empty())
             return "its drag or dampers change with velocities";
         if (!c.bodies.driven.empty()) return "its joints are driven";
     }
-    return integrators_of(scene).empty() ? "no integrator has all its chains" : "";
+    return integrators_of(scene).empty() ? "no integrator supports all its chains" : "";
 }
 
 IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& communicator,
@@ -282,7 +283,7 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     study.bodies = scene.bodies();
     study.time = time;
     bool const works = std::any_of(scene.chains.begin(), scene.chains.end(), works_on_bodies);
-    if (works) study.no_energy_error = "torques or wrenches work on the bodies";
+    if (works) study.no_energy_error = "torques or wrenches do work on the bodies";
     study.no_implicit = why_explicit_alone(springs_of(scene));
     std::vector<Integrator> const integrators = integrators_of(scene);
     bool const springs = springs_of(scene) != Springs::none;

@@ -20,7 +20,7 @@ struct IntegratorPoint {
     /// Largest |E - E(0)| of the samples, divided by the largest kinetic energy of the run.
     std::optional<double> energy_error;
     Spread seconds;  // time of the run, s
-    /// Reason why no error could be computed: "unstable" or "came to no end"; empty if one could.
+    /// Reason why no error could be computed: "unstable" or "did not finish"; empty if one could.
     std::string no_error;
     // Members of adaptive runs.
     double tolerance = 0;

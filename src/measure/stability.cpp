@@ -155,7 +155,7 @@ void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution 
     to.name = answer.name;
     if (to.why_not.empty()) to.why_not = answer.why_not;
     if (to.why_not.empty() && answer.acceleration.size() != exact.acceleration.size())
-        to.why_not = "its answer is of another length";
+        to.why_not = "its answer has another length";
     if (!to.why_not.empty()) return;
     layout.acceleration = answer.acceleration;
     to.error.push_back(largest_difference(scene, layout, exact.acceleration));

@@ -54,9 +54,10 @@ std::span<std::byte> room_for(std::size_t count, std::vector<T>& values) {
 }  // namespace
 
 void throw_trouble(double bead, char const* trouble) {
-    throw SharedError(fmt::format(
-        fmt::runtime(std::string(trouble) + ": take a smaller step, or a start without overlaps"),
-        bead + 1));
+    throw SharedError(
+        fmt::format(fmt::runtime(std::string(trouble) +
+                                 ": use a smaller dynamics.step, or a start without overlaps"),
+                    bead + 1));
 }
 
 GhostLists::GhostLists(Communicator const& communicator, Plan plan)
@@ -402,11 +403,11 @@ void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) 
     worst = communicator_.max(worst);
     if (worst >= count)
         throw SharedError(
-            fmt::format("forces.openmm.audit: bead {} is felt on a rank that has no ghost of it",
+            fmt::format("forces.openmm.audit: bead {} acts on a rank that has no ghost of it",
                         number(static_cast<std::int64_t>(worst - count)) + 1));
     if (worst > no_bead)
         throw SharedError(
-            fmt::format("forces.openmm.audit: a ghost of bead {} is not where the bead is",
+            fmt::format("forces.openmm.audit: a ghost of bead {} is not at the bead's position",
                         number(static_cast<std::int64_t>(worst)) + 1));
 }
 

@@ -36,7 +36,7 @@ std::string RunVerdict::restore(Checkpoint const& c) {
     auto const frames = c.arrays.find(array_of_frames);
     if (frames != c.arrays.end()) {
         if (!energies_.set_state(frames->second, c.step))
-            refuse_checkpoint(std::string(array_of_frames) + " are no frames of its run");
+            refuse_checkpoint(std::string(array_of_frames) + " are not energies of its run");
         if (c.integers.contains(step_covered_from)) covers_from_ = step_of(c, step_covered_from, 0);
         auto const midway = c.integers.find(whether_midway);
         if (midway != c.integers.end() && midway->second != 0) energies_.begins_midway();
@@ -45,9 +45,8 @@ std::string RunVerdict::restore(Checkpoint const& c) {
         energies_.begins_midway();
     }
     if (!covers_from_) return "";
-    return "a checkpoint of this run kept no energies of the frames before it: the verdict on "
-           "energy and temperature covers only the steps "
-           "from " +
+    return "a checkpoint of this run contains no energies of earlier frames: the verdict on energy "
+           "and temperature covers only the steps from " +
            std::to_string(*covers_from_) + " on";
 }
 

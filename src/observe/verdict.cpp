@@ -171,7 +171,7 @@ std::optional<RunCheck> EnergyWatch::energy() const {
         v.passed = false;
         v.advice = found + ": the step is too long: choose a smaller dynamics.step";
     } else if (drifts && std::abs(v.value) > said_drift) {
-        v.advice = found + ": a smaller dynamics.step keeps it better";
+        v.advice = found + ": a smaller dynamics.step conserves it better";
     } else if (std::abs(jump) > said_jump) {
         v.advice = fmt::format(
             "total energy, which should be constant, jumped from {} between steps {} and {} and "
@@ -235,9 +235,8 @@ std::optional<RunCheck> EnergyWatch::temperature() const {
         // Velocities given by the scene may be far from thermal until friction has removed them.
         v.passed = std::isfinite(v.value) && !w.forgotten &&
                    (begins_midway_ || starts_at_given_velocities(scene_));
-        v.advice =
-            found(w) + (v.passed ? ": the start's velocities are not forgotten yet: run longer"
-                                 : causes_of_heat);
+        v.advice = found(w) +
+                   (v.passed ? ": the start velocities still matter: run longer" : causes_of_heat);
         return v;
     }
     // Frames do not contain the kinetic energy of the rotors of implicit springs. Only the upper
@@ -253,14 +252,13 @@ void EnergyWatch::judge(Warmth const& w, RunCheck& v) const {
     if (away > said_heat * std::max(1.0, warm) && away > standard_errors * w.error) {
         v.passed = w.mean < warm + worthless_heat_in_equilibrium * std::max(1.0, warm);
         v.advice = fmt::format("{} ({:.0f} standard errors away)", found(w), away / w.error);
-        v.advice +=
-            v.passed
-                ? ": the step is long for these forces: a smaller dynamics.step brings it nearer"
-                : causes_of_heat;
+        v.advice += v.passed ? ": the step is long for these forces: a smaller dynamics.step "
+                               "reduces the difference"
+                             : causes_of_heat;
     } else if (w.added > said_heat) {
-        v.advice = fmt::format(
-            "{}: loads may add up to {:.3g} K, so that less heat than that is not noticed",
-            found(w), heating().excess);
+        v.advice =
+            fmt::format("{}: loads may add up to {:.3g} K, so smaller deviations are not detected",
+                        found(w), heating().excess);
     }
 }
 
@@ -297,8 +295,7 @@ std::optional<RunCheck> coordinates_verdict(double largest, double length, doubl
     if (!v.passed)
         v.advice = fmt::format(
             "a coordinate of {:.3g} does not resolve links of {:.3g} to "
-            "dynamics.constraint_tolerance {:.0e}: bring the "
-            "chains near the origin",
+            "dynamics.constraint_tolerance {:.0e}: move the chains closer to the origin",
             largest, length, tolerance);
     return v;
 }

@@ -80,9 +80,8 @@ S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
     if (chain.is_ring()) push.front() = -u;
     S const yields = dot(u, apart_at_tip(chain, open_chain(chain, links, push)));
     if (!(yields > S(0)))
-        throw ComputationError("the tip link has nothing to give (bead " +
-                               std::to_string(chain.size()) +
-                               "): a chain stretched straight between its ends has no answer");
+        throw ComputationError("the tip link cannot move (bead " + std::to_string(chain.size()) +
+                               "): a chain stretched straight between its ends has no solution");
     return yields;
 }
 

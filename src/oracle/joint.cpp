@@ -223,8 +223,8 @@ void place(JointShape<S> const& j, std::string const& where, Link<S>& link) {
     } else if (link.type == JointType::weld) {
         link.dof = 0;
     } else {
-        throw ComputationError("the oracles know no such joint between rigid bodies (" + where +
-                               "): choose another type");
+        throw ComputationError("the oracles do not support this joint between rigid bodies (" +
+                               where + "): choose another type");
     }
 }
 

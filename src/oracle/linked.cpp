@@ -141,9 +141,9 @@ OracleResult<S> tridiagonal_linked(ChainSpec const& chain, Loads const& loads) {
             lambda[k] -= factor * lambda[k - 1];
         }
         if (!(pivot[k] > S(0)))
-            throw ComputationError("the links' matrix is not positive definite (link " +
-                                   std::to_string(k + 1) +
-                                   "): a chain stretched straight between its ends has no answer");
+            throw ComputationError(
+                "the links' matrix is not positive definite (link " + std::to_string(k + 1) +
+                "): a chain stretched straight between its ends has no solution");
     }
     // Back substitution; lambda[links] = 0.
     for (std::size_t k = links; k-- > model.first;)

@@ -27,7 +27,7 @@ Json read_json(fs::path const& file) {
         return Json::parse(read_text_file(file.string()));
     } catch (Json::exception const& error) {
         throw InputError("not JSON, " + std::string(error.what()), file.string(),
-                         "mend or remove the file");
+                         "correct or remove the file");
     }
 }
 
@@ -81,8 +81,7 @@ std::string charts(ObservablesTable const& table) {
                             escaped(readable_name(name)), line_chart(curve),
                             statistics(table.columns[k]));
     }
-    return html + "</div>\n" +
-           (constant.empty() ? "" : "<p>The same all the time: " + constant + ".</p>\n");
+    return html + "</div>\n" + (constant.empty() ? "" : "<p>Constant: " + constant + ".</p>\n");
 }
 
 /// Table of the known files in the folder, with links and explanations.
@@ -114,7 +113,7 @@ std::string timeline_section(fs::path const& file) {
         return picture.empty() ? "" : "<h2>One step</h2>\n" + picture;
     } catch (Json::exception const& error) {
         throw InputError("not a timeline, " + std::string(error.what()), file.string(),
-                         "mend or remove the file");
+                         "correct or remove the file");
     }
 }
 
@@ -139,7 +138,7 @@ void write_run_report(std::string const& folder) {
         throw InputError("nothing to report", folder, "name the folder of a run");
     Json summary = fs::exists(summary_file) ? read_json(summary_file) : Json::object();
     if (!summary.is_object())
-        throw InputError("not an object", summary_file.string(), "mend or remove the file");
+        throw InputError("not an object", summary_file.string(), "correct or remove the file");
     // Sections of the page: title, summary, observables, one step, files.
     std::string const title = title_of(summary, in);
     std::string body = fmt::format("<h1>{}</h1>\n<p>A run of Catena</p>\n", escaped(title));

@@ -15,7 +15,7 @@ namespace {
 /// Returns why `auto` must not choose a GPU that is present; empty if it may.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
-    if (scene.solver.refine > 0) return "what refined solutions lack is looked for on the host";
+    if (scene.solver.refine > 0) return "refinement computes residuals on the host";
     return scene.dynamics.why_host_alone();
 }
 /// True if OpenMM is free to use the GPU for its forces, so that beads could stay there between
@@ -47,7 +47,7 @@ double least_seconds_of_forces(Scene const& scene, Machine const& machine, int r
 std::string text_of(Prediction const& p) {
     return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(),
                                             1e3 * p.seconds[typical_evaluation])
-                              : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
+                              : fmt::format("{} not usable: {}", p.arrangement.name(), p.unusable);
 }
 
 /// Marks GPU arrangements as unusable if the device has too little memory for the scene. The margin
@@ -78,7 +78,7 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
         if (std::erase_if(usable, [&](Arrangement const& a) {
                 return a.backend == Backend::openmp && a.threads > spare;
             }) > 0)
-            beside = fmt::format("; other programs leave {} of {} cores", spare,
+            beside = fmt::format("; other programs leave {} of {} cores free", spare,
                                  planner.machine().threads);
     }
     if (usable.size() == 1) return {usable.front(), {}, "auto: one core" + beside + without};
@@ -89,7 +89,7 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     double const forces = least_seconds_of_forces(scene, planner.machine(), ranks);
     if (forces > 0)
         beside += fmt::format(
-            "; beside forces of {:.3g} ms and more, gains under a tenth of both do not count",
+            "; forces take at least {:.3g} ms, so gains below a tenth of the total are ignored",
             1e3 * forces);
     if (for_forces || uses_gpu(quickest(predictions, forces).arrangement.backend))
         refuse_what_does_not_fit(predictions, shares, planner.machine());
@@ -98,8 +98,9 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
         [](Prediction const& p) { return uses_gpu(p.arrangement.backend) && p.unusable.empty(); });
     bool const with_forces = for_forces && on_gpu != predictions.end();
     Prediction const& best = with_forces ? *on_gpu : quickest(predictions, forces);
-    std::string reason = std::string(with_forces ? "auto: where OpenMM's forces are, " : "auto: ") +
-                         "predicted " + text_of(best);
+    std::string reason =
+        std::string(with_forces ? "auto: on the GPU of OpenMM's forces, " : "auto: ") +
+        "predicted " + text_of(best);
     for (Prediction const& p : predictions)
         if (&p != &best) reason += ", " + text_of(p);
     return {best.arrangement, {}, reason + beside + without};
@@ -133,13 +134,13 @@ Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     if (solver.backend == Backend::automatic) return choose_backend(scene, axes, planner, ranks);
     if (levels_are_open(solver) && planner.machine().no_gpu.empty())
         return choose_levels(scene, axes, planner, ranks);
-    return {{solver.backend, solver.threads}, solver.levels_on_gpu(), "asked for"};
+    return {{solver.backend, solver.threads}, solver.levels_on_gpu(), "requested"};
 }
 
 Choice choose(Scene const& scene, Axes axes, Communicator const& communicator,
               std::string const& no_gpu) {
     Choice choice{
-        {scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
+        {scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "requested"};
     if (!leaves_open(scene)) return choice;
     with_planner(
         communicator, scene.solver.threads, largest_at_start, no_gpu,
@@ -153,7 +154,7 @@ void with_planner(Communicator const& communicator, int threads, std::int64_t la
     Machine machine = this_machine(communicator, threads);
     // Either every rank has a GPU, or no rank uses one.
     if (communicator.max(machine.no_gpu.empty() ? 0 : 1) > 0)
-        without_gpu(machine, "not every rank has one");
+        without_gpu(machine, "not every rank has a GPU");
     if (!no_gpu.empty()) without_gpu(machine, no_gpu);
     on_first_rank(communicator, [&] {
         Planner planner(machine, read_cache(machine), largest);

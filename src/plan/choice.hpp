@@ -14,7 +14,7 @@ struct Choice {
     Arrangement arrangement;
     /// Levels on the GPU; used by cuda-levels only.
     GpuLevels levels;
-    /// "asked for", or for example "auto: predicted segments 1.2 ms, openmp, 8 threads 2 ms".
+    /// "requested", or for example "auto: predicted segments 1.2 ms, openmp, 8 threads 2 ms".
     std::string reason;
 };
 

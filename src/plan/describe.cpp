@@ -126,7 +126,7 @@ char const* energy_unit(Scene const& scene) { return scene.si ? "J" : "kJ/mol"; 
 
 std::string dynamics_text(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
-    if (!d.given) return "none (solve and report need none)";
+    if (!d.given) return "none (only `run` needs them)";
     std::string text =
         fmt::format("{}, {} steps of {} {} ({:.6g} {})", name_of(d.integrator), d.steps, d.step,
                     time_unit(scene), static_cast<double>(d.steps) * d.step, time_unit(scene));
@@ -173,8 +173,8 @@ std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> c
     std::int64_t const every = scene.output.every, steps = scene.dynamics.steps;
     if (scene.dynamics.given && steps > 0 && every > steps)
         notes.push_back(
-            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and "
-                        "the last state alone",
+            fmt::format("output.every = {} exceeds dynamics.steps = {}: only the first and the "
+                        "last state become frames",
                         every, steps));
     if (std::string const note = note_of_step(scene, limit); !note.empty()) notes.push_back(note);
     return notes;

@@ -101,7 +101,7 @@ std::string network_text(PlanRequest const& request, Network const& network) {
            fmt::format("{}{} and {:.3g} GB/s between hosts{}{}", text.empty() ? "" : ", with ",
                        duration_text(far.latency), 1e-9 / far.seconds_a_byte,
                        same ? "; the same within a host" : "",
-                       text.empty() ? ", and gathers as the model says: nothing was measured" : "");
+                       text.empty() ? ", and gathers by the model: nothing was measured" : "");
 }
 
 /// Returns the predicted seconds of these messages.
@@ -129,7 +129,7 @@ void add_measured(Text& text, Json& json, ChainSystem const& system, Groups cons
     Traffic const t = groups.traffic(way);
     double const measured = time_messages(communicator, t, measurements),
                  predicted = seconds_of(t, network, way, hosts);
-    text.entry("measured", fmt::format("messages of a step {} on these {} ranks, predicted {}",
+    text.entry("measured", fmt::format("messages take {} per step on these {} ranks, predicted {}",
                                        duration_text(measured), ranks, duration_text(predicted)));
     json["network"]["measured"] = {
         {"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
@@ -154,10 +154,10 @@ void add_counts(Text& text, Json& json, ChainSystem const& system, Groups const&
     Messages const here =
         groups.messages([&](ChainGroup const& group) { return cut_of(group, way); });
     text.heading("messages");
-    text.entry("a step",
+    text.entry("per step",
                fmt::format("{} gathers of {} bytes in all, {} exchanges in which rank 0 sends {} "
-                           "bytes; each sweep of a drift or correction "
-                           "of tips adds {} gathers, {} bytes, {} exchanges, {} bytes",
+                           "bytes; each projection sweep or correction of tips adds {} gathers, {} "
+                           "bytes, {} exchanges, {} bytes",
                            here.fixed.gathers, here.fixed.gathered_bytes, here.fixed.exchanges,
                            here.fixed.sent_bytes, here.each.gathers, here.each.gathered_bytes,
                            here.each.exchanges, here.each.sent_bytes));

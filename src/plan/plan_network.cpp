@@ -18,7 +18,7 @@ double quantity(Json const& json, char const* key) {
     double const value = json.at(key).get<double>();
     if (!std::isfinite(value) || value < 0)
         throw InputError(fmt::format("{} is {}", key, value), "--network",
-                         "give a number from 0 on");
+                         "give 0 or a positive number");
     return value;
 }
 
@@ -42,7 +42,7 @@ Network read_network(std::string const& file) {
             network.gather_overhead = quantity(json, "gather_overhead");
     } catch (Json::exception const&) {
         throw InputError("not the JSON of a network", "--network " + file,
-                         "write it by mpirun -np 2 catena bench network --json " + file);
+                         "write it with mpirun -np 2 catena bench network --json " + file);
     }
     if (!network.near) network.near = network.far;
     return network;
@@ -57,12 +57,11 @@ Network network_of(PlanRequest const& request) {
     // A file that was written on one rank contains no link at all.
     if (!network.near) network.near = network.far;
     if (request.ranks > 1 && !network.near)
-        throw InputError("measured on one rank", "--network " + request.network,
-                         "add --latency and --bandwidth (1.5us, 12.5GB/s), or measure on two ranks "
-                         "at least: mpirun -np 2 catena bench "
-                         "network");
+        throw InputError("the network was measured on one rank", "--network " + request.network,
+                         "add --latency and --bandwidth (1.5us, 12.5GB/s), or measure on at least "
+                         "two ranks: mpirun -np 2 catena bench network");
     if (request.hosts > 1 && !network.far)
-        throw InputError("the network was measured on one host, it knows no link between hosts",
+        throw InputError("the network was measured on one host and has no link between hosts",
                          "--network " + request.network,
                          "add --latency and --bandwidth of that link (1.5us, 12.5GB/s), measure "
                          "over two hosts, or leave --hosts out");

@@ -24,29 +24,29 @@ std::vector<std::string> notes_on(Scene const& scene,
         return std::any_of(steps.begin(), steps.end(), condition);
     };
     std::vector<std::string> notes{
-        "computing is the largest rank's, by what was measured on this machine (the shortest of "
-        "several): every rank is taken to be like "
-        "this one, with its memory to itself",
-        "messages come after all computing",
+        "computing is that of the largest rank, from times measured on this machine (the shortest "
+        "of several); every rank is assumed to be like this one, with memory of its own",
+        "messages are assumed to follow all computing",
         fmt::format(
-            "left out: the tree above the units (at most {} a chain), which every rank computes{}",
+            "left out: the tree above the units (at most {} per chain), which every rank "
+            "computes{}",
             dca::max_units,
-            uses_joint_coordinates(d.integrator) ? ", and loops that move the state" : "")};
+            uses_joint_coordinates(d.integrator) ? ", and loops that update the state" : "")};
     if (any([](plan::StepPrediction const& s) { return uses_gpu(s.arrangement.backend); }))
         notes[1] +=
-            ", from host to host, also where GPUs of one host can write into each other's memory; "
-            "copies between GPU and host are "
-            "not among them";
+            ", from host to host, even if GPUs of one host can write into each other's memory; "
+            "copies between GPU and host are not included";
     if (scene.forces.openmm)
         notes.emplace_back(
-            "OpenMM's forces are not predicted: the chains' own work and messages alone");
+            "OpenMM's forces are not predicted, only the chains' own work and messages");
     if (d.fixman) notes.emplace_back("forces of the Fixman potential are not predicted");
     if (scene.solver.refine > 0)
-        notes.emplace_back("what refinements look for on the host is not predicted");
+        notes.emplace_back("residuals that refinement computes on the host are not predicted");
     if (d.tolerance > 0)
-        notes.emplace_back("of one inner step; a step has as many as dynamics.tolerance asks for");
+        notes.emplace_back(
+            "times are per inner step; dynamics.tolerance determines the number of inner steps");
     if (d.integrator == Integrator::implicit_g_baoab)
-        notes.emplace_back("of drifts in one part; a run may take them in more");
+        notes.emplace_back("drifts are predicted in one part; a run may use more");
     for (plan::StepPrediction const& s : steps)
         if (!s.unusable.empty())
             notes.push_back(fmt::format("{} on {} cannot be used: {}", s.arrangement.name(),
@@ -54,9 +54,10 @@ std::vector<std::string> notes_on(Scene const& scene,
     if (any([](plan::StepPrediction const& s) {
             return s.unusable.empty() && !std::isfinite(s.seconds);
         }))
-        notes.push_back(fmt::format(
-            "{} has its sweeps measured together: steps of more than evaluations are not predicted",
-            steps.front().arrangement.name()));
+        notes.push_back(
+            fmt::format("the sweeps of {} are measured together, so only steps that consist of "
+                        "evaluations are predicted",
+                        steps.front().arrangement.name()));
     return notes;
 }
 
@@ -73,8 +74,8 @@ std::string text_of(plan::StepWork const& work, Scene const& scene) {
     add(work.bias_sweeps, "bias sweep", "bias sweeps");
     add(work.drifts, "drift with its matrix sweep and kick",
         "drifts with a matrix sweep and a kick each");
-    add(work.closings, "bias sweep that closes joints", "bias sweeps that close joints");
-    add(work.noises, "thermostat's noise", "thermostats' noises");
+    add(work.closings, "projection sweep", "projection sweeps");
+    add(work.noises, "thermostat noise", "thermostat noises");
     std::string const text = fmt::format("{}", fmt::join(parts, ", "));
     return has_jointed_tips(scene) && !work.absolute()
                ? text +
@@ -138,8 +139,8 @@ void predict_steps(Predictions& predictions, plan::Planner& planner, Scene const
 
 void add_steps(Text& text, Json& json, Scene const& scene,
                std::vector<MessagesOnRanks> const& messages, Predictions const& predictions) {
-    Table times({"ranks", "hosts", "bodies a rank", "computed by", "computing", "messages",
-                 "a step", "times one rank", "efficiency"},
+    Table times({"ranks", "hosts", "bodies per rank", "computed by", "computing", "messages",
+                 "per step", "speed-up", "efficiency"},
                 {0, 3});
     Table counts(
         {"ranks", "hosts", "stages", "gathers", "bytes", "exchanges", "bytes sent", "messages"});
@@ -164,11 +165,11 @@ void add_steps(Text& text, Json& json, Scene const& scene,
         rows.push_back(row);
     }
     std::vector<std::string> const notes = notes_on(scene, predictions.steps);
-    text.heading("predicted time of a step");
-    text.entry("a step", text_of(predictions.work, scene));
+    text.heading("predicted time per step");
+    text.entry("per step", text_of(predictions.work, scene));
     text.add(times);
     for (std::string const& note : notes) text.note(note);
-    text.heading("predicted messages of a step");
+    text.heading("predicted messages per step");
     text.add(counts);
     json["network"].update({{"sweeps", usual_sweeps(scene.dynamics)},
                             {"work", json_of(predictions.work)},

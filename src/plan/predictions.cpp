@@ -22,12 +22,12 @@ Json json_of(plan::PhaseSeconds const& seconds) {
 /// Adds the table of levels of the pairwise tree.
 void add_levels(Text& text, Json& json, plan::LevelPlan const& levels) {
     GpuLevels const best = levels.best();
-    text.heading(fmt::format(
-        "level by level, of cuda-levels; quickest with {},{} on the GPU: {}, all: {}, none: {}",
-        best.up, best.down, duration_text(levels.seconds(best)), duration_text(levels.seconds({})),
-        duration_text(levels.seconds({0, 0}))));
-    Table table(
-        {"", "items", "up: host", "GPU", "transfer above", "down: host", "GPU", "transfer above"});
+    text.heading(
+        fmt::format("levels of cuda-levels; quickest with {},{} on the GPU: {}, all: {}, none: {}",
+                    best.up, best.down, duration_text(levels.seconds(best)),
+                    duration_text(levels.seconds({})), duration_text(levels.seconds({0, 0}))));
+    Table table({"", "items", "assembly: host", "GPU", "transfer above", "disassembly: host", "GPU",
+                 "transfer above"});
     Json& list = json["levels"] = Json::array();
     for (std::size_t l = 0; l < levels.rows().size(); ++l) {
         plan::LevelRow const& row = levels.rows()[l];
@@ -77,8 +77,8 @@ plan::Prediction const* prediction_of(Predictions const& predictions,
 
 void add_predictions(Text& text, Json& json, Predictions const& predictions) {
     text.heading(
-        "predicted times of one evaluation, the largest rank's (from what was measured on this "
-        "machine; messages and OpenMM aside)");
+        "predicted times of one evaluation on the largest rank (from times measured on this "
+        "machine; without messages and OpenMM)");
     std::vector<std::string> header{""};
     for (plan::Prediction const& p : predictions.all)
         header.push_back(p.arrangement.name() + (p.alike ? "" : " *"));
@@ -90,7 +90,7 @@ void add_predictions(Text& text, Json& json, Predictions const& predictions) {
         table.add(row);
     }
     text.add(table);
-    text.note("* by another tree, with other last bits: only when asked for");
+    text.note("* uses another tree and gives other last bits: only on request");
     json["predicted_seconds"] = Json::object();
     for (plan::Prediction const& p : predictions.all) {
         if (p.unusable.empty())

@@ -109,20 +109,18 @@ class List {
     void add_bodies(ChainGroup const& group, Family const& family, std::size_t share) {
         if (group.axes == Axes::joint) {
             if (!group.has_tips() && !group.carried_in_scene && found_.drag == 0) {
-                add("positions and linear velocities of bodies: nothing in the scene acts by them; "
-                    "computed for output and energies alone",
+                add("positions and linear velocities of bodies: nothing in the scene depends on "
+                    "them; computed for output and energies only",
                     share, change_of(family, [](Scene& scene, std::size_t) {
                         scene.forces.linear_drag = 1e-6;
                     }));
                 if (found_.wrenches == 0)
-                    add("orientations of bodies but chains' first ones: nothing in the scene acts "
-                        "along ground axes; for output alone");
+                    add("orientations of all bodies but the first of each chain: nothing in the "
+                        "scene acts along ground axes; computed for output only");
             }
             if (group.revolute && group.partition.trees.front().run_length > 1)
-                add("velocity terms and bodies' accelerations of chains on revolute joints where a "
-                    "step solves once: the solver goes from "
-                    "rates to "
-                    "rates",
+                add("velocity terms and body accelerations of chains on revolute joints: a step "
+                    "solves once, and the solver maps rates to rates",
                     share);
             add("rotations at merges: both sides of a joint share its axes", share,
                 seconds_of_turning);
@@ -132,8 +130,9 @@ class List {
             add("rotations at merges: all handles are in ground axes", share, seconds_of_turning);
         }
         if (family.handles == Handles::projected && group.directions < 6)
-            add(fmt::format("{} of 6 directions a handle: the joints' forces along them are known",
-                            6 - group.directions),
+            add(fmt::format(
+                    "{} of 6 directions per handle: the joints' forces along them are known",
+                    6 - group.directions),
                 share, change_of(family, [](Scene& scene, std::size_t) {
                     scene.solver.handles = Handles::full;
                 }));
@@ -203,12 +202,12 @@ std::vector<Savings> left_out(Scene const& scene, ChainSystem const& system) {
                              name_of(scene.solver.handles)));
     if (!scene.forces.openmm) list.add("OpenMM: forces.openmm is not in the scene");
     if (system.backend() != Backend::openmp && !(uses_gpu(system.backend()) && openmp_is_built()))
-        list.add("threads: this backend has one a rank");
+        list.add("threads: this backend uses one per rank");
     if (system.communicator().size() == 1) list.add("messages: there is one rank");
     if (!uses_gpu(system.backend()))
-        list.add("GPU: " + (cuda::why_not().empty() ? "there is " + cuda::device_name() +
-                                                          ", which this backend does without"
-                                                    : cuda::why_not()));
+        list.add("GPU: " + (cuda::why_not().empty()
+                                ? "this backend does not use " + cuda::device_name()
+                                : cuda::why_not()));
     return list.lines();
 }
 

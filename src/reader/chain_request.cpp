@@ -54,7 +54,7 @@ void ChainRequest::allow(char const* kind, Names keys) const {
                                   "rigid", "charge_termini"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
-            fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
+            fail(*here, fmt::format("key `{}` does not apply to {}", key, kind), "leave it out");
     }
     links_as_given();  // checks the value even if no positions are given
     Node const* const ground = fields.find("anchor");
@@ -114,9 +114,9 @@ std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t bea
         pdb ? from_structure(path, file) : read_position_table(path, file);
     if (positions.size() != beads)
         fail(file,
-             fmt::format("`{}` holds {} positions, the chain has {} beads", shown_path(file.text),
-                         positions.size(), beads),
-             "give one position a bead");
+             fmt::format("`{}` contains {} positions, the chain has {} beads",
+                         shown_path(file.text), positions.size(), beads),
+             "give one position per bead");
     return positions;
 }
 
@@ -126,7 +126,7 @@ std::vector<Vec3> ChainRequest::from_structure(std::string const& path, Node con
     if (std::size_t const others = other_residues(sites, residues); others > 0)
         scene.note(
             fmt::format("`{}` names other residues than the sequence in {} of {} places: its "
-                        "positions are taken all the same",
+                        "positions are used all the same",
                         sites.file, others, residues.size()));
     if (!rigid.empty() && !counts_from_one(sites))
         scene.note(
@@ -169,7 +169,7 @@ void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from) 
     if (k < 0) return;
     std::string const other = k == 0 ? "the anchor" : fmt::format("bead {}", k);
     fail_at(from, "bead", k + 1,
-            fmt::format("bead {} stands on {}: their link has no direction", k + 1, other),
+            fmt::format("bead {} coincides with {}: their link has no direction", k + 1, other),
             "move one of them");
 }
 

@@ -50,7 +50,7 @@ Node const& source_of(Fields const& fields) {
         if (here) source = here;
     }
     if (!source)
-        fail(fields.node(), "the chain says nothing of its bodies",
+        fail(fields.node(), "the chain does not define its bodies",
              "add one of `sequence`, `fasta`, `pdb`, `bodies`, `generator`");
     return *source;
 }
@@ -67,12 +67,13 @@ void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& p
     std::size_t odd = 0;
     if (axes_are_parallel(chain, odd)) return;
     bool const body = odd < chain.bodies.size() && source.kind == Node::Kind::list;
-    fail(body ? source.items[odd] : planar,
-         fmt::format(
-             "the chain has planar joints, but the {} joint {} is not parallel to those before",
-             name_of(odd < chain.bodies.size() ? chain.bodies.joint[odd] : chain.tip_joint.type),
-             odd < chain.bodies.size() ? std::to_string(odd + 1) : "of the tip"),
-         "correct `axis` or `rotation`, or write `type: revolute`");
+    fail(
+        body ? source.items[odd] : planar,
+        fmt::format(
+            "the chain has planar joints, but the {} joint {} is not parallel to the previous ones",
+            name_of(odd < chain.bodies.size() ? chain.bodies.joint[odd] : chain.tip_joint.type),
+            odd < chain.bodies.size() ? std::to_string(odd + 1) : "of the tip"),
+        "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
 /// Reads beads written one by one. Links have the written lengths, or those of the positions if no
@@ -103,11 +104,10 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
 /// Notes the links of rigid bodies that the sides of the box cut, and those that may be cut.
 void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
     if (made.doubtful > 0)
-        request.scene.note(
-            fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of "
-                        "the periodic box, and is left as it "
-                        "is: if a side of the box cuts it, give its `length`",
-                        shown(request.name()), made.doubtful, made.doubtful_length));
+        request.scene.note(fmt::format(
+            "chain `{}`: the link to body {} is {:.4g} long, more than half an edge of the "
+            "periodic box, and is not changed: if a side of the box cuts it, give its `length`",
+            shown(request.name()), made.doubtful, made.doubtful_length));
     if (made.cut_links == 0) return;
     request.scene.note(
         fmt::format("{} of chain `{}` {} cut by the sides of the periodic box, the first that of "

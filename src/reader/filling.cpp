@@ -51,7 +51,7 @@ void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, 
                 fmt::format(
                     "`fill` is for free chains of beads without positions, which chain `{}` is not",
                     shown(draft.chain.name)),
-                "leave `fill` out, or let the scene place every chain");
+                "leave `fill` out, or leave the placement of every chain to the scene");
     // The region is packed as a periodic box of its own, then its chains are moved into the middle.
     give_places(drafts, fill, seed, "the region to fill");
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);

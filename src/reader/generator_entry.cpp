@@ -83,7 +83,7 @@ void GeneratorEntry::read_random() {
                  "leave it out or write `joint: link`");
         chain.rigid = number(*rigid);
         if (!(chain.rigid >= 0 && chain.rigid <= 1))
-            fail(*rigid, fmt::format("the fraction {} is no fraction", chain.rigid), "give 0 to 1");
+            fail(*rigid, fmt::format("{} is not a fraction", chain.rigid), "give 0 to 1");
     }
     Node const* const loads = fields.find("loads");
     if (loads) loads_ = truth(*loads);
@@ -161,7 +161,7 @@ void GeneratorEntry::read_polygon() {
     velocities_ = !beads_;
     for (Node const* const given : {radius, spin})
         if (given && beads_)
-            fail(*given, fmt::format("key `{}` means nothing for a polygon of beads", given->key),
+            fail(*given, fmt::format("key `{}` does not apply to a polygon of beads", given->key),
                  "leave it out");
     if (beads_ && shape.base == Base::fixed)
         fail(entry_, "a polygon of beads on a fixed base", "write `base: free`");
@@ -184,7 +184,7 @@ void GeneratorEntry::read_elastic_rod() {
             fail(*fields.find(key),
                  fmt::format("a persistence length of {:g} for rods of {:g}", persistence,
                              rod.length),
-                 "take rods of at most ten times that, or a freely jointed chain");
+                 "use rods of at most ten times that length, or a freely jointed chain");
     rod.base = request_.base;
     rod.kt = request_.scene.boltzmann() * request_.scene.dynamics.temperature;
     if (!(rod.kt > 0))

@@ -32,7 +32,7 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
     fit.make_whole(chain, false);
     if (std::int64_t const k = coincident_bead(beads, Base::free); k >= 0)
         fail_at(openmm, "bead", k + 1,
-                fmt::format("bead {} of chain `{}` stands on bead {}", k + 1,
+                fmt::format("bead {} of chain `{}` coincides with bead {}", k + 1,
                             shown(draft.chain.name), k),
                 "move one of them in the topology");
     fit.fit(chain);
@@ -44,7 +44,7 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
 std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     OpenMmSpec const& spec = *scene.forces.openmm;
     if (spec.topology.empty())
-        fail(openmm, "the scene has no `chains`, the system no topology",
+        fail(openmm, "the scene has no `chains` and the system has no topology",
              "add `topology: topology.pdb`, or `chains`");
     if (Node const* const map = openmm.find("map"))
         fail(*map, "a map of chains in a scene that takes them from the topology",

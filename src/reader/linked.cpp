@@ -37,11 +37,11 @@ class LinkedReader {
             for (char const* const key : {"com", "quaternion", "omega", "beads"})
                 if (Node const* const extra = item.find(key))
                     fail(*extra,
-                         fmt::format("key `{}` means nothing for a point bead on a link", key),
+                         fmt::format("key `{}` does not apply to a point bead on a link", key),
                          "leave it out or give `inertia`");
         for (char const* const key : {"wrench", "drag"})
             if (Node const* const extra = item.find(key))
-                fail(*extra, fmt::format("key `{}` means nothing in a chain of links", key),
+                fail(*extra, fmt::format("key `{}` does not apply to a chain of links", key),
                      "leave it out");
         Fields const body(item, {"mass", "inertia", "com", "position", "quaternion", "velocity",
                                  "omega", "residue", "beads", "joint"});
@@ -76,7 +76,7 @@ class LinkedReader {
     /// from the centre of mass.
     void add_rigid(Fields const& body) {
         if (Node const* const residue = body.find("residue"))
-            fail(*residue, "key `residue` means nothing for a rigid body",
+            fail(*residue, "key `residue` does not apply to a rigid body",
                  "give it `beads: [{residue: ALA, position: [0, 0, 0]}]`");
         linked_.inertia.push_back(inertia(*body.find("inertia")));
         Node const* const com_node = body.find("com");
@@ -160,7 +160,7 @@ class LinkedReader {
     void start_link(Node const& translation, std::size_t k) {
         if (k == 0)
             fail(translation, "a translation for link 1, which starts at the ground",
-                 "leave it out; `anchor` of the chain says where");
+                 "leave it out: the chain's `anchor` sets the position");
         if (linked_.is_bead(k - 1))
             fail(translation,
                  fmt::format("a translation for a link that starts at bead {}, a point", k),

@@ -43,8 +43,8 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     if (std::string const safe = printable(made.title); safe != made.title) {
         made.title = safe;
         made.note(
-            "title: bytes that are not UTF-8 stand as U+FFFD, control characters as `?`: save the "
-            "scene as UTF-8");
+            "title: bytes that are not UTF-8 are shown as U+FFFD, control characters as `?`: save "
+            "the scene as UTF-8");
     }
     if (Node const* const units = fields.find("units"))
         made.si = scene::choice<bool>(*units, {{"md", false}, {"si", true}});

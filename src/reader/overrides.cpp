@@ -27,7 +27,7 @@ class Override {
     explicit Override(std::string const& text) : origin_("--set " + shown(text)) {
         std::size_t const equals = text.find('=');
         if (equals == std::string::npos || equals == 0)
-            refuse("no `key.path=value`", "write, e.g., --set dynamics.steps=1000");
+            refuse("not of the form `key.path=value`", "write, e.g., --set dynamics.steps=1000");
         value_ = text.substr(equals + 1);
         if (value_.find_first_not_of(" \t") == std::string::npos)
             refuse("the value is empty", "give one, or `null` to remove the key");
@@ -79,7 +79,7 @@ class Override {
                 good = result.ec == std::errc() && result.ptr == word.data() + close;
             }
             if (!good)
-                refuse(fmt::format("`{}` is no list index", shown(word.substr(at))),
+                refuse(fmt::format("`{}` is not a list index", shown(word.substr(at))),
                        "write a whole number from 0 in brackets, as in chains[0]");
             steps_.push_back({{}, index});
             at = close + 1;
@@ -90,7 +90,7 @@ class Override {
         if (map.kind == Node::Kind::null) map.kind = Node::Kind::map;
         if (map.kind != Node::Kind::map)
             refuse(
-                fmt::format("`{}` is {}, it has no key `{}`", shown(map.key), describe(map), key),
+                fmt::format("`{}` is {} and has no key `{}`", shown(map.key), describe(map), key),
                 "correct the path");
         auto const found = std::find_if(map.items.begin(), map.items.end(),
                                         [&](Node const& item) { return item.key == key; });

@@ -53,13 +53,13 @@ void refuse_impossible(Crowd const& crowd, Node const& node, char const* name) {
     double const edge = std::min({box[0], box[1], box[2]});
     if (edge < narrowest * crowd.excluded * (1 - 1e-9))
         fail(node,
-             fmt::format("{} {} is too narrow to pack chains whose beads keep {:.4g} nm apart",
+             fmt::format("{} {} is too narrow to pack chains whose beads stay {:.4g} nm apart",
                          name, text_of(box), crowd.excluded),
              fmt::format("give edges of {:.4g} nm or more", narrowest * crowd.excluded));
     double const filled = volume_of(crowd) / (box[0] * box[1] * box[2]);
     if (filled > densest)
         fail(node,
-             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of {} {}, random "
+             fmt::format("{} beads that stay {:.4g} nm apart would fill {:.3g} of {} {}, random "
                          "packings of spheres fill {:.2g}",
                          crowd.movable(), crowd.excluded, filled, name, text_of(box), densest),
              fmt::format("make each edge {:.3g} times as long or longer, or lower `count`",
@@ -103,9 +103,8 @@ void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char 
     Relaxed const relaxed = relax(crowd, most_steps);
     if (relaxed.overlaps > 0)
         fail(*first->node,
-             fmt::format("packing {} chains into {} {} left {} pairs of beads nearer than {:.4g} "
-                         "nm, the nearest at {:.3g} nm, after "
-                         "{} steps",
+             fmt::format("packing {} chains into {} {} left {} pairs of beads closer than {:.4g} "
+                         "nm, the closest at {:.3g} nm, after {} steps",
                          crowd.chains(), name, text_of(box), relaxed.overlaps, crowd.excluded,
                          relaxed.nearest, relaxed.steps),
              fmt::format("enlarge {} or lower `count`", name));

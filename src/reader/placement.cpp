@@ -59,9 +59,9 @@ void refuse_far(Draft const& draft, Sphere const& sphere) {
     for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius);
     if (reach <= farthest && sphere.gap <= 4 * farthest) return;
     fail(*draft.node,
-         fmt::format("chain `{}` reaches {:.3g} from the origin, beyond what positions hold",
+         fmt::format("chain `{}` reaches {:.3g} from the origin, beyond the range of positions",
                      shown(draft.chain.name), reach),
-         fmt::format("correct its coordinates: {:g} is the most", farthest));
+         fmt::format("correct its coordinates: the largest is {:g}", farthest));
 }
 
 /// Bounding sphere of a draft; throws InputError beyond the largest coordinate.

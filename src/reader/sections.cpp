@@ -61,19 +61,19 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
         spec.builder = builder->text;
         for (Node const* const extra : {topology, map, fields.find("force_groups")})
             if (extra)
-                fail(*extra, fmt::format("key `{}` means nothing for a builder", extra->key),
+                fail(*extra, fmt::format("key `{}` does not apply to a builder", extra->key),
                      "leave it out or give `system`");
         return;
     }
     for (char const* const key : {"ionic_strength", "ph", "switch_width", "charge_termini"})
         if (Node const* const extra = fields.find(key))
-            fail(*extra, fmt::format("key `{}` means nothing for a finished system", key),
-                 "leave it out: the system says it");
+            fail(*extra, fmt::format("key `{}` does not apply to a serialised System", key),
+                 "leave it out: the System defines it");
     spec.system = existing_file(*system, file);
     if (topology) spec.topology = existing_file(*topology, file);
     if (map) read_map(*map, spec);
     if (!topology && !map)
-        fail(fields.node(), "nothing tells which particles are which chain",
+        fail(fields.node(), "the particles are not assigned to chains",
              "add `topology: topology.pdb`, or `map: {chain: [first, last]}`");
 }
 
@@ -86,7 +86,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
                "split",          "replicate", "audit",        "force_groups", "charge_termini"});
     if (si)
         fail(node, "OpenMM's forces in SI units",
-             "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
+             "write `units: md`: OpenMM uses nm, ps, amu and kJ/mol only");
     OpenMmSpec spec;
     read_model(fields, spec, file);
     // The force field has the run's temperature unless it has its own.
@@ -148,7 +148,7 @@ double constexpr shortest_edge = 1e-30, longest_edge = 1e9;
 std::optional<Vec3> read_box(Node const& box) {
     if (box.kind == Node::Kind::scalar && box.text == "none") return std::nullopt;
     if (box.kind != Node::Kind::map)
-        fail(box, describe(box) + " is no box", "give `{periodic: [60, 60, 60]}` or `none`");
+        fail(box, describe(box) + " is not a box", "give `{periodic: [60, 60, 60]}` or `none`");
     Node const& edges =
         Fields(box, {"periodic", "fill"}).need("periodic", "periodic: [60, 60, 60]");
     Vec3 const lengths = vector3(edges);
@@ -157,7 +157,7 @@ std::optional<Vec3> read_box(Node const& box) {
             fail(edges, fmt::format("box edge {} is not positive", length),
                  "give three edges above 0");
         if (length < shortest_edge || length > longest_edge)
-            fail(edges, fmt::format("box edge {} is beyond what positions hold", length),
+            fail(edges, fmt::format("box edge {} is beyond the range of positions", length),
                  fmt::format("give edges from {:g} to {:g}", shortest_edge, longest_edge));
     }
     return lengths;
@@ -171,16 +171,16 @@ double read_tolerance(Node const& node, Integrator integrator) {
     double constexpr least = 1e-13, most = 0.1;
     double const tolerance = positive(node);
     if (integrator != Integrator::dormand_prince)
-        fail(
-            node,
-            fmt::format("integrator {} has no error estimate: its steps are as long as `step` says",
-                        name_of(integrator)),
-            "leave it out, or use `integrator: dormand-prince` (joint coordinates)");
+        fail(node,
+             fmt::format("integrator {} has no error estimate: its steps have the length `step`",
+                         name_of(integrator)),
+             "leave it out, or use `integrator: dormand-prince` (joint coordinates)");
     if (tolerance < least)
-        fail(node, fmt::format("tolerance {} is below what doubles resolve", tolerance),
+        fail(node,
+             fmt::format("tolerance {} is below the resolution of double precision", tolerance),
              "give 1e-13 or more");
     if (tolerance > most)
-        fail(node, fmt::format("tolerance {} bounds nothing", tolerance),
+        fail(node, fmt::format("tolerance {} is too large to bound the error", tolerance),
              "give 0.1 or less, such as 1e-8");
     return tolerance;
 }
@@ -269,7 +269,7 @@ SolverSpec read_solver(Node const& node) {
     take(fields, "balance", solver.balance, truth);
     take(fields, "gpu_levels", solver.gpu_levels, [](Node const& n) {
         if (!is_level_count(text(n)))
-            fail(n, describe(n) + " is no number of levels",
+            fail(n, describe(n) + " is not a number of levels",
                  "give `auto`, `all`, a number, or two as `UP,DOWN`");
         return n.text;
     });
@@ -300,7 +300,7 @@ OutputSpec read_output(Node const& node) {
         std::string const name = text(item);
         if (std::find(std::begin(known), std::end(known), name) == std::end(known)) {
             auto const near = nearest(name, known);
-            fail(item, describe(item) + " is no observable",
+            fail(item, describe(item) + " is not an observable",
                  near ? "did you mean `" + *near + "`?" : "use one of " + joined(known));
         }
         if (std::count(output.observables.begin(), output.observables.end(), name))

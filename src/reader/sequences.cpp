@@ -50,7 +50,8 @@ Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) 
         residues.push_back(meaning.kind == ResidueKind::amino_acid ? find_calvados2(meaning.parent)
                                                                    : nullptr);
         if (!residues.back())
-            fail_at(source, "bead", bead, fmt::format("`{}` is no residue of calvados2", residue),
+            fail_at(source, "bead", bead,
+                    fmt::format("`{}` is not a residue of calvados2", residue),
                     "rename or remove it in the file");
         if (meaning.parent != site.residue) ++renamed[{site.residue, meaning.parent}];
     }
@@ -176,7 +177,7 @@ void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& fro
     if (!fields.find("pdb") && !fields.find("positions") &&
         !(conformation && conformation->kind == Node::Kind::map))
         fail(*rigid, "rigid domains in a chain without positions",
-             "give `pdb` or `positions`: they say what shape the domains have");
+             "give `pdb` or `positions`: they define the shape of the domains");
     set_rigid(request, *rigid, residues, from);
 }
 

@@ -41,9 +41,9 @@ void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
         "anchor",
         end.origin[0], end.origin[1], end.origin[2], error);
     if (error <= closable * length)
-        return scene.note(what + ", which is closed by the least change of the joints");
+        return scene.note(what + ": the smallest change of the joints closes it");
     fail(node, what,
-         fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out",
+         fmt::format("move the chain or the anchor to within {:.3g}, or leave `anchor` out",
                      closable * length));
 }
 
@@ -104,11 +104,10 @@ void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node,
              "give positions of a ring that closes on itself, or the closing link's `length`, or "
              "leave `ring` out");
     *tip.anchor = *tip.anchor - by;
-    request.scene.note(
-        fmt::format("the link to the anchor at the tip of chain `{}` is cut by the sides of the "
-                    "periodic box: the anchor is "
-                    "taken at its nearest image, [{:.6g}, {:.6g}, {:.6g}]",
-                    shown(request.name()), (*tip.anchor)[0], (*tip.anchor)[1], (*tip.anchor)[2]));
+    request.scene.note(fmt::format(
+        "the link to the anchor at the tip of chain `{}` is cut by the sides of the periodic box: "
+        "the nearest image of the anchor is used, [{:.6g}, {:.6g}, {:.6g}]",
+        shown(request.name()), (*tip.anchor)[0], (*tip.anchor)[1], (*tip.anchor)[2]));
 }
 
 /// Sets the length of the tip's link and closes it, see join_tip().
@@ -122,7 +121,7 @@ void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request)
     // Positions are rounded to half a unit in their last place.
     if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(start) + norm(end))))
         fail(node,
-             fmt::format("the tip's {} stands on the last body: their link has no direction",
+             fmt::format("the tip's {} coincides with the last body: their link has no direction",
                          target),
              "move one of them");
     if (tip.length == 0) tip.length = distance;
@@ -176,8 +175,7 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
         if (norm(cross(first, next)) > 1e-7 * norm(first) * norm(next)) return;
     }
     fail(node,
-         "the bridge from ground to ground is straight: nothing tells the forces in its joints "
-         "apart",
+         "the bridge from ground to ground is straight: the forces in its joints are indeterminate",
          "start from a bent chain");
 }
 
@@ -212,7 +210,7 @@ ReadTip read_tip(Fields const& chain) {
         Fields const fields(*tip, {"joint", "ring"});
         Node const* const ring = fields.find("ring");
         if (ring && fields.find("joint"))
-            fail(*ring, "key `ring` beside `joint`", "keep one of them");
+            fail(*ring, "both `ring` and `joint`", "keep one of them");
         Node const& joint = ring ? *ring : fields.need("joint", "joint: {type: spherical}");
         TipEntry const entry = read_tip_joint(joint, ring);
         read.kind = Tip::jointed;
@@ -248,14 +246,14 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, ChainRequest const& request)
              fmt::format("a {} joint at the tip of {}", name_of(tip.joint.type), kind_of(chain)),
              ring ? "write `tip: ring`" : "write `joint: {type: link, anchor: [x, y, z]}`");
     if (!links && link && ring && tip.bare)
-        fail(node, "`tip: ring` says nothing of the joint between the last body and the first",
+        fail(node, "`tip: ring` does not define the joint between the last body and the first",
              "write `tip: {ring: {type: spherical, translation: [x, y, z]}}`");
     if (!links && link)
         fail(node, "a link at the tip of a chain of other joints",
              "use another type, such as spherical");
     if (chain.is_beads())
         if (Node const* const translation = node.find("translation"))
-            fail(*translation, "key `translation` means nothing for a point bead", "leave it out");
+            fail(*translation, "key `translation` does not apply to a point bead", "leave it out");
     if (ring) check_ring(chain, node);
     if (link) {
         close_link(chain, node, request);

@@ -45,7 +45,7 @@ void refuse_at_body(Draft const& draft, std::vector<Value> const& values,
 /// compensate them.
 void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft) {
     Integrator const integrator = scene.dynamics.integrator;
-    std::string const under = fmt::format(" under integrator {}", name_of(integrator));
+    std::string const under = fmt::format(" with integrator {}", name_of(integrator));
     std::string const thermostat =
         name_of(is_langevin(integrator) ? integrator : Integrator::g_baoab);
     BodyArrays const& bodies = draft.chain.bodies;
@@ -70,17 +70,18 @@ void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
         if (!resists(bodies, k)) continue;
         ImplicitInertias const inertias = implicit_inertias(bodies, k, dynamics);
         auto const body = static_cast<std::int64_t>(k) + 1;
-        std::string const under = fmt::format(" under integrator {}", name_of(dynamics.integrator));
+        std::string const under = fmt::format(" with integrator {}", name_of(dynamics.integrator));
         if (!inertias.are_definite())
             fail_at(*draft.node, "body", body,
-                    "a joint with springs or dampers along some of its coordinates alone" + under,
+                    "a joint with springs or dampers along only some of its coordinates" + under,
                     "give it some stiffness or damping along each, or none");
         if (!inertias.are_alike())
             fail_at(
                 *draft.node, "body", body,
-                fmt::format("a joint {:.3g} times as stiff along one coordinate as along another{}",
-                            inertias.most / inertias.least, under),
-                fmt::format("stay within {:g}", ImplicitInertias::widest));
+                fmt::format(
+                    "a joint that is {:.3g} times as stiff along one coordinate as along another{}",
+                    inertias.most / inertias.least, under),
+                fmt::format("keep this ratio within {:g}", ImplicitInertias::widest));
     }
 }
 
@@ -92,7 +93,7 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     // Joint forces are not implemented for implicit springs.
     if (is_implicit(integrator) && scene.output.joint_forces)
         fail(*root.find("output")->find("joint_forces"),
-             fmt::format("not in this version: joint forces under integrator {}",
+             fmt::format("not in this version: joint forces with integrator {}",
                          name_of(integrator)),
              "leave it out");
     if (uses_joint_coordinates(integrator)) {
@@ -118,7 +119,7 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     if (is_implicit(integrator)) check_implicit(scene.dynamics, draft);
     if (!chain.bodies.driven.empty())
         fail_at(*draft.node, "body", chain.bodies.driven[0].body + 1,
-                fmt::format("a prescribed motion under integrator {}", name_of(integrator)),
+                fmt::format("a prescribed motion with integrator {}", name_of(integrator)),
                 joint_integrators + ", or leave it out");
 }
 
@@ -141,9 +142,10 @@ void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& d
     Node const& at = *root.find("dynamics")->find("fixman");
     if (!draft.chain.is_beads())
         fail(at,
-             fmt::format("the Fixman correction of chain `{}`, which is not of point beads alone",
-                         shown(draft.chain.name)),
-             "leave it out: links between point beads alone have it");
+             fmt::format(
+                 "the Fixman correction of chain `{}`, which does not consist of point beads only",
+                 shown(draft.chain.name)),
+             "leave it out: only links between point beads have it");
     if (draft.chain.is_ring())
         fail(at,
              fmt::format("not in this version: the Fixman correction of the ring `{}`",
@@ -173,7 +175,7 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
         uses_joint_coordinates(dynamics.integrator))
         fail(at,
              fmt::format(
-                 "thermal velocities under integrator {}, whose stiff joints turn more slowly",
+                 "thermal velocities with integrator {}, whose stiff joints rotate more slowly",
                  name_of(dynamics.integrator)),
              is_langevin(dynamics.integrator)
                  ? "write `velocities: zero`: its thermostat warms the chain"
@@ -255,15 +257,16 @@ void check_temperature(Node const& root, OutputSpec const& output, DynamicsSpec 
                                      [](Draft const& d) { return !d.chain.bodies.driven.empty(); });
     if (driven != drafts.end())
         fail(at,
-             fmt::format("no temperature while a joint of chain `{}` is driven",
+             fmt::format("the temperature is undefined because a joint of chain `{}` is driven",
                          shown(driven->chain.name)),
              "leave it out");
     if (std::all_of(drafts.begin(), drafts.end(),
                     [](Draft const& d) { return degrees_of_freedom(d.chain) <= 0; }))
-        fail(at, "no temperature where nothing is free to move", "leave it out");
+        fail(at, "the temperature is undefined because nothing can move", "leave it out");
     if (dynamics.given && is_implicit(dynamics.integrator))
         fail(at,
-             fmt::format("no temperature under integrator {}, where stiff joints turn more slowly",
+             fmt::format("the temperature is undefined with integrator {}, whose stiff joints "
+                         "rotate more slowly",
                          name_of(dynamics.integrator)),
              "leave it out");
 }

@@ -15,7 +15,7 @@ constexpr double microseconds = 1e6, milliseconds = 1e3;
 /// Draws the time of each level on one core, threads and the GPU, with the transfers of a cut.
 std::string levels_picture(LevelStudy const& study) {
     CurveFamily family{
-        fmt::format("Figure 2.3: where a level belongs; assembly of {} bodies, {} handles",
+        fmt::format("Figure 2.3: time of each level; assembly of {} bodies, {} handles",
                     study.bodies, name_of(study.handles)),
         "merges of the level (crosses: not resolved)",
         "microseconds",

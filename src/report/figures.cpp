@@ -88,8 +88,8 @@ void add_table(Outcome& outcome) {
             {{"joint", joint.joint}, {"projected", json_of(p)}, {"full", json_of(f)}});
     }
     outcome.text +=
-        "Floating-point operations of one merge and one body (a fused one counts twice), projected "
-        "handles, then full ones\n" +
+        "Floating-point operations per merge and per body (a fused multiply-add counts twice), "
+        "with projected and then with full handles\n" +
         operations.text();
 }
 
@@ -132,8 +132,8 @@ std::string resolution_text(std::vector<LevelStudy> const& studies) {
     Resolved const count = resolved(studies);
     if (count.missing == 0) return "";
     return fmt::format(
-        "; figure 2.3: {} of {} times not resolved, noise is larger (raise --repeat, or measure on "
-        "an idle machine)",
+        "; figure 2.3: {} of {} times are below the noise (raise --repeat, or measure on an idle "
+        "machine)",
         count.missing, count.all);
 }
 
@@ -218,9 +218,9 @@ void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points,
         rows[p.bodies][p.what.name] = &p;
     }
     if (names.empty()) {
-        outcome.text += fmt::format(
-            "Figure {}: {}, {} handles: left out, no case here has transfers that are timed\n",
-            quantity.figure, quantity.title, name_of(handles));
+        outcome.text +=
+            fmt::format("Figure {}: {}, {} handles: left out, no case here times its transfers\n",
+                        quantity.figure, quantity.title, name_of(handles));
         return;
     }
     std::vector<std::string> header{"bodies"};
@@ -256,8 +256,8 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (error || !std::filesystem::is_directory(folder, error))
-            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder,
-                             "name another");
+            throw InputError("the folder cannot be created: " + error.message(),
+                             "--output " + folder, "name another folder");
     });
 }
 
@@ -277,7 +277,7 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
     std::vector<std::string> left_out;
     std::vector<FigureCase> const cases = figure_cases(left_out);
     if (cases.back().backend == Backend::cuda)
-        left_out.emplace_back("cuda in figure 2.7: its transfers are not timed by themselves");
+        left_out.emplace_back("cuda in figure 2.7: its transfers are not timed separately");
 
     Figures figures;
     std::int64_t const largest = *std::max_element(request.sizes.begin(), request.sizes.end());

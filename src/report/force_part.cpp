@@ -41,18 +41,17 @@ ReportSection section_of(ForceStudy const& study) {
 }  // namespace
 
 ReportPart force_part(std::vector<ForceStudy> const& studies) {
-    ReportPart part{"forces",
-                    "forces",
-                    "Error of OpenMM's forces against run time",
-                    "Differences from OpenMM's Reference platform (double precision), over the "
-                    "forces' own root mean square and largest; "
-                    "median time of an evaluation of the forces alone. Bound of both: 2^12 units "
-                    "of the precision in which pairs are computed (2^-24, "
-                    "double 2^-53), on GPUs also 64 of the steps of 2^-32 kJ/mol/nm in which they "
-                    "add up and 64 times 2^-24, in which they keep "
-                    "parameters.",
-                    {},
-                    Json::array()};
+    ReportPart part{
+        "forces",
+        "forces",
+        "Error of OpenMM's forces against run time",
+        "Differences from OpenMM's Reference platform (double precision), relative to the root "
+        "mean square and the largest of the forces. The time is the median of evaluations of the "
+        "forces alone. The bound of both errors is 2^12 units of the precision of pair forces "
+        "(2^-24, double 2^-53). On GPUs it includes 64 steps of 2^-32 kJ/mol/nm, in which forces "
+        "are summed, and 64 times 2^-24, the precision of parameters.",
+        {},
+        Json::array()};
     for (ForceStudy const& study : studies) {
         part.json.push_back(json_of(study));
         part.valid = part.valid && std::all_of(study.points.begin(), study.points.end(),

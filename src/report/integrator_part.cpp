@@ -127,10 +127,10 @@ CurveFamily picture_over_step(IntegratorStudy const& study) {
 std::string verdict_of(IntegratorCurve const& c) {
     std::string const verdict = c.as_promised() ? "" : ": INVALID",
                       limit = exponent(c.unstable_from());
-    if (c.exact) return "errors are roundings";
+    if (c.exact) return "errors are rounding errors";
     if (c.too_stiff) return "unstable from " + limit;
     if (c.scheme == Scheme::adaptive)
-        return c.as_promised() ? "within what is allowed" : "beyond what is allowed: INVALID";
+        return c.as_promised() ? "within the allowed error" : "above the allowed error: INVALID";
     if (!c.slope) return "not above the reference's error: INVALID";
     std::string text = fmt::format("{:.3f}, nominal {}", *c.slope, c.order);
     if (c.slope_beyond) text += fmt::format(", beyond the explicit limit {:.3f}", *c.slope_beyond);
@@ -163,17 +163,18 @@ ReportSection section_of(IntegratorStudy const& study) {
         }
     bool const ends = std::isfinite(study.reference_error);
     std::string const reference =
-        ends ? fmt::format("which is {:.1e} from itself at twice the step", study.reference_error)
-             : "which came to no end at so wide a step: INVALID";
+        ends ? fmt::format("which differs by {:.1e} from itself at twice the step",
+                           study.reference_error)
+             : "which did not finish at twice the step: INVALID";
     std::string heading = fmt::format("{}: {} bodies over {:g}; reference: {}, {}", study.title,
                                       study.bodies, study.time, study.reference, reference);
     if (!study.no_implicit.empty())
-        heading += "; no integrators with implicit springs: " + study.no_implicit;
+        heading += "; without integrators with implicit springs: " + study.no_implicit;
     if (study.refine > 0)
         heading += fmt::format(
             "; solutions of rk4, dormand-prince and velocity-verlet refined {} (solver.refine)",
             counted(study.refine, "time", "times"));
-    std::string const time = "seconds of the whole time";
+    std::string const time = "run time in seconds";
     std::vector<CurveFamily> pictures{picture(study, seconds_of, time, error_of, "error")};
     if (study.has_implicit()) pictures.push_back(picture_over_step(study));
     if (study.no_energy_error.empty())
@@ -206,32 +207,28 @@ ReportSection section_of(std::vector<DriftStudy> const& drifts) {
 
 ReportPart integrator_part(std::vector<IntegratorStudy> const& studies,
                            std::vector<DriftStudy> const& drifts) {
-    ReportPart part{"integrators",
-                    "integrators",
-                    "Integrator error against run time",
-                    "Median time of a whole run; error: the largest distance of a centre of mass "
-                    "from the reference at the end, over the "
-                    "scene's extent; energy error: the largest change of the total energy over the "
-                    "largest kinetic energy. The order is "
-                    "that of the two finest steps whose errors stand above 20 times the "
-                    "reference's; within 0.1 of the nominal one is VALID, one that "
-                    "cannot be seen is INVALID unless all errors are roundings (a smaller "
-                    "dynamics.step is a shorter time). g-baoab and "
-                    "implicit-g-baoab are taken at zero friction. dormand-prince goes by a "
-                    "tolerance, in inner steps that it chooses between stops at "
-                    "every eighth of the time; the error may be the tolerance times the inner "
-                    "steps. Where joints have springs, staggered and "
-                    "implicit-g-baoab take them implicitly: what vibrates faster than the step "
-                    "moves more slowly than it would, by design, but little, "
-                    "so that errors of positions are those of the slow motion. They must go on "
-                    "where the explicit integrator of their kind "
-                    "(velocity-verlet, g-baoab) cannot, in the report's own scene at second order "
-                    "within 0.1 (a line through errors below a "
-                    "hundredth): it is unstable (more than four times the reference's kinetic "
-                    "energy) or comes to no end (equations without a "
-                    "solution). Such points are not drawn.",
-                    {},
-                    {{"scenes", Json::array()}, {"drifts", Json::array()}}};
+    ReportPart part{
+        "integrators",
+        "integrators",
+        "Integrator error against run time",
+        "The time is the median of whole runs. The error is the largest distance of a centre of "
+        "mass from the reference at the end, relative to the scene's extent. The energy error is "
+        "the largest change of the total energy, relative to the largest kinetic energy. The order "
+        "is determined from the two finest steps whose errors exceed 20 times the reference's. It "
+        "is VALID within 0.1 of the nominal order. An order that cannot be determined is INVALID "
+        "unless all errors are rounding errors (a smaller dynamics.step shortens the time). "
+        "g-baoab and implicit-g-baoab run at zero friction. dormand-prince keeps a tolerance by "
+        "inner steps, which it chooses between stops at every eighth of the time; its error may be "
+        "the tolerance times the number of inner steps. staggered and implicit-g-baoab integrate "
+        "joint springs implicitly. By design, vibrations faster than the step then become slower. "
+        "Their amplitudes are small, so errors of positions are those of the slow motion. These "
+        "integrators must run where the explicit integrator of their kind (velocity-verlet, "
+        "g-baoab) cannot; in the report's own scene they must be of second order within 0.1 (a "
+        "line through errors below a hundredth). The explicit one is unstable there (more than "
+        "four times the reference's kinetic energy) or does not finish (equations without a "
+        "solution). Such points are not drawn.",
+        {},
+        {{"scenes", Json::array()}, {"drifts", Json::array()}}};
     for (IntegratorStudy const& study : studies) {
         part.json["scenes"].push_back(json_of(study));
         part.valid = part.valid && study.valid();

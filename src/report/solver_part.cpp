@@ -37,7 +37,7 @@ Json json_of(SolverStudy const& study) {
 /// Returns the table of a study.
 ReportSection section_of(SolverStudy const& study) {
     Table table({"backend", "handles", "threads", "residual", "bound", "forward error", "time",
-                 "ns a body", ""},
+                 "ns per body", ""},
                 {0, 1, 8});
     auto const a_body = [&](double seconds) {
         return fmt::format("{:.1f}", 1e9 * seconds / static_cast<double>(study.bodies));
@@ -96,9 +96,9 @@ ReportPart solver_part(std::vector<SolverStudy> const& studies) {
         "studies",
         "solver",
         "Solver error against run time",
-        "Median time of one evaluation; residual: the worst local backward error of any body or "
-        "joint; forward error: the largest "
-        "difference of the joint accelerations from the reference, relative to the largest.",
+        "The time is the median of one evaluation. The residual is the largest local backward "
+        "error of any body or joint. The forward error is the largest difference of the joint "
+        "accelerations from the reference, relative to the largest acceleration.",
         {},
         Json::array()};
     std::map<std::string, std::vector<SolverStudy const*>> series;

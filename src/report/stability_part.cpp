@@ -57,20 +57,13 @@ Json json_of(StabilityStudy const& study) {
 }
 
 /// Columns of the suite's tables.
-std::vector<std::string> const columns{"case",
-                                       "condition",
-                                       "growth",
-                                       "articulated bodies",
-                                       "forward error",
-                                       "over bound",
-                                       "residual",
-                                       "over bound",
-                                       "refined once",
-                                       "twice",
-                                       "as often as helps",
-                                       "articulated handles",
-                                       "refined",
-                                       ""};
+std::vector<std::string> const columns{"case",          "condition",
+                                       "growth",        "articulated bodies",
+                                       "forward error", "over bound",
+                                       "residual",      "over bound",
+                                       "refined once",  "twice",
+                                       "repeatedly",    "articulated handles",
+                                       "refined",       ""};
 
 /// Returns the largest value of the points with or without articulated handles; empty if one of
 /// these has no value.
@@ -134,7 +127,7 @@ CurveFamily picture(std::vector<StabilityStudy> const& studies) {
     curves.merge(of_peers);
     for (auto& [name, curve] : curves)
         family.curves.push_back({name, curve.x, curve.y, false, true, false});
-    NamedCurve refined{"refined as often as helps", {}, {}, false, true, false};
+    NamedCurve refined{"refined repeatedly", {}, {}, false, true, false};
     for (StabilityStudy const& study : studies)
         for (StabilityPoint const& p : study.points)
             if (p.settled) refined.x.push_back(study.growth), refined.y.push_back(p.settled->error);
@@ -146,27 +139,25 @@ CurveFamily picture(std::vector<StabilityStudy> const& studies) {
 }  // namespace
 
 ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
-    ReportPart part{"stability",
-                    "stability",
-                    "Stability suite",
-                    "Medians over the seeds, the worst of all backends and handle kinds. Growth: "
-                    "by how much roundings of the data and of each body's "
-                    "and joint's equations change the answer; condition: of the joint-space "
-                    "inertia, or of the links' matrix. Bounds: of the residual "
-                    "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both "
-                    "hold. REFINED: they hold after refinement alone "
-                    "(catena solve --refine; ten steps at most, as long as each halves the error). "
-                    "Refined errors must also be at most the larger of "
-                    "4 times the best of others' (articulated bodies in double, other programs) "
-                    "and the residual's bound, else the case is INVALID. "
-                    "Where 2^-53 growth is above 1e-3 the equations of joint forces in double "
-                    "determine fewer than three digits: ARTICULATED, where "
-                    "articulated handles (catena solve --handles articulated), refined, keep to "
-                    "all that; else the answer is that of a chain nearby, "
-                    "or refused: BEYOND where others have none either or 2^-53 condition is above "
-                    "1e-3, too, else LOST.",
-                    {},
-                    Json::array()};
+    ReportPart part{
+        "stability",
+        "stability",
+        "Stability suite",
+        "Errors are medians over the seeds, the worst of all backends and handle kinds. The growth "
+        "is the factor by which rounding errors of the data and of each body's and joint's "
+        "equations change the solution. The condition is that of the joint-space inertia, or of "
+        "the links' matrix. The bound of the residual is 32 depth(tree) 2^-53; that of the forward "
+        "error is the same times the growth. VALID: both bounds hold. REFINED: they hold only "
+        "after refinement (catena solve --refine; at most ten steps, as long as each halves the "
+        "error). Refined errors must not exceed the larger of the residual's bound and 4 times the "
+        "best error of others (articulated bodies in double, other programs), else the case is "
+        "INVALID. If 2^-53 growth is above 1e-3, the equations of joint forces in double determine "
+        "fewer than three digits. Such a case is ARTICULATED if refined solutions with articulated "
+        "handles (catena solve --handles articulated) meet all these bounds. Otherwise the "
+        "solution is that of a similar chain, or refused. The case is then BEYOND if others have "
+        "no solution either or 2^-53 condition is above 1e-3 too, else LOST.",
+        {},
+        Json::array()};
     for (StabilityStudy const& study : studies) {
         part.json.push_back(json_of(study));
         part.valid = part.valid && study.verdict() != Verdict::invalid;

@@ -90,19 +90,18 @@ ReportSection stops(std::vector<StabilityStudy> const& studies) {
 }  // namespace
 
 ReportPart peers_part(std::vector<StabilityStudy> const& studies, Json peers) {
-    ReportPart part{"peers",
-                    "",
-                    "Stability suite by other programs",
-                    "Forward errors, medians over the seeds. Catena: the worst of all backends and "
-                    "handle kinds, as it comes and refined "
-                    "as often as helps. Ratio: the latter over the larger of 4 times the best of "
-                    "the others, articulated bodies in double "
-                    "among them, and the residual's bound (where nothing is refined: Catena's "
-                    "error, the bound times the growth). Above 1 a "
-                    "case is INVALID, unless these equations lose all digits: LOST where others "
-                    "keep them, else BEYOND.",
-                    {scores(studies, peers)},
-                    std::move(peers)};
+    ReportPart part{
+        "peers",
+        "",
+        "Stability suite by other programs",
+        "Forward errors are medians over the seeds. Catena's are the worst of all backends and "
+        "handle kinds, without refinement and refined repeatedly. The ratio divides the refined "
+        "error by the larger of the residual's bound and 4 times the best error of the others, "
+        "articulated bodies in double included. Without refinement it divides Catena's error by "
+        "the bound times the growth. A case with a ratio above 1 is INVALID unless these equations "
+        "lose all digits: LOST if others keep them, else BEYOND.",
+        {scores(studies, peers)},
+        std::move(peers)};
     std::vector<std::string> columns{"case", "bound", "Catena", "refined", "articulated bodies"};
     if (!studies.empty())
         for (StabilityPeer const& p : studies.front().peers) columns.push_back(p.name);

@@ -38,8 +38,8 @@ void require_same_coordinates(Checkpoint const& c, Scene const& scene, std::stri
                          name_of(scene.dynamics.integrator) + " works in " + kind(joint),
                      file,
                      was_joint
-                         ? "take an integrator in joint coordinates (rk4, velocity-verlet, ...)"
-                         : "take rattle, g-baoab or implicit-g-baoab");
+                         ? "use an integrator in joint coordinates (rk4, velocity-verlet, ...)"
+                         : "use rattle, g-baoab or implicit-g-baoab");
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ void require_own(Checkpoint const& c, Scene const& scene, std::string const& fil
     if (c.scene_hash == scene.hash) return;
     std::string const other = "the checkpoint belongs to another scene";
     std::string const may =
-        "restart with the scene that made it (solver, steps and how often it writes may differ)";
+        "restart with its own scene (solver, number of steps and output intervals may differ)";
     Values const before = values_in(c);
     std::vector<scene::ChangedValue> const changed =
         before.empty() ? std::vector<scene::ChangedValue>()
@@ -70,7 +70,7 @@ std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const
                                                 std::string const& file) {
     Values const before = values_in(c);
     if (before.empty())
-        throw InputError("the checkpoint does not hold the values of its scene", file,
+        throw InputError("the checkpoint does not contain the values of its scene", file,
                          "branch from a checkpoint that this version wrote");
     std::vector<scene::ChangedValue> changed =
         scene::changes(before, scene::deciding_values(scene));
@@ -92,7 +92,7 @@ std::string note_of_branch(std::string const& file, std::int64_t step,
     for (std::size_t i = 0; i < changes.size(); ++i)
         text += (i > 0 ? ", " : "") + changes[i].key + " " + changes[i].before + " -> " +
                 changes[i].now;
-    return text + "; the verdict covers the branch alone";
+    return text + "; the verdict covers the branch only";
 }
 
 json json_of_branch(std::string const& file, std::int64_t step,

@@ -23,7 +23,7 @@ std::vector<scene::ChangedValue> branch_changes(Checkpoint const&, Scene const&,
                                                 std::string const& file);
 
 /// One sentence for the summary: "branched at step 100 from out/checkpoint.h5: dynamics.temperature
-/// 300 -> 310; the verdict covers the branch alone".
+/// 300 -> 310; the verdict covers the branch only".
 std::string note_of_branch(std::string const& file, std::int64_t step,
                            std::vector<scene::ChangedValue> const&);
 /// Object of summary.json: {"from", "step", "changes": [{"key", "before", "now"}]}.

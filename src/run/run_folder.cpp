@@ -49,8 +49,8 @@ bool is_there(std::string const& folder) {
     std::error_code error;
     bool const exists = fs::exists(folder, error);
     if (error)
-        throw InputError("the output folder cannot be looked into: " + error.message(), folder,
-                         "name another with --output");
+        throw InputError("the output folder cannot be read: " + error.message(), folder,
+                         "name another folder with --output");
     return exists;
 }
 
@@ -67,10 +67,11 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator,
         appends_ = exists && !options.restart.empty() &&
                    same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_, ignored))
-            throw InputError("the output is not a folder", folder_, "name another with --output");
+            throw InputError("the output exists and is not a folder", folder_,
+                             "name another folder with --output");
         if (appends_ && options.branch)
             throw InputError("a branch needs a folder of its own", folder_,
-                             "name another with --output");
+                             "name another folder with --output");
         if (exists && !appends_) refuse_unless_free(options);
         make_output_folder(folder_);
         lock_ = std::make_unique<RunLock>(folder_);
@@ -88,10 +89,11 @@ void RunFolder::refuse_unless_free(RunOptions const& options) const {
     if (options.overwrite || is_vacant(folder_)) return;
     std::string const checkpoint = newest_checkpoint();
     std::string const go_on = options.restart.empty() && !checkpoint.empty()
-                                  ? ", go on with --restart " + checkpoint
+                                  ? ", continue with --restart " + checkpoint
                                   : "";
-    throw InputError("the output folder exists", folder_,
-                     "name another with --output" + go_on + ", or replace it with --overwrite");
+    throw InputError(
+        "the output folder exists", folder_,
+        "name another folder with --output" + go_on + ", or replace it with --overwrite");
 }
 
 /// An interruption between the two renames of a checkpoint leaves only the preceding one.
@@ -125,7 +127,7 @@ std::int64_t RunFolder::records_before(std::int64_t n) const {
 
 std::string RunFolder::way_back() const {
     std::string const checkpoint = newest_checkpoint();
-    return checkpoint.empty() ? "" : ": mend that and go on with --restart " + checkpoint;
+    return checkpoint.empty() ? "" : ": correct this and continue with --restart " + checkpoint;
 }
 
 template <class Action>

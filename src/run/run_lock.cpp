@@ -97,7 +97,7 @@ bool is_alive(Holder const& holder) {
                                 : fmt::format(": process {} on host {}, since {}", holder.process,
                                               holder.host, holder.since);
     throw InputError("another run is writing to this folder" + who, folder,
-                     "wait for its end, or name another with --output" + more);
+                     "wait for its end, or name another folder with --output" + more);
 }
 
 [[noreturn]] void refuse_file(std::string const& file, int error) {
@@ -108,7 +108,7 @@ bool is_alive(Holder const& holder) {
         throw InputError("the lock of the run's folder is a link", file, "remove it");
     throw InputError(
         "the output folder cannot be locked: " + std::generic_category().message(error), file,
-        "name another with --output");
+        "name another folder with --output");
 }
 
 /// Tries flock. Returns 0, EWOULDBLOCK, or the error of a file system without flock.
@@ -144,7 +144,7 @@ int open_lock(std::string const& file, int flags) {
     struct stat about{};
     if (::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode)) return descriptor;
     ::close(descriptor);
-    throw InputError("the lock of the run's folder is no file", file, "remove it");
+    throw InputError("the lock of the run's folder is not a file", file, "remove it");
 }
 
 /// Writes the holder to the lock's file. Removes the file if that fails.
@@ -197,8 +197,9 @@ RunLock::RunLock(std::string const& folder) : file_(folder + "/" + run_lock_name
         write_holder(descriptor_, file_);
         return;
     }
-    throw InputError("the output folder cannot be locked: others take it and leave it all the time",
-                     folder, "name another with --output");
+    throw InputError(
+        "the output folder cannot be locked: other runs lock and release it repeatedly", folder,
+        "name another folder with --output");
 }
 
 RunLock::~RunLock() {

@@ -70,11 +70,11 @@ class Run {
           system_(scene_, axes_, communicator, implicit_step_, shares_) {
         Integrator const integrator = scene_.dynamics.integrator;
         if (scene_.solver.refine > 0 && !is_refined(integrator))
-            throw InputError("solutions under integrator " + std::string(name_of(integrator)) +
+            throw InputError("solutions with integrator " + std::string(name_of(integrator)) +
                                  " are not refined",
                              "solver.refine",
-                             "leave it out, or take rk4, dormand-prince or velocity-verlet where "
-                             "the chains allow it");
+                             "leave it out, or use rk4, dormand-prince or velocity-verlet if the "
+                             "chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         if (root_) sites_ = sites_of_scene_.get();
         notes_ = scene_.notes;
@@ -89,12 +89,12 @@ class Run {
         std::int64_t const first = options_.restart.empty() ? 0 : restore();
         first_ = first;
         if (last_ < first)
-            throw InputError("the checkpoint stands at step " + std::to_string(first) +
-                                 ", the run would end before, at step " + std::to_string(last_) +
+            throw InputError("the checkpoint is at step " + std::to_string(first) +
+                                 ", after the end of the run at step " + std::to_string(last_) +
                                  (options_.steps ? " (--steps)" : " (dynamics.steps)"),
                              options_.restart,
-                             "ask for more than " + std::to_string(first) +
-                                 " with --steps, which counts from the scene's start");
+                             "request more than " + std::to_string(first) +
+                                 " steps with --steps, which counts from the scene's start");
         note_outputs(first);
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
@@ -169,7 +169,7 @@ class Run {
         if (ranks > 1)
             notes_.push_back(
                 "warning: " + std::to_string(ranks) +
-                " ranks share a GPU, where each waits for the others: start one rank a GPU");
+                " ranks share a GPU, where each waits for the others: start one rank per GPU");
     }
     /// Adds notes about output options without effect.
     void note_outputs(std::int64_t first) {
@@ -455,7 +455,7 @@ class Run {
                 throw InputError("the checkpoint was made with tree table " +
                                      c.notes["tree_table"] + ", this version has " +
                                      std::to_string(dca::tree_table_version),
-                                 options_.restart, "go on with the version that made it");
+                                 options_.restart, "continue with the version that made it");
         });
         share(communicator_, c);
         return c;
@@ -481,9 +481,10 @@ class Run {
         Checkpoint const c = *std::exchange(from_, std::nullopt);
         auto const made_on = c.notes.find(note_of_platform);
         if (system_.openmm() && made_on != c.notes.end() && made_on->second != platform())
-            notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second +
-                             ", this run goes on on " + platform() +
-                             ", whose forces round otherwise (forces.openmm.platform chooses)");
+            notes_.push_back(
+                "the checkpoint was made on OpenMM's platform " + made_on->second +
+                ", this run continues on " + platform() +
+                ", whose forces have other rounding errors (forces.openmm.platform chooses)");
         system_.set_state(c.arrays);
         if (options_.branch) return branch(c);
         time_origin_ = number_in(c, array_of_origin, 0);
@@ -688,7 +689,7 @@ json run_simulation(Scene const& scene, Communicator const& communicator,
                          "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
     if (!options.steps && scene.dynamics.steps == 0 && !scene.dynamics.has_steps)
         throw InputError("no steps to run", scene.file + ": dynamics.steps",
-                         "say how many there or with --steps");
+                         "set the number there or with --steps");
     std::optional<RelaxedScene> const relaxed =
         options.restart.empty()
             ? relaxed_where_asked(scene, communicator, relaxation_says(options.quiet))

@@ -51,7 +51,7 @@ std::string with_line_feeds(std::string text) {
 std::vector<Record> records_of(std::string const& path, Node const& at) {
     std::string const bytes = read_text_file(path, at);
     if (bytes.find('\0') != std::string::npos || bytes.starts_with("\x1F\x8B"))
-        fail(at, "`" + shown_path(path) + "` is no text",
+        fail(at, "`" + shown_path(path) + "` is not a text file",
              "give a FASTA file: `>name`, then one-letter codes");
     std::istringstream stream(with_line_feeds(bytes));
     std::vector<Record> records;
@@ -90,7 +90,7 @@ std::vector<Record const*> bearers(std::vector<Record> const& records, std::stri
 Record const& the_only(std::vector<Record const*> const& found, Node const& at,
                        std::string const& name) {
     if (found.size() > 1)
-        fail(at, fmt::format("{} records bear the name `{}`", found.size(), shown(name)),
+        fail(at, fmt::format("{} records have the name `{}`", found.size(), shown(name)),
              "choose one by its number: `record: 1`");
     return *found[0];
 }
@@ -107,7 +107,7 @@ Record const& recorded(std::vector<Record> const& records, Node const& record,
         number == static_cast<double>(static_cast<std::size_t>(number)))
         return records[static_cast<std::size_t>(number) - 1];
     fail(record,
-         fmt::format("`{}` has no record `{}`: it holds {}", shown_path(path), shown(wanted),
+         fmt::format("`{}` has no record `{}`: it contains {}", shown_path(path), shown(wanted),
                      first_names(records)),
          fmt::format("give a name, or a number from 1 to {}", records.size()));
 }
@@ -121,7 +121,7 @@ Record const& chosen(std::vector<Record> const& records, Node const& at, RecordC
         if (auto const found = bearers(records, text(*choice.name)); !found.empty())
             return the_only(found, *choice.name, choice.name->text);
     fail(at,
-         fmt::format("`{}` holds {} records: {}", shown_path(path), records.size(),
+         fmt::format("`{}` contains {} records: {}", shown_path(path), records.size(),
                      first_names(records)),
          "name the chain after one of them, or add `record: NAME` or its number");
 }
@@ -129,8 +129,9 @@ Record const& chosen(std::vector<Record> const& records, Node const& at, RecordC
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 [[noreturn]] void refuse_letter(char letter, std::size_t position, Node const& source) {
-    std::string what = fmt::format("`{}` at position {} of the sequence is no residue of calvados2",
-                                   shown(std::string(1, letter)), position);
+    std::string what =
+        fmt::format("`{}` at position {} of the sequence is not a residue of calvados2",
+                    shown(std::string(1, letter)), position);
     std::string remedy = "use the one-letter codes ARNDCQEGHILKMFPSTWYV";
     if (letter == '*') what += ": a stop within the sequence", remedy = "end the sequence there";
     if (letter == '-' || letter == '.')

@@ -127,7 +127,7 @@ double non_negative(Node const& node) {
     double const value = number(node);
     if (!(value >= 0))
         fail(node, fmt::format("{} {} is negative", name_of(node), value),
-             "give 0 or a number above it");
+             "give 0 or a positive number");
     return value;
 }
 

@@ -65,7 +65,7 @@ class TreeBuilder : public YAML::EventHandler {
         if (expects_key()) refuse_key(mark);
         auto const found = anchors_.find(anchor);
         if (found == anchors_.end())
-            throw InputError("an alias refers to the value it stands in",
+            throw InputError("an alias refers to the value that contains it",
                              at_line(file_, line(mark)), "write the value out");
         if (open_.size() + depth_of(found->second) > deepest)
             throw InputError(fmt::format("values nest deeper than {} levels", deepest),
@@ -124,7 +124,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     void refuse_tag(YAML::Mark const& mark, std::string const& tag) const {
         if (tag.empty() || tag == "?" || tag == "!") return;
-        throw InputError(fmt::format("YAML tag `{}` is not read", shown(tag)),
+        throw InputError(fmt::format("YAML tag `{}` is not supported", shown(tag)),
                          at_line(file_, line(mark)), "leave the tag out");
     }
     void refuse_duplicates(Node const& map) const {

@@ -57,7 +57,7 @@ void refuse_other_formats(std::string_view text, std::string const& path) {
     };
     if (text.starts_with("\x1F\x8B")) refuse("the file is compressed", "unpack it: gunzip");
     if (text.substr(0, 4096).find('\0') != std::string_view::npos)
-        refuse("the file is no text", "write a PDB file");
+        refuse("the file is not a text file", "write a PDB file");
     std::string_view const begin = trimmed(text.substr(0, 4096));
     if (begin.empty() && trimmed(text).empty()) refuse("the file is empty", "write a PDB file");
     if (begin.starts_with("data_") || begin.starts_with("loop_") ||

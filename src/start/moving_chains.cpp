@@ -128,12 +128,11 @@ std::vector<MovingChain> moving_chains(Scene& scene) {
     for (ChainSpec& chain : scene.chains) {
         if (chain.bead_count() == 0) continue;  // no forces act on it
         if (!chain.is_beads() && !chain.is_linked())
-            throw InputError(
-                fmt::format(
-                    "`relax` moves beads and rigid domains on links, chain `{}` has other joints",
-                    chain.name),
-                scene.file + ": relax",
-                "leave `relax` out, or give that chain a start without overlaps");
+            throw InputError(fmt::format("`relax` moves beads and rigid domains on links, but "
+                                         "chain `{}` has other joints",
+                                         chain.name),
+                             scene.file + ": relax",
+                             "leave `relax` out, or give that chain a start without overlaps");
         moving.emplace_back(chain, bead);
         bead += chain.bead_count();
     }

@@ -112,7 +112,7 @@ std::string StartRelaxation::text() const {
 
 std::string StartRelaxation::way_text() const {
     return fmt::format("{} evaluations{}, beads moved by up to {:.3g} nm", steps,
-                       at_rest ? "" : ", the most that are taken", moved);
+                       at_rest ? "" : ", the maximum", moved);
 }
 
 RelaxationSays relaxation_says(bool quiet) {

@@ -55,10 +55,11 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
                          openmm_key(beads.scene_file, "temperature"), "give it in kelvin");
     if (spec.temperature > calvados2::warmest_water)
         throw InputError(
-            fmt::format("at {} K the permittivity of water, which charges feel, is not known",
-                        spec.temperature),
+            fmt::format(
+                "the permittivity of water, which scales the electrostatics, is not known at {} K",
+                spec.temperature),
             openmm_key(beads.scene_file, "temperature"),
-            fmt::format("give at most {} K there (it is dynamics.temperature where it is left out)",
+            fmt::format("give at most {} K (the default is dynamics.temperature)",
                         calvados2::warmest_water));
     if (!(spec.ionic_strength >= 0))
         throw InputError(fmt::format("ionic strength {} mol/l is negative", spec.ionic_strength),
@@ -67,14 +68,14 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
         throw InputError(
             fmt::format("switch width {} nm is not between 0 and the shortest cutoff, {} nm",
                         spec.switch_width, calvados2::ashbaugh_hatch_cutoff),
-            openmm_key(beads.scene_file, "switch_width"), "take about 0.2");
+            openmm_key(beads.scene_file, "switch_width"), "use about 0.2");
     if (beads.box)
         for (int i = 0; i < 3; ++i)
             if ((*beads.box)[i] < 2 * calvados2::yukawa_cutoff)
                 throw InputError(
                     fmt::format("box edge {} nm is less than twice the cutoff of {} nm",
                                 (*beads.box)[i], calvados2::yukawa_cutoff),
-                    beads.scene_file + ": box.periodic", "take a larger box or none");
+                    beads.scene_file + ": box.periodic", "use a larger box or none");
 }
 
 /// Ashbaugh-Hatch potential. The particles' parameters are half of sigma and lambda, so that a

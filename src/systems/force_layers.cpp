@@ -165,7 +165,7 @@ std::vector<std::int64_t> own_places(ForceLayer const& layer, BeadSystem const& 
 }
 
 std::string text_of(ForceLayer const& layer, BeadSystem const& all) {
-    return fmt::format("{} in a Context of its own: {} of {} beads act in it, up to {:g} nm",
+    return fmt::format("{} in a Context of its own: it acts on {} of {} beads, up to {:g} nm",
                        fmt::join(layer.model.terms, ", "), layer.beads.size(), all.size(),
                        reach_of(*layer.model.system));
 }

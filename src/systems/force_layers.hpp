@@ -37,7 +37,7 @@ std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads,
 /// BeadSystem::by_rank.
 std::vector<std::int64_t> own_places(ForceLayer const&, BeadSystem const& all, int rank);
 
-/// Returns, e.g., "yukawa in a Context of its own: 2500 of 10000 beads act in it, up to 4 nm".
+/// Returns, e.g., "yukawa in a Context of its own: it acts on 2500 of 10000 beads, up to 4 nm".
 std::string text_of(ForceLayer const&, BeadSystem const& all);
 
 }  // namespace catena

@@ -91,7 +91,7 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
         throw InputError(fmt::format("the topology has {} atoms and the System {} particles", atoms,
                                      system->getNumParticles()),
                          openmm_key(scene_file, "topology"),
-                         "give one atom a particle, in the System's order");
+                         "give one atom per particle, in the System's order");
 
     Joinings const joinings(*system, where);
     StiffLinks links(spec.temperature, where);

@@ -23,7 +23,7 @@ Joinings::Joinings(OpenMM::System const& system, std::string const& where)
         if (std::min(a, b) < 0 || std::max(a, b) >= system.getNumParticles() || a == b)
             throw InputError(fmt::format("a {} joins particles {} and {} (from 0) of {}", what, a,
                                          b, system.getNumParticles()),
-                             where, "mend the System");
+                             where, "correct the System");
     };
     for (int i = 0; i < system.getNumForces(); ++i) {
         auto const* bonds = dynamic_cast<OpenMM::HarmonicBondForce const*>(&system.getForce(i));
@@ -76,8 +76,7 @@ void Joinings::refuse_gap(int p, int first, std::string const& at) const {
                                      p - 1, p, custom),
                          at,
                          "add a constraint of the bond's mean length between neighbours, which "
-                         "becomes their rigid link, and take the pair out of the "
-                         "CustomBondForce");
+                         "becomes their rigid link, and remove the pair from the CustomBondForce");
     auto const& lower = to_lower_[static_cast<std::size_t>(p)];
     int partner = -1;
     for (auto const& [other, joining] : lower)

@@ -64,7 +64,7 @@ std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string con
         });
     if (summary.atoms == 0)
         throw InputError(fmt::format("{} holds no ATOM record", scene::shown_path(file)), where,
-                         "name a PDB file with one atom a particle");
+                         "name a PDB file with one atom per particle");
     if (notes && summary.models > 1)
         notes->push_back(fmt::format("`{}`: {} models, the first is taken", scene::shown_path(file),
                                      summary.models));

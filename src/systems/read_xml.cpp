@@ -38,9 +38,9 @@ std::string read_text(std::string const& file, std::string const& where) {
     if (needed > present)
         throw InputError(
             fmt::format(
-                "reading {} takes about {:.3g} GB of memory, and only {:.3g} GB are available",
+                "reading {} needs about {:.3g} GB of memory, and only {:.3g} GB are available",
                 scene::shown_path(file), needed * 1e-9, present * 1e-9),
-            where, "take a machine with more memory");
+            where, "use a machine with more memory");
     std::string text(static_cast<std::size_t>(size), '\0');
     in.seekg(0);
     in.read(text.data(), size);
@@ -78,10 +78,10 @@ std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file,
     std::string const name = scene::shown_path(file), xml = read_text(file, where);
     char const* const remedy = "write it with OpenMM's XmlSerializer.serialize(system)";
     if (xml.find("<System") == std::string::npos)
-        throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
+        throw InputError(fmt::format("{} is not a serialised System", name), where, remedy);
     XmlOutline const outline = scan_system_xml(xml, name, where);
     if (outline.type != "System")
-        throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
+        throw InputError(fmt::format("{} is not a serialised System", name), where, remedy);
     std::unique_ptr<OpenMM::System> system;
     try {
         std::istringstream in(xml);

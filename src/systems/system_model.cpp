@@ -79,11 +79,10 @@ struct Savings {
 /// Throws InputError unless the System has one particle per bead.
 void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const& beads) {
     if (system.getNumParticles() != beads.size())
-        throw InputError(
-            fmt::format("the System has {} particles and the scene {} beads",
-                        system.getNumParticles(), beads.size()),
-            openmm_key(beads.scene_file, "system"),
-            fmt::format("let every particle of {} be a bead of the scene", spec.system));
+        throw InputError(fmt::format("the System has {} particles and the scene {} beads",
+                                     system.getNumParticles(), beads.size()),
+                         openmm_key(beads.scene_file, "system"),
+                         fmt::format("make every particle of {} a bead of the scene", spec.system));
 }
 
 /// Checks the topology against the scene. Without a map its chains must be the scene's, in the same
@@ -99,7 +98,7 @@ void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
             fmt::format("the topology has {} atoms and the System {} particles", atoms,
                         beads.size()),
             where,
-            fmt::format("let {} hold one atom a particle, in the System's order", spec.topology));
+            fmt::format("give {} one atom per particle, in the System's order", spec.topology));
     if (!spec.map.empty()) return;
     std::size_t const count = beads.chain_name.size();
     for (std::size_t c = 0; c < std::max(count, chains.size()); ++c) {
@@ -111,7 +110,7 @@ void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
                 fmt::format("chain {} has {} beads in the scene and {} atoms in the topology",
                             c + 1, in_scene, in_topology),
                 where,
-                "give the chains in the topology's order, or say which particles are whose with "
+                "give the chains in the topology's order, or assign the particles with "
                 "forces.openmm.map");
     }
 }
@@ -151,7 +150,7 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
             if (owner >= 0)
                 throw InputError(
                     fmt::format("particle {} (from 0) belongs to two chains", first + k), where,
-                    "let the ranges be disjoint");
+                    "make the ranges disjoint");
             owner = beads.chain_offset[c] + k;
         }
     }
@@ -160,7 +159,7 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
         throw InputError(
             fmt::format("the scene has no chain of beads named {}",
                         spec.map[static_cast<std::size_t>(spare - used.begin())].first),
-            where, fmt::format("take one of {}", fmt::join(beads.chain_name, ", ")));
+            where, fmt::format("use one of {}", fmt::join(beads.chain_name, ", ")));
     return bead;
 }
 
@@ -175,7 +174,7 @@ void check_masses(System const& system, BeadSystem const& beads,
                 fmt::format("particle {} (from 0) has mass {} in the System and {} in the scene", p,
                             in_system, in_scene),
                 openmm_key(beads.scene_file, "system"),
-                "masses come from the System: let the scene give the same");
+                "masses come from the System: give the same in the scene");
     }
 }
 
@@ -191,16 +190,15 @@ std::vector<std::string> remove_constraints(System& system, LinkTable const& lin
         system.getConstraintParameters(i, a, b, length);
         double const* link = links.length(a, b);
         if (link == nullptr)
-            throw InputError(
-                fmt::format(
-                    "the constraint between particles {} and {} (from 0) is no link of the scene",
-                    a, b),
-                where, "constrain neighbours in a chain only, or make it a bond");
+            throw InputError(fmt::format("the constraint between particles {} and {} (from 0) is "
+                                         "not a link of the scene",
+                                         a, b),
+                             where, "constrain neighbours in a chain only, or make it a bond");
         if (std::abs(*link - length) > same_length)
             throw InputError(fmt::format("the constraint between particles {} and {} (from 0) has "
                                          "length {}, its link {}",
                                          a, b, length, *link),
-                             where, "let both be the same");
+                             where, "give both the same length");
         left_out.add(length, *link);
         system.removeConstraint(i);
     }
@@ -241,7 +239,7 @@ void name_in_order(System& system, LinkTable const& links, std::string const& wh
         if (!vanishes(system.getForce(i))) remaining.push_back(i);
     if (remaining.size() > force_groups_of_openmm)
         throw InputError(fmt::format("the System has {} forces", remaining.size()), where,
-                         fmt::format("merge forces of one kind: OpenMM tells {} groups apart",
+                         fmt::format("merge forces of one kind: OpenMM distinguishes {} groups",
                                      force_groups_of_openmm));
     std::vector<std::string> const names = term_names(system, remaining);
     for (std::size_t n = 0; n < names.size(); ++n) system.getForce(remaining[n]).setName(names[n]);
@@ -362,7 +360,7 @@ std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const
 void settle_box(System& system, BeadSystem const& beads, std::vector<std::string>& notes) {
     bool const periodic = system.usesPeriodicBoundaryConditions();
     if (!periodic) {
-        if (beads.box) notes.push_back("no force of the System knows the scene's box");
+        if (beads.box) notes.push_back("no force of the System uses the scene's box");
         return;
     }
     OpenMM::Vec3 edge[3];

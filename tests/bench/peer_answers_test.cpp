@@ -85,7 +85,7 @@ TEST(PeerAnswers, ChainsThatTheTableCannotHoldAreNotAskedAbout) {
     scene.chains[0].bodies.drag.assign(16, {0, 0.5});
     EXPECT_EQ(not_for_peers(scene), "driven joints or drag");
     scene.forces.linear_drag = 1;
-    EXPECT_EQ(not_for_peers(scene), "not one chain alone without drag and OpenMM");
+    EXPECT_EQ(not_for_peers(scene), "not a single chain without drag and OpenMM");
 }
 
 PeerProgram made_up(std::string const& name, std::string const& script) {
@@ -145,14 +145,13 @@ TEST(PeerAnswers, NonsenseIsWhyThereIsNoAnswer) {
     std::vector<PeerAnswer> const answers = peers(first, first.scene(1));
     ASSERT_EQ(answers.size(), 6U);
     EXPECT_EQ(answers[0].why_not, "");
-    char const* const begins[] = {"it said what cannot be read", "it said what cannot be read",
-                                  "it said what cannot be read", "it closed its output",
-                                  "it does not end its line"};
+    char const* const begins[] = {"unreadable answer", "unreadable answer", "unreadable answer",
+                                  "it closed its output", "unterminated line"};
     for (std::size_t i = 0; i < 5; ++i)
         EXPECT_TRUE(answers[i + 1].why_not.starts_with(begins[i]))
             << answers[i + 1].name << ": " << answers[i + 1].why_not;
     std::string const why_not = peers(second, second.scene(1)).at(0).why_not;
-    EXPECT_TRUE(why_not.starts_with("it said what nobody asked for")) << why_not;
+    EXPECT_TRUE(why_not.starts_with("it said what nobody requested")) << why_not;
 }
 
 }  // namespace

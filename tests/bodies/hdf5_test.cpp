@@ -124,25 +124,25 @@ TEST_F(Hdf5Bodies, a_chunk_of_texts_beyond_a_gigabyte) {
 
 TEST_F(Hdf5Bodies, refusals_of_the_file) {
     EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: {hdf5: nowhere.h5}}]")
-                  .rfind("the file is not there or no HDF5 file: ", 0),
+                  .rfind("the file does not exist or is not an HDF5 file: ", 0),
               0u);
     data_["dampening"] = {{3}, {0, 0, 0}};
     EXPECT_EQ(refusal(), "unknown dataset" + at("dampening") + "did you mean `damping`?");
     data_.erase("dampening");
     data_["com"].first = {3, 1, 3};
     EXPECT_EQ(refusal(),
-              "the dataset has shape [3, 1, 3], not [3, 3]" + at("com") + "give one row a body");
+              "the dataset has shape [3, 1, 3], not [3, 3]" + at("com") + "give one row per body");
     data_["com"] = {{2, 3}, {0, 0, 0, 0, 0, 0}};
     EXPECT_EQ(refusal(),
-              "the dataset has shape [2, 3], not [3, 3]" + at("com") + "give one row a body");
+              "the dataset has shape [2, 3], not [3, 3]" + at("com") + "give one row per body");
     data_.erase("com");
     auto const inertia = data_["inertia"];
     data_["inertia"] = {{3, 3}, {1, 1, 1, 1, 1, 1, 1, 1, 1}};
     EXPECT_EQ(refusal(), "the dataset has shape [3, 3], not [3, 3, 3] or [3, 6]" + at("inertia") +
-                             "give one row a body");
+                             "give one row per body");
     data_.erase("inertia");
     EXPECT_EQ(refusal(), "the dataset is missing" + at("inertia") +
-                             "add it: a tensor a body, about its centre of mass");
+                             "add it: one tensor per body, about its centre of mass");
     data_["inertia"] = inertia;
     data_.erase("axis");
     EXPECT_EQ(refusal(),
@@ -165,22 +165,21 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
     EXPECT_EQ(with("mass", 1, -2),
               "mass -2 is not positive" + at("mass", 2) + "give a number above 0");
     EXPECT_EQ(with("mass", 2, nan), "nan is not finite" + at("mass", 3) + "give finite numbers");
-    EXPECT_EQ(
-        with("inertia", 0, 5),
-        "no rigid body has the principal moments 2, 2.5, 5: they break the triangle inequality" +
-            at("inertia", 1) + "the largest may not exceed the sum of the other two");
+    EXPECT_EQ(with("inertia", 0, 5),
+              "the principal moments 2, 2.5, 5 violate the triangle inequality of rigid bodies" +
+                  at("inertia", 1) + "the largest may not exceed the sum of the other two");
     EXPECT_EQ(with("axis", 5, 0),
               "the axis is zero" + at("axis", 2) + "give a direction such as [0, 0, 1]");
     EXPECT_EQ(with("first_axis", 1, 1e9),
               "the two axes are parallel" + at("first_axis", 1) +
                   "give two directions, best at right angles, or use a revolute joint");
     EXPECT_EQ(with("pitch", 1, 0), "a helical joint without pitch" + at("pitch", 2) +
-                                       "give its shift a radian, or use a revolute joint");
+                                       "give its shift per radian, or use a revolute joint");
     EXPECT_EQ(with("q", 8, 1), "the quaternion is not a unit quaternion: its norm is 1.28062485" +
                                    at("q", 3) +
                                    "normalise it: divide its four numbers by their norm");
     EXPECT_EQ(with("stiffness", 3, -1),
-              "stiffness -1 is negative" + at("stiffness", 2) + "give 0 or numbers above it");
+              "stiffness -1 is negative" + at("stiffness", 2) + "give 0 or positive numbers");
     data_["rotation"] = {{3, 3, 3}, Numbers(27, 0)};
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i : {0, 4, 8}) data_["rotation"].second[9 * k + i] = 1;
@@ -189,9 +188,9 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
                                             at("rotation", 2) + "change the sign of one column");
     data_["drag"] = {{3, 2}, {1, 1, 1, 1, 1, 1}};
     EXPECT_EQ(with("drag", 5, -1),
-              "drag 1, -1 is negative" + at("drag", 3) + "give 0 or numbers above it");
+              "drag 1, -1 is negative" + at("drag", 3) + "give 0 or positive numbers");
     types_[1] = "revolute joint";
-    EXPECT_EQ(refusal(), "`revolute joint` is no joint type" + at("joint_type", 2) +
+    EXPECT_EQ(refusal(), "`revolute joint` is not a joint type" + at("joint_type", 2) +
                              "use the names of `joint.type`");
     types_[1] = "link";
     EXPECT_EQ(refusal(), "a link in a file of rigid bodies on joints" + at("joint_type", 2) +
@@ -202,7 +201,7 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
     type_numbers_ = {4, 7, 8};
     EXPECT_EQ(
         refusal(),
-        "8 is no joint type" + at("joint_type", 3) +
+        "8 is not a joint type" + at("joint_type", 3) +
             "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 prismatic, 7 helical");
     type_numbers_ = {0, 7, 2};
     EXPECT_EQ(refusal(), "a free joint on a fixed base" + at("joint_type", 1) +

@@ -122,7 +122,7 @@ TEST(Accuracy, ARunSaysThatItsFirstAccelerationsAreOff) {
     };
     Ended const projected = run("projected", "projected");
     EXPECT_EQ(projected.status, 0) << projected.err;
-    EXPECT_NE(projected.err.find("the first accelerations may be off by"), std::string::npos)
+    EXPECT_NE(projected.err.find("the first accelerations may have errors of"), std::string::npos)
         << projected.err;
     EXPECT_NE(projected.err.find("take solver.refine: 2 or solver.handles: articulated"),
               std::string::npos)

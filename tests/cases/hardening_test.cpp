@@ -118,7 +118,7 @@ TEST(Boxes, BeyondWhatOpenMmHoldsAreRefused) {
             2, "too long for OpenMM's neighbour lists");
     }
     expect_refused(catena({"check", scene, "--set", "box={periodic: [60, 60, 9e125]}"}), 2,
-                   "box edge 9e+125 is beyond what positions hold");
+                   "box edge 9e+125 is beyond the range of positions");
     expect_good(catena({"check", scene, "--set", "box={periodic: [60, 60, 6000]}", "--quiet"}));
     expect_refused(catena({"check", scene, "--set", "box={periodic: [6, 60, 60]}"}), 2,
                    "");  // below two cutoffs of 4 nm
@@ -136,7 +136,7 @@ TEST(Positions, BeyondWhatTheyHoldAreRefused) {
             std::string("chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, {mass: 1, position: ") +
                 one + ", joint: {type: link}}]}]\n");
         expect_refused(catena({"check", "s.yaml"}, folder.path()), 2,
-                       "from the origin, beyond what positions hold");
+                       "from the origin, beyond the range of positions");
     }
 }
 
@@ -450,7 +450,7 @@ TEST(Checkpoints, OfFoldersThatCannotBeLookedIntoAreRefused) {
     expect_refused(catena({"run", data_of("running-folder/scene.yaml"), "--steps", "2", "--output",
                            std::string(300, 'x')},
                           folder.path()),
-                   2, "the output folder cannot be looked into");
+                   2, "the output folder cannot be read");
 }
 
 }  // namespace

@@ -191,7 +191,8 @@ TEST(Plan, LinksThatCannotBeAreRefused) {
         words.insert(words.end(), more.begin(), more.end());
         return catena(words);
     };
-    expect_refused(plan({"--latency", "1us"}), 2, "--latency and --bandwidth go together");
+    expect_refused(plan({"--latency", "1us"}), 2,
+                   "--latency and --bandwidth must be given together");
     expect_refused(plan({"--latency", "1 week", "--bandwidth", "1GB/s"}), 2,
                    "`1 week` is not a positive number with a unit");
     expect_refused(plan({"--latency", "-1us", "--bandwidth", "1GB/s"}), 2,

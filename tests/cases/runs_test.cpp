@@ -377,7 +377,7 @@ TEST_F(Runs, LostFramesAndLinesAreSaidAtARestart) {
     };
     copy("no-table");
     fs::remove(at("no-table/observables.csv"));
-    expect_refused(restart("no-table"), 2, "no table of observables to go on with");
+    expect_refused(restart("no-table"), 2, "there is no table of observables to continue");
     copy("no-trajectory");
     fs::remove(at("no-trajectory/trajectory.h5md"));
     expect_refused(restart("no-trajectory"), 2, "--output OTHER");

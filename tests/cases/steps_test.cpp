@@ -97,7 +97,7 @@ TEST(Steps, EnergyThatGrowsIsWarnedOfAndInvalid) {
     Ended const ended =
         catena({"run", scene_of("energy-drift-valid"), "--output", "out"}, folder.path());
     EXPECT_EQ(ended.status, 1) << ended.out;
-    EXPECT_NE(ended.err.find("near the longest stable one"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("near the longest stable step"), std::string::npos) << ended.err;
     std::string const last =
         ended.out.substr(std::min(ended.out.size(), ended.out.find("\nINVALID")));
     EXPECT_EQ(last.find("\nINVALID: energy at step 3000: total energy"), 0U)

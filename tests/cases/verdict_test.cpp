@@ -92,7 +92,7 @@ TEST_F(CutRun, RefusesEnergiesThatNoRunWrites) {
     auto const expect_refused_after = [&](std::size_t at, double value) {
         Checkpoint c = good;
         c.arrays.at("verdict_frames").at(at) = value;
-        expect_refused_for(c, "verdict_frames are no frames of its run");
+        expect_refused_for(c, "verdict_frames are not energies of its run");
     };
     expect_refused_after(0, -1);            // frames of an entry
     expect_refused_after(5, 1e300);         // a step
@@ -100,7 +100,7 @@ TEST_F(CutRun, RefusesEnergiesThatNoRunWrites) {
     expect_refused_after(7, std::nan(""));  // frames
     Checkpoint c = good;
     c.arrays.at("verdict_frames").pop_back();
-    expect_refused_for(c, "verdict_frames are no frames of its run");
+    expect_refused_for(c, "verdict_frames are not energies of its run");
     c.integers["largest_constraint_error_at"] = 1000;
     expect_refused_for(c, "largest_constraint_error_at is 1000");
 }
@@ -111,7 +111,7 @@ TEST_F(CutRun, BeginsItsVerdictAnewInABranch) {
                                 folder_.path());
     EXPECT_EQ(branch.status, 0) << branch.err;
     nlohmann::json const summary = summary_in(folder_ / "branch");
-    EXPECT_NE(summary.at("notes").dump().find("the verdict covers the branch alone"),
+    EXPECT_NE(summary.at("notes").dump().find("the verdict covers the branch only"),
               std::string::npos)
         << summary.at("notes");
     EXPECT_EQ(summary.at("run").at("last_step"), 3300);
@@ -122,10 +122,11 @@ TEST_F(CutRun, BeginsItsVerdictAnewInABranch) {
                folder_.path());
     EXPECT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(summary_in(folder_ / "branch").at("run").at("last_step"), 3300);
-    expect_refused(catena(with(run_, {"--restart", "branch/checkpoint.h5", "--set",
-                                      "dynamics.step=0.1", "--steps", "3000"}),
-                          folder_.path()),
-                   2, "ask for more than 3300 with --steps, which counts from the scene's start");
+    expect_refused(
+        catena(with(run_, {"--restart", "branch/checkpoint.h5", "--set", "dynamics.step=0.1",
+                           "--steps", "3000"}),
+               folder_.path()),
+        2, "request more than 3300 steps with --steps, which counts from the scene's start");
 }
 
 // ---- Temperatures of pushed chains

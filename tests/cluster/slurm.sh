@@ -115,7 +115,7 @@ wait_for 900 "its end" is "$number" JobState COMPLETED
 "$CATENA_PROGRAM" run scene.yaml --output whole --quiet
 "$python" "$root/tests/cluster/compare_runs.py" whole long
 
-echo "-- several threads a rank"
+echo "-- several threads per rank"
 sbatch --wait --quiet --nodes=1 --ntasks-per-node=1 --cpus-per-task=2 --time=10 --output="$work/threads.out" "$root/jobs/slurm-nodes.sh" \
     scene.yaml threads --steps 500 --backend=openmp --threads 2
 "$CATENA_PROGRAM" run scene.yaml --output threads-alone --steps 500 --backend openmp --threads 2 --quiet

@@ -94,7 +94,7 @@ TEST(Bench, SolveGivesEachFigureWithItsResidual) {
               " VALID\n"),
         3U);
     for (auto const& [loads, words] :
-         {std::pair{"none", "gravity alone"}, {"torques", "gravity and torques of joints."}}) {
+         {std::pair{"none", "gravity only"}, {"torques", "gravity and joint torques."}}) {
         Ended const light = catena({"bench", "solve", "--sizes", "300", "--joints", "revolute",
                                     "--repeat", "1", "--backend", "segments", "--loads", loads});
         EXPECT_EQ(count(light.out, " VALID\n"), 1U) << light.out;
@@ -119,9 +119,9 @@ TEST(Bench, EvaluationsAreValidAndAsked) {
     EXPECT_EQ(alike.json().at("alike"), true);
     EXPECT_EQ(json.at("alike"), false);
     expect_refused(catena({"bench", "peers", "--alike"}), 2,
-                   "--alike is nothing to catena bench peers");
+                   "catena bench peers does not take --alike");
     expect_refused(catena({"bench", "solve", "--joints", "link,mixed", "--alike"}), 2,
-                   "mixed joints are not alike (--alike): leave it out");
+                   "mixed joints cannot be alike (--alike): leave out --alike or `mixed`");
     Ended const joints =
         catena({"bench", "evaluation", "--sizes", "300", "--joints", "planar,revolute,mixed",
                 "--loads", "torques", "--repeat", "1", "--backend", "segments", "--json", "-"});
@@ -276,7 +276,7 @@ TEST(Report, TheStabilitySuiteGivesAVerdictForEveryCase) {
     EXPECT_EQ(dill.at("stability")[0].at("family"), "dill");
     expect_refused(
         catena({"report", "--suite", "stability", "--sizes", "64", "--cases", "knot"}), 2,
-        "no family of cases has 'knot' (--cases): take parts of these names: coil; dill");
+        "no family of cases contains 'knot' (--cases): use parts of these names: coil; dill");
     expect_refused(catena({"report", "--suite", "stability", "--quick", "--cases", "beads",
                            "--handles", "articulated", "--output", folder / "n"}),
                    2, "nothing to solve: ");

@@ -50,8 +50,9 @@ TEST(Plan, SaysWhatRunsAndWhatIsLeftOut) {
         catena({"plan", input("random-revolute.yaml"), "--backend", "serial", "--handles", "full"});
     expect_good(e);
     for (std::string const part :
-         {"serial (asked for)", "6x6, every direction", "runs of 1, 1000 of them, then 10 levels",
-          "left out\n  - ", "predicted times of one evaluation", "serial *", "memory, each rank"})
+         {"serial (requested)", "6x6, every direction",
+          "1000 runs of up to 1 bodies, then 10 levels", "left out\n  - ",
+          "predicted times of one evaluation", "serial *", "memory per rank"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 
@@ -103,7 +104,7 @@ TEST(Plan, AutoIsSaidOnceWithItsReason) {
     EXPECT_EQ(catena({"solve", input("arm.yaml"), "--backend", "segments", "--json", "-"})
                   .json()
                   .at("backend_reason"),
-              "asked for");
+              "requested");
 }
 
 /// Between 1 us a message and 1 GB/s, whatever the machine.
@@ -145,7 +146,7 @@ TEST(Plan, PredictsStepsOnMoreRanks) {
     EXPECT_EQ(rows.back().at("hosts"), 12);
     Ended const e = catena(words);
     expect_good(e);
-    for (std::string const part : {"times one rank", "efficiency", "predicted messages of a step",
+    for (std::string const part : {"speed-up", "efficiency", "predicted messages per step",
                                    "every rank is taken to be like this one"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }

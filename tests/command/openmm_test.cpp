@@ -120,7 +120,7 @@ TEST(OpenMm, BenchmarksSayWhatTheyCompare) {
     EXPECT_GT(std::filesystem::file_size(folder / "pictures/overlap.html"), 1000U);
     std::ofstream(folder / "file") << "no folder\n";
     expect_refused(catena({"bench", "overlap", "--output", folder / "file/pictures"}), 2,
-                   "the output folder cannot be made");
+                   "the output folder cannot be created");
 }
 
 }  // namespace

@@ -92,7 +92,8 @@ TEST(Run, TellsItsInnerSteps) {
                            "chains[0].bodies[3].joint.stiffness=1e40", "--quiet"},
                           folder.path()),
                    1,
-                   "at step 0: no shorter step is a step for dynamics.tolerance 1e-08 at time 0 (");
+                   "at step 0: the inner step cannot be shortened further for dynamics.tolerance "
+                   "1e-08 at time 0 (");
 }
 
 TEST(Run, SummaryOnTheTerminal) {

@@ -128,11 +128,11 @@ TEST(Sampling, WhatCannotBeSampledIsRefused) {
     expect_refused(catena({"bench", "sampling", "--every", "4e7", "--duration", "4e7"}), 2,
                    "--every");
     expect_refused(catena({"bench", "sampling", "--sizes", "140"}), 2,
-                   "--sizes is nothing to catena bench sampling");
+                   "catena bench sampling does not take --sizes");
     expect_refused(catena({"bench", "openmm", "--copies", "2"}), 2,
-                   "--copies is nothing to catena bench openmm");
+                   "catena bench openmm does not take --copies");
     expect_refused(catena({"bench", "openmm", "scene.yaml"}), 2,
-                   "`scene.yaml` is nothing to catena bench openmm");
+                   "catena bench openmm does not take `scene.yaml`");
     expect_refused(catena({"bench", "sampling", input("several-chains.yaml")}), 2,
                    "leave the others out");
     expect_refused(catena({"bench", "sampling", input("arm.yaml")}), 2, "takes a free chain");
@@ -140,7 +140,7 @@ TEST(Sampling, WhatCannotBeSampledIsRefused) {
     expect_refused(catena({"bench", "sampling", scene, "--set", "forces.gravity=[0, 0, -1]"}), 2,
                    "gravity");
     expect_refused(catena({"bench", "sampling", scene, "--json", scene}), 2,
-                   "the scene would be written over");
+                   "the scene would be overwritten");
 }
 
 }  // namespace

@@ -475,8 +475,8 @@ TEST(Halo, ABeadInTroubleIsEverybodysMessage) {
             message = e.what();
         }
         EXPECT_EQ(message,
-                  "the position of bead 29, or OpenMM's force on it, is not finite: take a smaller "
-                  "step, or a start without overlaps");
+                  "the position of bead 29, or OpenMM's force on it, is not finite: use a smaller "
+                  "dynamics.step, or a start without overlaps");
         EXPECT_THROW(forces.refuse_trouble(last ? 0 : -1), SharedError);
         EXPECT_NO_THROW(forces.refuse_trouble(-1));
     });

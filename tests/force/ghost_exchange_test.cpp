@@ -317,13 +317,13 @@ TEST(GhostExchange, TheAuditFindsWhatIsMissedOrStale) {
         Beads moved = beads;
         moved.positions.back() = moved.positions.front() +
                                  Vec3{{0.5 * reach, 0, 0}};  // of the last rank, to the first one's
-        EXPECT_TRUE(fails_with("is felt on a rank that has no ghost of it",
+        EXPECT_TRUE(fails_with("acts on a rank that has no ghost of it",
                                [&] { ghosts.audit(moved.own()); }));
         ghosts.renew();
         ghosts.update(moved.own());
         EXPECT_NO_THROW(ghosts.audit(moved.own()));
         moved.positions.back()[1] += 1e-12;
-        EXPECT_TRUE(fails_with("a ghost of bead 100 is not where the bead is",
+        EXPECT_TRUE(fails_with("a ghost of bead 100 is not at the bead's position",
                                [&] { ghosts.audit(moved.own()); }));
     });
 }

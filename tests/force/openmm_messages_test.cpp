@@ -43,33 +43,32 @@ TEST_F(Messages, Platform) {
     spec.platform = "Abacus";
     EXPECT_TRUE(of(spec).starts_with(
         "OpenMM " + version +
-        " has no platform Abacus (scene.yaml: forces.openmm.platform): take one of Reference, CPU"))
+        " has no platform Abacus (scene.yaml: forces.openmm.platform): use one of Reference, CPU"))
         << of(spec);
     spec = on_reference();
     spec.precision = "half";
     EXPECT_EQ(of(spec),
-              "OpenMM knows no precision \"half\" (scene.yaml: forces.openmm.precision): take "
+              "`half` is not a precision of OpenMM (scene.yaml: forces.openmm.precision): use "
               "single, mixed or double");
     spec = on_reference();
     spec.path = "device";
-    EXPECT_EQ(
-        of(spec),
-        "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: "
-        "forces.openmm.path): take auto, or "
-        "chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
+    EXPECT_EQ(of(spec),
+              "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: "
+              "forces.openmm.path): use auto, or chains of beads, --backend cuda and "
+              "forces.openmm.platform: CUDA on a machine with a GPU");
 }
 
 TEST_F(Messages, Builder) {
     EXPECT_EQ(of(on_reference("martini")),
-              "OpenMM's forces have no builder \"martini\" (scene.yaml: forces.openmm): take "
+              "`martini` is not a builder of OpenMM's forces (scene.yaml: forces.openmm): use "
               "builder: calvados2, or system: and topology:");
     EXPECT_EQ(of(on_reference("")),
-              "OpenMM's forces have no builder \"\" (scene.yaml: forces.openmm): take builder: "
+              "`` is not a builder of OpenMM's forces (scene.yaml: forces.openmm): use builder: "
               "calvados2, or system: and topology:");
     beads = proteins({});
     EXPECT_EQ(of(on_reference()),
-              "OpenMM has nothing to act on (scene.yaml: forces.openmm): give the scene a chain of "
-              "beads, or leave forces.openmm out");
+              "OpenMM has no beads to act on (scene.yaml: forces.openmm): give the scene a chain "
+              "of beads, or leave forces.openmm out");
 }
 
 TEST_F(Messages, Calvados2) {
@@ -80,9 +79,9 @@ TEST_F(Messages, Calvados2) {
               "kelvin");
     spec.temperature = 643.5;
     EXPECT_EQ(of(spec),
-              "at 643.5 K the permittivity of water, which charges feel, is not known (scene.yaml: "
-              "forces.openmm.temperature): give at most "
-              "643 K there (it is dynamics.temperature where it is left out)");
+              "the permittivity of water, which scales the electrostatics, is not known at 643.5 K "
+              "(scene.yaml: forces.openmm.temperature): give at most 643 K (the default is "
+              "dynamics.temperature)");
     spec = on_reference();
     spec.ionic_strength = -0.1;
     EXPECT_EQ(of(spec),
@@ -92,11 +91,11 @@ TEST_F(Messages, Calvados2) {
     spec.switch_width = 2;
     EXPECT_EQ(of(spec),
               "switch width 2 nm is not between 0 and the shortest cutoff, 2 nm (scene.yaml: "
-              "forces.openmm.switch_width): take about 0.2");
+              "forces.openmm.switch_width): use about 0.2");
     beads.box = Vec3{{9, 7.5, 9}};
     EXPECT_EQ(of(on_reference()),
               "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml: box.periodic): "
-              "take a larger box or none");
+              "use a larger box or none");
     beads.box.reset();
     beads.residue[5] = "UNK";
     EXPECT_EQ(of(on_reference()),
@@ -113,11 +112,11 @@ TEST_F(Messages, UnreadableSystem) {
               "cannot open /nowhere/system.xml (scene.yaml: forces.openmm.system): name a "
               "serialised System that can be read");
     EXPECT_NE(of(with_text("hello"))
-                  .find(" is no serialised System (scene.yaml: forces.openmm.system): "),
+                  .find(" is not a serialised System (scene.yaml: forces.openmm.system): "),
               std::string::npos);
     EXPECT_NE(
         of(with_text("<?xml version=\"1.0\" ?>\n<State type=\"State\" version=\"1\"></State>"))
-            .find(" is no serialised System ("),
+            .find(" is not a serialised System ("),
         std::string::npos);
 
     std::string xml = xml_of(*every_force(proteins({random_sequence(60, 1)})));
@@ -235,14 +234,14 @@ TEST_F(Messages, TermsAreNamedForTablesAndPeople) {
 TEST_F(Messages, ConstraintsThatAreNoLinks) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(0, 2, 0.5); }),
-              "the constraint between particles 0 and 2 (from 0) is no link of the scene" + where +
-                  "constrain neighbours in a chain only, or make it a bond");
+              "the constraint between particles 0 and 2 (from 0) is not a link of the scene" +
+                  where + "constrain neighbours in a chain only, or make it a bond");
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(3, 4, 0.38); }),
-              "the constraint between particles 3 and 4 (from 0) is no link of the scene" + where +
-                  "constrain neighbours in a chain only, or make it a bond");
+              "the constraint between particles 3 and 4 (from 0) is not a link of the scene" +
+                  where + "constrain neighbours in a chain only, or make it a bond");
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(1, 2, 0.5); }),
               "the constraint between particles 1 and 2 (from 0) has length 0.5, its link 0.38" +
-                  where + "let both be the same");
+                  where + "give both the same length");
     auto const force = make_openmm_force(
         with_system([](auto& s) { s.addConstraint(2, 1, 0.38), s.addConstraint(2, 3, 0.38); }),
         beads, *serial);
@@ -279,10 +278,10 @@ TEST_F(Messages, CountsAndMasses) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
     OpenMmSpec const longer = with_system([](auto& s) { s.addParticle(1); });
     EXPECT_EQ(of(longer), "the System has 7 particles and the scene 6 beads" + where +
-                              "let every particle of " + longer.system + " be a bead of the scene");
+                              "make every particle of " + longer.system + " a bead of the scene");
     EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(4, 60); }),
               "particle 4 (from 0) has mass 60 in the System and 59.05 in the scene" + where +
-                  "masses come from the System: let the scene give the same");
+                  "masses come from the System: give the same in the scene");
     make_openmm_force(with_system([](auto& s) { s.setParticleMass(4, 59.05 * (1 + 1e-9)); }), beads,
                       *serial);
 }
@@ -293,13 +292,13 @@ TEST_F(Messages, Topology) {
     spec.topology = scratch_file("short.pdb", pdb_of(proteins({"KDE", "GG"}), anywhere));
     EXPECT_EQ(of(spec),
               "the topology has 5 atoms and the System 6 particles (scene.yaml: "
-              "forces.openmm.topology): let " +
-                  spec.topology + " hold one atom a particle, in the System's order");
+              "forces.openmm.topology): give " +
+                  spec.topology + " one atom per particle, in the System's order");
     spec.topology = scratch_file("other.pdb", pdb_of(proteins({"KDE", "GGG"}), anywhere));
     EXPECT_EQ(of(spec),
               "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml: "
-              "forces.openmm.topology): give the chains in the "
-              "topology's order, or say which particles are whose with forces.openmm.map");
+              "forces.openmm.topology): give the chains in the topology's order, or assign the "
+              "particles with forces.openmm.map");
     spec.topology = scratch_file("one.pdb", pdb_of(proteins({"KDEKGG"}), anywhere));
     EXPECT_TRUE(
         of(spec).starts_with("chain 1 has 4 beads in the scene and 6 atoms in the topology"));
@@ -315,7 +314,7 @@ TEST_F(Messages, Map) {
                             "give every chain of beads its first and last particle");
     spec.map = {{"A", {0, 3}}, {"B", {3, 4}}};
     EXPECT_EQ(of(spec),
-              "particle 3 (from 0) belongs to two chains" + where + "let the ranges be disjoint");
+              "particle 3 (from 0) belongs to two chains" + where + "make the ranges disjoint");
     spec.map = {{"A", {0, 3}}, {"B", {5, 6}}};
     EXPECT_EQ(of(spec), "chain B has 2 beads, and its particles are 5 to 6 of 0 to 5" + where +
                             "name its first and last particle, counted from 0");
@@ -323,7 +322,7 @@ TEST_F(Messages, Map) {
     EXPECT_EQ(of(spec), "chain A has 4 beads, and its particles are 0 to 2 of 0 to 5" + where +
                             "name its first and last particle, counted from 0");
     spec.map = {{"A", {0, 3}}, {"C", {0, 1}}, {"B", {4, 5}}};
-    EXPECT_EQ(of(spec), "the scene has no chain of beads named C" + where + "take one of A, B");
+    EXPECT_EQ(of(spec), "the scene has no chain of beads named C" + where + "use one of A, B");
     spec.map = {{"B", {4, 5}}, {"A", {0, 3}}};
     make_openmm_force(spec, beads, *serial);
 }
@@ -354,7 +353,7 @@ TEST_F(Messages, Box) {
     auto const open = make_openmm_force(
         with_system([](auto& s) { s.addForce(new OpenMM::HarmonicBondForce); }), beads, *serial);
     EXPECT_NE(fmt::format("{}", fmt::join(open->description(), "\n"))
-                  .find("no force of the System knows the scene's box"),
+                  .find("no force of the System uses the scene's box"),
               std::string::npos);
 }
 
@@ -364,8 +363,7 @@ TEST_F(Messages, TooManyForces) {
                       for (int i = 0; i < count; ++i) s.addForce(new OpenMM::CustomBondForce("r"));
                   }),
                   fmt::format("the System has {} forces (scene.yaml: forces.openmm.system): merge "
-                              "forces of one kind: OpenMM tells 32 "
-                              "groups apart",
+                              "forces of one kind: OpenMM distinguishes 32 groups",
                               count));
     auto const force = make_openmm_force(with_system([](auto& s) {
                                              for (int i = 0; i < 32; ++i) {
@@ -445,7 +443,7 @@ TEST_F(Messages, RefusedByOpenMm) {
     });  // without its particles
     EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
     EXPECT_TRUE(
-        text.ends_with(" (scene.yaml: forces.openmm): mend the System, or take another platform"))
+        text.ends_with(" (scene.yaml: forces.openmm): correct the System, or use another platform"))
         << text;
 }
 

@@ -70,8 +70,8 @@ TEST_P(Trouble, ComesOutOfFinish) {
         ADD_FAILURE() << "nothing was thrown";
     } catch (ComputationError const& e) {
         EXPECT_STREQ(e.what(),
-                     "the position of bead 4 is not finite: take a smaller step, or a start "
-                     "without overlaps");
+                     "the position of bead 4 is not finite: use a smaller dynamics.step, or a "
+                     "start without overlaps");
     }
     EXPECT_EQ(norm(forces[0]), 0);
     EXPECT_EQ(difference(evaluate(*force, positions), good), 0);

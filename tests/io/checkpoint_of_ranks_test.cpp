@@ -148,8 +148,9 @@ TEST_F(CheckpointOfRanks, WhatNobodyBroughtIsMissed) {
             put_own(writer, usual, 1000, 77);
             writer.finish();
         });
-        EXPECT_EQ(message, "cannot write the checkpoint (" + file +
-                               "): it does not read back, its checksum does not fit its contents");
+        EXPECT_EQ(message,
+                  "cannot write the checkpoint (" + file +
+                      "): it does not read back, its checksum does not match its contents");
         world().barrier();
         if (world().rank() != 0) continue;
         EXPECT_EQ(read_checkpoint(file).step, 100);

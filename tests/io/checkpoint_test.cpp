@@ -56,10 +56,11 @@ TEST(Checkpoint, OneAlteredNumberIsSeen) {
     ASSERT_NE(at, std::string::npos);
     bytes[at] = static_cast<char>(bytes[at] ^ 1);
     put_bytes(file, bytes);
-    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" +
-                                 file + "): start anew");
+    EXPECT_EQ(refusal(file),
+              "the checkpoint is damaged, its checksum does not match its contents (" + file +
+                  "): start anew");
     put_bytes(folder / "checkpoint.previous.h5", "");
-    EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")),
+    EXPECT_NE(refusal(file).find("use the previous one, " + (folder / "checkpoint.previous.h5")),
               std::string::npos)
         << refusal(file);
 }
@@ -75,8 +76,9 @@ TEST(Checkpoint, DamageIsSeenBeforeHdf5) {
         << good.substr(0, 80);
     EXPECT_EQ(good.substr(512, 4), "\x89HDF");
     put_bytes(file, good + "more");
-    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" +
-                                 file + "): start anew");
+    EXPECT_EQ(refusal(file),
+              "the checkpoint is damaged, its checksum does not match its contents (" + file +
+                  "): start anew");
     put_bytes(file, good.substr(0, 600));
     EXPECT_EQ(refusal(file), "the checkpoint is damaged, cut short, 600 of " +
                                  std::to_string(good.size()) + " bytes (" + file + "): start anew");
@@ -113,8 +115,9 @@ TEST(Checkpoint, DamageIsSeenBeforeHdf5) {
     put_bytes(folder / "checkpoint.previous.h5", good);
     for (std::string const& bytes : {std::string(4096, '\0'), std::string()}) {
         put_bytes(file, bytes);
-        EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")),
-                  std::string::npos)
+        EXPECT_NE(
+            refusal(file).find("use the previous one, " + (folder / "checkpoint.previous.h5")),
+            std::string::npos)
             << refusal(file);
     }
 }

@@ -75,14 +75,14 @@ TEST(Observables, RestartRefusesOtherColumnsAndBrokenLines) {
     TemporaryFolder const folder;
     std::string const file = folder / "observables.csv";
     auto const restart = [&] { return message_of([&] { write_records(file, {}, 100); }); };
-    EXPECT_EQ(restart(), "no table of observables to go on with (" + file + "): put it back, or " +
-                             Continuation::way_beside);
+    EXPECT_EQ(restart(), "there is no table of observables to continue (" + file +
+                             "): restore it, or " + Continuation::way_beside);
     std::ofstream(file) << "step,time [ps],other\n";
     EXPECT_NE(restart().find("other columns"), std::string::npos) << restart();
     write_records(file, {0});
     std::ofstream(file, std::ios::app) << "not a record\n";
-    EXPECT_EQ(restart(), "not a record of observables (" + file + ", line 3): mend the line, or " +
-                             Continuation::way_beside);
+    EXPECT_EQ(restart(), "not a record of observables (" + file +
+                             ", line 3): correct the line, or " + Continuation::way_beside);
     std::string const before = read_text_file(file);
     EXPECT_THROW(write_records(file, {}, 100), InputError);
     EXPECT_EQ(read_text_file(file), before) << "a refused restart changed the file";

@@ -239,8 +239,8 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
             }
         });
     };
-    EXPECT_EQ(restart(topology), "no trajectory to go on with (" + file + "): put it back, or " +
-                                     Continuation::way_beside);
+    EXPECT_EQ(restart(topology), "there is no trajectory to continue (" + file +
+                                     "): restore it, or " + Continuation::way_beside);
     std::ofstream(file) << "no HDF5 at all";
     EXPECT_NE(restart(topology).find("cannot be opened"), std::string::npos) << restart(topology);
     File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)).close();

@@ -105,7 +105,8 @@ TEST(IntegratorErrors, SpringsAlongSomeCoordinatesAloneAreNotTakenImplicitly) {
     IntegratorStudy const study = study_integrator_errors(scene, *alone, 0.01, 4, 1);
     EXPECT_FALSE(study.has_implicit());
     EXPECT_EQ(study.no_implicit,
-              "a joint has springs along some of its coordinates alone, or ten decades apart");
+              "a joint has springs along only some of its coordinates, or its stiffnesses differ "
+              "by ten decades");
 }
 
 /// Refinement changes roundings alone, and takes its time.
@@ -131,7 +132,7 @@ TEST(IntegratorErrors, AnotherOrderThanPromisedIsInvalid) {
     EXPECT_TRUE(curve.as_promised());
     curve.points.resize(2);
     EXPECT_TRUE(curve.as_promised());
-    curve.points.back().no_error = "came to no end";  // the finest step of all
+    curve.points.back().no_error = "did not finish";  // the finest step of all
     EXPECT_FALSE(curve.as_promised());
     curve.points.clear();
     curve.slope = std::nullopt;

@@ -167,7 +167,7 @@ TEST(Stability, PeersAreAskedAboutEverySeed) {
     EXPECT_EQ(study.peers[0].error, 0);
     EXPECT_EQ(study.peers[1].why_not, "no room");
     EXPECT_EQ(study.peers[2].why_not, "its answer is not finite");
-    EXPECT_EQ(study.peers[3].why_not, "its answer is of another length");
+    EXPECT_EQ(study.peers[3].why_not, "its answer has another length");
     EXPECT_EQ(study.best_of_others(), 0);
     EXPECT_LE(study.against_peers(), 1);
     EXPECT_EQ(study.verdict(), Verdict::refined);

@@ -110,8 +110,7 @@ TEST(Choice, ThreadsAreNotTakenForAGainThatIsSmallBesideTheForces) {
     scene.forces.openmm.emplace();
     plan::Choice const choice = choose(scene, machine);
     EXPECT_EQ(choice.arrangement, (Arrangement{Backend::segments, 1}));
-    EXPECT_NE(choice.reason.find("beside forces of 10 ms and more"), std::string::npos)
-        << choice.reason;
+    EXPECT_NE(choice.reason.find("forces take at least 10 ms"), std::string::npos) << choice.reason;
     machine.openmm_on_gpu = [] { return true; };
     EXPECT_EQ(choose(scene, machine).arrangement, (Arrangement{Backend::openmp, 4}))
         << "forces on a GPU are not so slow";
@@ -170,7 +169,7 @@ TEST(Choice, NothingIsMeasuredWhereNothingIsOpen) {
     machine.measure = [](auto const&, auto, auto const&) -> plan::PhaseSeconds {
         throw std::logic_error("measured");
     };
-    EXPECT_EQ(choose(told_scene(1000, "{backend: serial}"), machine).reason, "asked for");
+    EXPECT_EQ(choose(told_scene(1000, "{backend: serial}"), machine).reason, "requested");
     machine.alike.resize(1);
     EXPECT_EQ(choose(told_scene(1000), machine).arrangement, (Arrangement{Backend::segments, 1}));
     auto const alone = serial_communicator();

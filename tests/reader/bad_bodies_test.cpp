@@ -54,9 +54,9 @@ Refusal const bodies_cases[] = {
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 2.1]], joint: {type: revolute, axis: [0, 0, 1]}})y",
-     "no rigid body has the principal moments 1, 1, 2.1: they break the triangle inequality "
-     "(s.yaml: chains[0].bodies[1].inertia, body 2, "
-     "line 5): the largest may not exceed the sum of the other two"},
+     "the principal moments 1, 1, 2.1 violate the triangle inequality of rigid bodies (s.yaml: "
+     "chains[0].bodies[1].inertia, body 2, line 5): the largest may not exceed the sum of the "
+     "other two"},
     {"thin_rod", R"y(chains:
   - base: fixed
     bodies:
@@ -152,9 +152,8 @@ Refusal const joints_cases[] = {
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, axis: [0, 0, 1]}})y",
-     "key `axis` means nothing for a spherical joint (s.yaml: chains[0].bodies[1].joint.axis, body "
-     "2, line 5): leave it out or correct "
-     "`type`"},
+     "key `axis` does not apply to a spherical joint (s.yaml: chains[0].bodies[1].joint.axis, body "
+     "2, line 5): leave it out or correct `type`"},
     {"quaternion_norm", R"y(chains:
   - base: fixed
     bodies:
@@ -207,14 +206,14 @@ Refusal const joints_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1], stiffness: -1}})y",
      "stiffness -1 is negative (s.yaml: chains[0].bodies[1].joint.stiffness, body 2, line 5): give "
-     "0 or a number above it"},
+     "0 or a positive number"},
     {"negative_damping", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, damping: [1, -1, 0]}})y",
      "damping -1 is negative (s.yaml: chains[0].bodies[1].joint.damping, body 2, line 5): give 0 "
-     "or numbers above it"},
+     "or positive numbers"},
     {"free_in_chain", R"y(chains:
   - base: fixed
     bodies:
@@ -235,9 +234,8 @@ Refusal const joints_cases[] = {
     {"torque_of_free",
      "chains: [{base: free, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: free, torque: "
      "1}}]}]",
-     "key `torque` means nothing for a free joint (s.yaml: chains[0].bodies[0].joint.torque, body "
-     "1, line 1): leave it out or correct "
-     "`type`"},
+     "key `torque` does not apply to a free joint (s.yaml: chains[0].bodies[0].joint.torque, body "
+     "1, line 1): leave it out or correct `type`"},
     {"free_quaternion",
      "chains: [{base: free, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: free, q: "
      "{quaternion: [2, 0, 0, 0]}}}]}]",

@@ -41,34 +41,35 @@ BadJoint const joints[] = {
      "the two axes are parallel", ".axes",
      "give two directions, best at right angles, or use a revolute joint"},
     {"axis_of_universal", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], axis: [1, 0, 0]}",
-     "key `axis` means nothing for a universal joint", ".axis", "leave it out or correct `type`"},
+     "key `axis` does not apply to a universal joint", ".axis", "leave it out or correct `type`"},
     {"one_angle", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], q: 1}", "`1` is not a list",
      ".q", "give 2 numbers in brackets"},
     {"three_rests", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], rest: [1, 2, 3]}",
      "the list has 3 entries, not 2", ".rest", "give 2 numbers in brackets"},
     {"negative_stiffness", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], stiffness: [1, -1]}",
-     "stiffness -1 is negative", ".stiffness", "give 0 or numbers above it"},
+     "stiffness -1 is negative", ".stiffness", "give 0 or positive numbers"},
     {"axes_of_revolute", "{type: revolute, axes: [[0, 0, 1], [1, 0, 0]]}",
-     "key `axes` means nothing for a revolute joint", ".axes", "leave it out or correct `type`"},
-    {"q_of_weld", "{type: weld, q: 0}", "key `q` means nothing for a weld joint", ".q",
+     "key `axes` does not apply to a revolute joint", ".axes", "leave it out or correct `type`"},
+    {"q_of_weld", "{type: weld, q: 0}", "key `q` does not apply to a weld joint", ".q",
      "leave it out or correct `type`"},
-    {"torque_of_weld", "{type: weld, torque: 1}", "key `torque` means nothing for a weld joint",
+    {"torque_of_weld", "{type: weld, torque: 1}", "key `torque` does not apply to a weld joint",
      ".torque", "leave it out or correct `type`"},
     {"no_axis", "{type: prismatic}", "key `axis` is missing", "", "add `axis: [0, 0, 1]`"},
     {"negative_damping", "{type: prismatic, axis: [1, 0, 0], damping: -2}",
-     "damping -2 is negative", ".damping", "give 0 or a number above it"},
+     "damping -2 is negative", ".damping", "give 0 or a positive number"},
     {"no_pitch", "{type: helical, axis: [1, 0, 0]}", "key `pitch` is missing", "",
      "add `pitch: 0.1`"},
     {"zero_pitch", "{type: helical, axis: [1, 0, 0], pitch: 0}", "a helical joint without pitch",
-     ".pitch", "give its shift a radian, or use a revolute joint"},
+     ".pitch", "give its shift per radian, or use a revolute joint"},
     {"pitch_of_prismatic", "{type: prismatic, axis: [1, 0, 0], pitch: 1}",
-     "key `pitch` means nothing for a prismatic joint", ".pitch", "leave it out or correct `type`"},
+     "key `pitch` does not apply to a prismatic joint", ".pitch", "leave it out or correct `type`"},
     {"not_finite", "{type: helical, axis: [1, 0, 0], pitch: .nan}", "`.nan` is not finite",
      ".pitch", "give a finite decimal number such as 0.38"},
     {"motion_text", "{type: revolute, axis: [0, 0, 1], motion: sin(t)}", "`sin(t)` is not a map",
      ".motion", "give a map with keys among `offset`, `rate`, `amplitude`, `frequency`, `phase`"},
-    {"empty_motion", "{type: revolute, axis: [0, 0, 1], motion: {}}", "the motion says nothing",
-     ".motion", "add one of `offset`, `rate`, `amplitude`, `frequency`, `phase`, or use a weld"},
+    {"empty_motion", "{type: revolute, axis: [0, 0, 1], motion: {}}",
+     "the motion has no parameters", ".motion",
+     "add one of `offset`, `rate`, `amplitude`, `frequency`, `phase`, or use a weld"},
     {"unknown_in_motion", "{type: revolute, axis: [0, 0, 1], motion: {ampltude: 1}}",
      "unknown key `ampltude`", ".motion.ampltude", "did you mean `amplitude`?"},
     {"motion_and_q", "{type: revolute, axis: [0, 0, 1], motion: {rate: 1}, q: 1}",
@@ -80,9 +81,9 @@ BadJoint const joints[] = {
      "key `damping` of a joint whose `motion` is prescribed", ".damping", "keep one of them"},
     {"one_motion_of_universal",
      "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], motion: {rate: 1}}",
-     "a map is not two motions", ".motion", "give a list of two maps, one an axis"},
+     "a map is not two motions", ".motion", "give a list of two maps, one per axis"},
     {"motion_of_spherical", "{type: spherical, motion: {rate: 1}}",
-     "key `motion` means nothing for a spherical joint", ".motion",
+     "key `motion` does not apply to a spherical joint", ".motion",
      "leave it out or correct `type`"},
 };
 INSTANTIATE_TEST_SUITE_P(Joints, BadJoints, testing::ValuesIn(joints),
@@ -92,15 +93,15 @@ INSTANTIATE_TEST_SUITE_P(Joints, BadJoints, testing::ValuesIn(joints),
 
 TEST(BadPlanar, names_the_body) {
     EXPECT_EQ(refusal_of(arm("{type: planar, axis: [0, 0.1, 1]}")),
-              "the chain has planar joints, but the revolute joint 2 is not parallel to those "
-              "before (s.yaml: chains[0].bodies[1], body 2, line "
-              "1): correct `axis` or `rotation`, or write `type: revolute`");
+              "the chain has planar joints, but the revolute joint 2 is not parallel to the "
+              "previous ones (s.yaml: chains[0].bodies[1], body 2, line 1): correct `axis` or "
+              "`rotation`, or write `type: revolute`");
     EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: "
                          "{type: spherical}}, {mass: 1, inertia: [1, 1, "
                          "1], joint: {type: planar, axis: [0, 0, 1]}}]}]"),
-              "the chain has planar joints, but the spherical joint 1 is not parallel to those "
-              "before (s.yaml: chains[0].bodies[0], body 1, "
-              "line 1): correct `axis` or `rotation`, or write `type: revolute`");
+              "the chain has planar joints, but the spherical joint 1 is not parallel to the "
+              "previous ones (s.yaml: chains[0].bodies[0], body 1, line 1): correct `axis` or "
+              "`rotation`, or write `type: revolute`");
 }
 
 TEST(BadTips, of_bodies) {
@@ -111,7 +112,7 @@ TEST(BadTips, of_bodies) {
             arm(ball,
                 ", tip: {joint: {type: spherical, translation: [1, 0, 0], anchor: [2, 0, 1e-3]}}")),
         "the tip's joint is open at the start: its origin is at [2, 0, 0], 0.001 from the anchor" +
-            at + ", line 1): bring the chain or the anchor within 0.0002, or leave `anchor` out");
+            at + ", line 1): move the chain or the anchor to within 0.0002, or leave `anchor` out");
     EXPECT_EQ(
         refusal_of(arm(ball, ", tip: {joint: {type: free}}")),
         "a free joint at the tip restricts nothing" + at + ".type, line 1): write `tip: free`");
@@ -119,7 +120,7 @@ TEST(BadTips, of_bodies) {
               "a link at the tip of a chain of other joints" + at +
                   ", line 1): use another type, such as spherical");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: weld, q: 1}}")),
-              "key `q` means nothing for a weld joint" + at +
+              "key `q` does not apply to a weld joint" + at +
                   ".q, line 1): leave it out or correct `type`");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: revolute}}")),
               "key `axis` is missing" + at + ", line 1): add `axis: [0, 0, 1]`");
@@ -134,13 +135,13 @@ TEST(BadTips, of_bodies) {
     EXPECT_EQ(
         refusal_of(arm(ball, ", tip: fixd")),
         "`fixd` is not a value of `tip` (s.yaml: chains[0].tip, line 1): did you mean `fixed`?");
-    EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: "
-                         "{type: spherical}}, {mass: 1, inertia: [1, 1, "
-                         "1], joint: {type: spherical, translation: [1, 0, 0]}}], tip: {joint: "
-                         "{type: spherical, translation: [1, 0, 0]}}}]"),
-              "the bridge from ground to ground is straight: nothing tells the forces in its "
-              "joints apart" +
-                  at + ", line 1): start from a bent chain");
+    EXPECT_EQ(
+        refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: "
+                   "{type: spherical}}, {mass: 1, inertia: [1, 1, "
+                   "1], joint: {type: spherical, translation: [1, 0, 0]}}], tip: {joint: "
+                   "{type: spherical, translation: [1, 0, 0]}}}]"),
+        "the bridge from ground to ground is straight: the forces in its joints are indeterminate" +
+            at + ", line 1): start from a bent chain");
 }
 
 TEST(BadTips, of_rings) {
@@ -161,8 +162,8 @@ TEST(BadTips, of_rings) {
               "the ring is open at the start: the first body is 0.01 and 0 rad from where the last "
               "body's joint holds it" +
                   at +
-                  ".ring, line 1): bring the bodies within 0.0003 and 0.0001 rad of it, or correct "
-                  "`translation` and `rotation`");
+                  ".ring, line 1): move the bodies to within 0.0003 and 0.0001 rad of it, or "
+                  "correct `translation` and `rotation`");
     std::string const turned =
         refusal_of(triangle(free,
                             "{ring: {type: weld, translation: [1, 0, 0], rotation: [[1, 0, 0], [0, "
@@ -176,13 +177,13 @@ TEST(BadTips, of_rings) {
                   "in the last body`");
     EXPECT_EQ(refusal_of(triangle(
                   free, "{ring: {type: spherical, translation: [1, 0, 0], anchor: [0, 0, 0]}}")),
-              "key `anchor` means nothing for the joint that closes a ring" + at +
-                  ".ring.anchor, line 1): leave it out: the bodies say it");
+              "key `anchor` does not apply to the joint that closes a ring" + at +
+                  ".ring.anchor, line 1): leave it out: the bodies define it");
     EXPECT_EQ(refusal_of(triangle(
                   free, "{ring: {type: spherical, translation: [1, 0, 0]}, joint: {type: weld}}")),
-              "key `ring` beside `joint`" + at + ".ring, line 1): keep one of them");
+              "both `ring` and `joint`" + at + ".ring, line 1): keep one of them");
     EXPECT_EQ(refusal_of(triangle(free, "ring")),
-              "`tip: ring` says nothing of the joint between the last body and the first" + at +
+              "`tip: ring` does not define the joint between the last body and the first" + at +
                   ", line 1): write `tip: {ring: {type: spherical, translation: [x, y, z]}}`");
     EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: "
                          "{type: spherical}}, {mass: 1, inertia: [1, 1, 1], "
@@ -193,7 +194,7 @@ TEST(BadTips, of_rings) {
     EXPECT_EQ(refusal_of("chains: [{base: free, bodies: [{mass: 1, inertia: [1, 1, 1], joint: "
                          "{type: free}}], tip: {ring: {type: spherical, "
                          "translation: [1, 0, 0]}}}]"),
-              "1 bodies do not make a ring" + at + ".ring, line 1): give it 2 or more");
+              "1 bodies do not form a ring" + at + ".ring, line 1): give it 2 or more");
 }
 
 TEST(BadTips, of_links) {
@@ -212,7 +213,7 @@ TEST(BadTips, of_links) {
     EXPECT_EQ(refusal_of(free + "{joint: {type: link}}}]"),
               "key `anchor` is missing" + at + ", line 1): add `anchor: [0, 0, 1]`");
     EXPECT_EQ(refusal_of(free + "{joint: {type: link, anchor: [2, 0, 0]}}}]"),
-              "the tip's anchor stands on the last body: their link has no direction" + at +
+              "the tip's anchor coincides with the last body: their link has no direction" + at +
                   ", line 1): move one of them");
     EXPECT_EQ(refusal_of(free + "{joint: {type: link, anchor: [4, 0, 0], length: 1}}}]"),
               "the tip's link of length 1 cannot reach its anchor: they are 2 apart at the start" +
@@ -223,13 +224,13 @@ TEST(BadTips, of_links) {
                   at + ", line 1): leave `length` out, or move the anchor or the chain");
     EXPECT_EQ(
         refusal_of(free + "{joint: {type: link, anchor: [4, 0, 0], translation: [0, 0, 0]}}}]"),
-        "key `translation` means nothing for a point bead" + at +
+        "key `translation` does not apply to a point bead" + at +
             ".translation, line 1): leave it out");
     std::string const fixed = std::regex_replace(chain, std::regex("BASE"), "base: fixed, ");
-    EXPECT_EQ(refusal_of(fixed + "{joint: {type: link, anchor: [4, 0, 0]}}}]"),
-              "the bridge from ground to ground is straight: nothing tells the forces in its "
-              "joints apart" +
-                  at + ", line 1): start from a bent chain");
+    EXPECT_EQ(
+        refusal_of(fixed + "{joint: {type: link, anchor: [4, 0, 0]}}}]"),
+        "the bridge from ground to ground is straight: the forces in its joints are indeterminate" +
+            at + ", line 1): start from a bent chain");
     EXPECT_EQ(refusal_of(fixed + "{joint: {type: link, anchor: [2, 1, 0]}}}]"), "accepted");
 }
 
@@ -256,10 +257,10 @@ TEST(BadIntegrators, name_the_joint_and_the_remedy) {
     EXPECT_EQ(refusal("{type: spherical}}]", ", tip: fixed", "rattle"),
               moves + "weld joint (its tip)" + at + both);
     EXPECT_EQ(refusal("{type: spherical}}]", "", "g-baoab", "\nforces: {drag: {linear: 1}}"),
-              "drag under integrator g-baoab (s.yaml: forces.drag, line 3): " + both +
+              "drag with integrator g-baoab (s.yaml: forces.drag, line 3): " + both +
                   ", or leave it out (g-baoab has `friction`)");
     EXPECT_EQ(refusal("{type: spherical}, drag: {angular: 1}}]", "", "rattle"),
-              "drag under integrator rattle (s.yaml: chains[0], body 2, line 1): " + both +
+              "drag with integrator rattle (s.yaml: chains[0], body 2, line 1): " + both +
                   ", or leave it out (g-baoab has `friction`)");
     for (char const* const good : {"rk4", "velocity-verlet"}) {
         EXPECT_EQ(refusal("{type: weld}, drag: {angular: 1}}]", "", good), "accepted");
@@ -283,13 +284,13 @@ TEST(BadDrag, values_and_links) {
               "`linear`, `angular`");
     EXPECT_EQ(
         refusal_of(chain + "forces: {drag: {linear: -1}}"),
-        "linear -1 is negative (s.yaml: forces.drag.linear, line 2): give 0 or a number above it");
+        "linear -1 is negative (s.yaml: forces.drag.linear, line 2): give 0 or a positive number");
     EXPECT_EQ(refusal_of(chain + "forces: {drag: {linear: 1}}"),
               "drag on chain `a`, which has links (s.yaml: forces.drag, line 2): leave it out: "
               "g-baoab has `friction`");
     EXPECT_EQ(refusal_of(arm("{type: weld}, drag: {angular: -1}")),
               "angular -1 is negative (s.yaml: chains[0].bodies[1].drag.angular, body 2, line 1): "
-              "give 0 or a number above it");
+              "give 0 or a positive number");
 }
 
 TEST(BadLinked, every_refusal) {
@@ -304,10 +305,10 @@ TEST(BadLinked, every_refusal) {
                   ".joint.length, body 2, line 1): correct the positions, or leave "
                   "`length` out");
     EXPECT_EQ(refusal(rigid + "joint: {type: link}, wrench: {force: [1, 0, 0]}"),
-              "key `wrench` means nothing in a chain of links" + at +
+              "key `wrench` does not apply to a chain of links" + at +
                   ".wrench, body 2, line 1): leave it out");
     EXPECT_EQ(refusal(rigid + "joint: {type: link}, residue: ALA"),
-              "key `residue` means nothing for a rigid body" + at +
+              "key `residue` does not apply to a rigid body" + at +
                   ".residue, body 2, line 1): give it `beads: [{residue: ALA, position: "
                   "[0, 0, 0]}]`");
     EXPECT_EQ(refusal(rigid + "joint: {type: link, translation: [1, 0, 0]}"),
@@ -318,7 +319,7 @@ TEST(BadLinked, every_refusal) {
                   ", body 2, line 1): move one of its bodies");
     EXPECT_EQ(refusal("mass: 1, position: [1, 0, 0], omega: [1, 0, 0], joint: {type: link}",
                       "mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]"),
-              "key `omega` means nothing for a point bead on a link" + at +
+              "key `omega` does not apply to a point bead on a link" + at +
                   ".omega, body 2, line 1): leave it out or give `inertia`");
     EXPECT_EQ(refusal(rigid + "joint: {type: link}",
                       "mass: 1, position: [0, 0, 0], joint: {type: link, length: 1}"),
@@ -364,18 +365,18 @@ TEST(BadGenerators, distributions_and_shapes) {
     EXPECT_EQ(of_mass("{normal: [-1, 1]}"),
               "a normal distribution with mean -1 and standard deviation 1" + at +
                   ".normal, line 1): give a mean above 0 and a standard deviation of 0 or more: "
-                  "what is drawn is redrawn until it is above 0");
-    EXPECT_EQ(of_mass("{choice: []}"), "there is nothing to choose from" + at +
-                                           ".choice, line 1): give at least one number");
+                  "values are redrawn until they are above 0");
+    EXPECT_EQ(of_mass("{choice: []}"),
+              "the list of choices is empty" + at + ".choice, line 1): give at least one number");
     EXPECT_EQ(of_mass("{choice: [1, 0]}"),
               "choice 0 is not positive" + at + ".choice[1], line 1): give a number above 0");
     EXPECT_EQ(refusal("random: {bodies: 3, joint: weld, rigid: 0.5}"),
               "a fraction of rigid bodies in a chain that has no beads (s.yaml: "
               "chains[0].generator.random.rigid, line 1): leave it out or write "
               "`joint: link`");
-    EXPECT_EQ(refusal("random: {bodies: 3, joint: link, rigid: 1.5}"),
-              "the fraction 1.5 is no fraction (s.yaml: chains[0].generator.random.rigid, line 1): "
-              "give 0 to 1");
+    EXPECT_EQ(
+        refusal("random: {bodies: 3, joint: link, rigid: 1.5}"),
+        "1.5 is not a fraction (s.yaml: chains[0].generator.random.rigid, line 1): give 0 to 1");
     EXPECT_EQ(refusal("dill: {bodies: 3, ratio: 2}"),
               "ratio 2 is above 1 (s.yaml: chains[0].generator.dill.ratio, line 1): give a number "
               "above 0, at most 1");

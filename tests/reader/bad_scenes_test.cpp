@@ -7,9 +7,8 @@ namespace {
 
 Refusal const beads_cases[] = {
     {"unknown_letter", "chains: [{sequence: GAXS, model: calvados2}]",
-     "`X` at position 3 of the sequence is no residue of calvados2 (s.yaml: chains[0].sequence, "
-     "line 1): use the one-letter codes "
-     "ARNDCQEGHILKMFPSTWYV"},
+     "`X` at position 3 of the sequence is not a residue of calvados2 (s.yaml: chains[0].sequence, "
+     "line 1): use the one-letter codes ARNDCQEGHILKMFPSTWYV"},
     {"no_model", "chains: [{sequence: GAS}]",
      "key `model` is missing (s.yaml: chains[0], line 1): add `model: calvados2`"},
     {"unknown_model", "chains: [{sequence: GAS, model: calvados3}]",
@@ -42,18 +41,17 @@ chains: [{sequence: GGG, model: calvados2}])y",
      "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, position: "
      "[0.4, 0, 0], joint: {type: link}}, "
      "{mass: 1, position: [0.4, 0, 0], joint: {type: link}}]}]",
-     "bead 3 stands on bead 2: their link has no direction (s.yaml: chains[0].bodies, bead 3, line "
-     "1): move one of them"},
+     "bead 3 coincides with bead  2: their link has no direction (s.yaml: chains[0].bodies, bead "
+     "3, line 1): move one of them"},
     {"on_the_anchor",
      "chains: [{base: fixed, anchor: [1, 0, 0], bodies: [{mass: 1, position: [1, 0, 0], joint: "
      "{type: link}}]}]",
-     "bead 1 stands on the anchor: their link has no direction (s.yaml: chains[0].bodies, bead 1, "
-     "line 1): move one of them"},
+     "bead 1 coincides with the anchor: their link has no direction (s.yaml: chains[0].bodies, "
+     "bead 1, line 1): move one of them"},
     {"bead_with_com",
      "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}, com: [1, 1, 1]}]}]",
-     "key `com` means nothing for a point bead on a link (s.yaml: chains[0].bodies[0].com, body 1, "
-     "line 1): leave it out or change "
-     "`joint`"},
+     "key `com` does not apply to a point bead on a link (s.yaml: chains[0].bodies[0].com, body 1, "
+     "line 1): leave it out or change `joint`"},
     {"bead_without_position", "chains: [{bodies: [{mass: 1, joint: {type: link}}]}]",
      "key `position` is missing (s.yaml: chains[0].bodies[0], body 1, line 1): add `position: [0, "
      "0, 0]`"},
@@ -123,21 +121,20 @@ chains: [{sequence: GGG, model: calvados2, base: fixed, count: 1000, conformatio
      "packed more densely"},
     {"packing_beyond_any", R"y(box: {periodic: [10, 10, 10]}
 chains: [{sequence: GGGGGGGGGG, model: calvados2, count: 1000}])y",
-     "10000 beads that keep 0.56 nm apart would fill 0.805 of the box 10 x 10 x 10, random "
-     "packings of spheres fill 0.64 (s.yaml: "
-     "chains[0], line 2): make each edge 1.08 times as long or longer, or lower `count`"},
+     "10000 beads that stay 0.56 nm apart would fill 0.805 of the box 10 x 10 x 10, random "
+     "packings of spheres fill 0.64 (s.yaml: chains[0], line 2): make each edge 1.08 times as long "
+     "or longer, or lower `count`"},
     {"packing_too_narrow", R"y(box: {periodic: [1.3, 20, 20]}
 chains: [{sequence: GGGGGGGGGG, model: calvados2, count: 10}])y",
-     "the box 1.3 x 20 x 20 is too narrow to pack chains whose beads keep 0.56 nm apart (s.yaml: "
-     "chains[0], line 2): give edges of 1.4 nm "
-     "or more"},
+     "the box 1.3 x 20 x 20 is too narrow to pack chains whose beads stay 0.56 nm apart (s.yaml: "
+     "chains[0], line 2): give edges of 1.4 nm or more"},
 };
 INSTANTIATE_TEST_SUITE_P(Beads, Refused, testing::ValuesIn(beads_cases), name_of_case);
 
 Refusal const sections_cases[] = {
     {"box_text", R"y(box: large
 chains: [{sequence: GGG, model: calvados2}])y",
-     "`large` is no box (s.yaml: box, line 1): give `{periodic: [60, 60, 60]}` or `none`"},
+     "`large` is not a box (s.yaml: box, line 1): give `{periodic: [60, 60, 60]}` or `none`"},
     {"box_edge", R"y(box: {periodic: [1, 0, 1]}
 chains: [{sequence: GGG, model: calvados2}])y",
      "box edge 0 is not positive (s.yaml: box.periodic, line 1): give three edges above 0"},
@@ -162,11 +159,11 @@ dynamics: {integrator: rattle, step: 1, steps: -5})y",
      "steps -5 is below 0 (s.yaml: dynamics.steps, line 2): give 0 or more"},
     {"negative_temperature", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: g-baoab, step: 1, temperature: -1})y",
-     "temperature -1 is negative (s.yaml: dynamics.temperature, line 2): give 0 or a number above "
-     "it"},
+     "temperature -1 is negative (s.yaml: dynamics.temperature, line 2): give 0 or a positive "
+     "number"},
     {"negative_friction", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: g-baoab, step: 1, friction: -1})y",
-     "friction -1 is negative (s.yaml: dynamics.friction, line 2): give 0 or a number above it"},
+     "friction -1 is negative (s.yaml: dynamics.friction, line 2): give 0 or a positive number"},
     {"seed_text", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: g-baoab, step: 1, seed: 1.5})y",
      "`1.5` is not a seed (s.yaml: dynamics.seed, line 2): give a whole number from 0 to "
@@ -198,24 +195,25 @@ solver: {refine: -1})y",
      "refine -1 is below 0 (s.yaml: solver.refine, line 2): give 0 or more"},
     {"gpu_levels", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {gpu_levels: most})y",
-     "`most` is no number of levels (s.yaml: solver.gpu_levels, line 2): give `auto`, `all`, a "
+     "`most` is not a number of levels (s.yaml: solver.gpu_levels, line 2): give `auto`, `all`, a "
      "number, or two as `UP,DOWN`"},
     {"every", R"y(chains: [{sequence: GGG, model: calvados2}]
 output: {every: 0})y",
      "every 0 is below 1 (s.yaml: output.every, line 2): give 1 or more"},
     {"observable", R"y(chains: [{sequence: GGG, model: calvados2}]
 output: {observables: [energi]})y",
-     "`energi` is no observable (s.yaml: output.observables[0], line 2): did you mean `energy`?"},
+     "`energi` is not an observable (s.yaml: output.observables[0], line 2): did you mean "
+     "`energy`?"},
     {"temperature_of_nothing",
      R"y(chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], com: [1, 0, 0], joint: {type: weld}}]}]
 output: {observables: [energy, temperature]})y",
-     "no temperature where nothing is free to move (s.yaml: output.observables[1], line 2): leave "
-     "it out"},
+     "the temperature is undefined because nothing can move (s.yaml: output.observables[1], line "
+     "2): leave it out"},
     {"temperature_of_the_driven",
      R"y(chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], com: [1, 0, 0], joint: {type: revolute, axis: [0, 0, 1], motion: {rate: 1}}}]}]
 output: {observables: [temperature]})y",
-     "no temperature while a joint of chain `chain-1` is driven (s.yaml: output.observables[0], "
-     "line 2): leave it out"},
+     "the temperature is undefined because a joint of chain `chain-1` is driven (s.yaml: "
+     "output.observables[0], line 2): leave it out"},
     {"observable_twice", R"y(chains: [{sequence: GGG, model: calvados2}]
 output: {observables: [energy, energy]})y",
      "`energy` is listed twice (s.yaml: output.observables[1], line 2): list it once"},
@@ -238,7 +236,7 @@ forces: {openmm: {builder: martini}})y",
      "`calvados2`"},
     {"map_of_builder", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, map: {a: [0, 2]}}})y",
-     "key `map` means nothing for a builder (s.yaml: forces.openmm.map, line 2): leave it out or "
+     "key `map` does not apply to a builder (s.yaml: forces.openmm.map, line 2): leave it out or "
      "give `system`"},
     {"openmm_path", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, path: remote}})y",
@@ -251,8 +249,8 @@ forces: {openmm: {builder: calvados2, layers: two}})y",
     {"openmm_in_si", R"y(units: si
 chains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]
 forces: {openmm: {builder: calvados2}})y",
-     "OpenMM's forces in SI units (s.yaml: forces.openmm, line 3): write `units: md`: OpenMM knows "
-     "nm, ps, amu and kJ/mol alone"},
+     "OpenMM's forces in SI units (s.yaml: forces.openmm, line 3): write `units: md`: OpenMM uses "
+     "nm, ps, amu and kJ/mol only"},
     {"frozen_force_field", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rattle, step: 1, temperature: 0}
 forces: {openmm: {builder: calvados2}})y",
@@ -260,36 +258,35 @@ forces: {openmm: {builder: calvados2}})y",
      "`temperature: 300` here"},
     {"force_group", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, force_groups: [32]}})y",
-     "key `force_groups` means nothing for a builder (s.yaml: forces.openmm.force_groups, line 2): "
+     "key `force_groups` does not apply to a builder (s.yaml: forces.openmm.force_groups, line 2): "
      "leave it out or give `system`"},
     {"tolerance_without_an_estimate", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: rk4, step: 1, tolerance: 1e-6})y",
-     "integrator rk4 has no error estimate: its steps are as long as `step` says (s.yaml: "
-     "dynamics.tolerance, line 2): leave it out, or "
-     "use "
-     "`integrator: dormand-prince` (joint coordinates)"},
+     "integrator rk4 has no error estimate: its steps have the length `step` (s.yaml: "
+     "dynamics.tolerance, line 2): leave it out, or use `integrator: dormand-prince` (joint "
+     "coordinates)"},
     {"tolerance_under_rattle", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rattle, step: 1, tolerance: 1e-6})y",
-     "integrator rattle has no error estimate: its steps are as long as `step` says (s.yaml: "
-     "dynamics.tolerance, line 2): leave it out, or "
-     "use `integrator: dormand-prince` (joint coordinates)"},
+     "integrator rattle has no error estimate: its steps have the length `step` (s.yaml: "
+     "dynamics.tolerance, line 2): leave it out, or use `integrator: dormand-prince` (joint "
+     "coordinates)"},
     {"tolerance_of_noise", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: baoab, step: 1, tolerance: 1e-6})y",
-     "integrator baoab has no error estimate: its steps are as long as `step` says (s.yaml: "
-     "dynamics.tolerance, line 2): leave it out, or "
-     "use `integrator: dormand-prince` (joint coordinates)"},
+     "integrator baoab has no error estimate: its steps have the length `step` (s.yaml: "
+     "dynamics.tolerance, line 2): leave it out, or use `integrator: dormand-prince` (joint "
+     "coordinates)"},
     {"negative_tolerance", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: dormand-prince, step: 1, tolerance: -1e-6})y",
      "tolerance -1e-06 is not positive (s.yaml: dynamics.tolerance, line 2): give a number above "
      "0"},
     {"tolerance_below_rounding", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: dormand-prince, step: 1, tolerance: 1e-14})y",
-     "tolerance 1e-14 is below what doubles resolve (s.yaml: dynamics.tolerance, line 2): give "
-     "1e-13 or more"},
+     "tolerance 1e-14 is below the resolution of double precision (s.yaml: dynamics.tolerance, "
+     "line 2): give 1e-13 or more"},
     {"tolerance_above_all", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: dormand-prince, step: 1, tolerance: 1})y",
-     "tolerance 1 bounds nothing (s.yaml: dynamics.tolerance, line 2): give 0.1 or less, such as "
-     "1e-8"},
+     "tolerance 1 is too large to bound the error (s.yaml: dynamics.tolerance, line 2): give 0.1 "
+     "or less, such as 1e-8"},
     {"adaptive_links", R"y(chains: [{sequence: GGG, model: calvados2, name: asyn}]
 dynamics: {integrator: dormand-prince, step: 1, tolerance: 1e-6})y",
      "integrator dormand-prince works in joint coordinates, chain `asyn` has links (s.yaml: "
@@ -320,9 +317,8 @@ dynamics: {integrator: rk4, step: 1})y",
     {"fixman_of_bodies",
      R"y(chains: [{generator: {random: {bodies: 9, joint: spherical}}, name: rods}]
 dynamics: {integrator: rattle, step: 1, fixman: true})y",
-     "the Fixman correction of chain `rods`, which is not of point beads alone (s.yaml: "
-     "dynamics.fixman, line 2): leave it out: links "
-     "between point beads alone have it"},
+     "the Fixman correction of chain `rods`, which does not consist of point beads only (s.yaml: "
+     "dynamics.fixman, line 2): leave it out: only links between point beads have it"},
     {"fixman_without_a_temperature", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rattle, step: 1, temperature: 0, fixman: true})y",
      "the Fixman correction without a temperature above 0 (s.yaml: dynamics.fixman, line 2): add "
@@ -333,43 +329,37 @@ dynamics: {integrator: rattle, step: 1, temperature: 0, fixman: true})y",
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, damping: 1}}
 dynamics: {integrator: rattle, step: 1})y",
-     "joint damping under integrator rattle (s.yaml: chains[0], body 2, line 2): use `integrator: "
-     "rk4`, `velocity-verlet` or "
-     "`dormand-prince`, or set "
-     "`damping: 0` (g-baoab has "
-     "`friction`)"},
+     "joint damping with integrator rattle (s.yaml: chains[0], body 2, line 2): use `integrator: "
+     "rk4`, `velocity-verlet` or `dormand-prince`, or set `damping: 0` (g-baoab has `friction`)"},
     {"spring_along_one_coordinate", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: [1, 0, 1]}}
 dynamics: {integrator: staggered, step: 1})y",
-     "a joint with springs or dampers along some of its coordinates alone under integrator "
-     "staggered (s.yaml: chains[0], body 1, line 2): "
-     "give it some stiffness or damping along each, or none"},
+     "a joint with springs or dampers along only some of its coordinates with integrator staggered "
+     "(s.yaml: chains[0], body 1, line 2): give it some stiffness or damping along each, or none"},
     {"springs_far_apart", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: [1, 1e11, 1]}}
 dynamics: {integrator: staggered, step: 1})y",
-     "a joint 1e+11 times as stiff along one coordinate as along another under integrator "
-     "staggered (s.yaml: chains[0], body 1, line 2): "
-     "stay within 1e+10"},
+     "a joint 1e+11 times as stiff along one coordinate as along another with integrator staggered "
+     "(s.yaml: chains[0], body 1, line 2): keep this ratio within 1e+10"},
     {"damping_under_baoab", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, damping: 1}}
 dynamics: {integrator: implicit-baoab, step: 1})y",
-     "joint damping under integrator implicit-baoab (s.yaml: chains[0], body 1, line 2): use "
-     "`integrator: rk4`, `velocity-verlet` or "
-     "`dormand-prince`, or "
-     "set `damping: 0` (implicit-baoab has `friction`)"},
+     "joint damping with integrator implicit-baoab (s.yaml: chains[0], body 1, line 2): use "
+     "`integrator: rk4`, `velocity-verlet` or `dormand-prince`, or set `damping: 0` "
+     "(implicit-baoab has `friction`)"},
     {"joint_forces_of_implicit_joints", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: 1}}
 dynamics: {integrator: staggered, step: 1}
 output: {joint_forces: true})y",
-     "not in this version: joint forces under integrator staggered (s.yaml: output.joint_forces, "
+     "not in this version: joint forces with integrator staggered (s.yaml: output.joint_forces, "
      "line 6): leave it out"},
     {"thermal_under_staggered", R"y(chains:
   - base: fixed
@@ -377,25 +367,22 @@ output: {joint_forces: true})y",
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: 1}}
 dynamics: {integrator: staggered, step: 1, temperature: 300})y",
-     "thermal velocities under integrator staggered, whose stiff joints turn more slowly (s.yaml: "
-     "chains[0].velocities, line 3): write "
-     "`velocities: zero`, or give each joint its `qd`"},
+     "thermal velocities with integrator staggered, whose stiff joints rotate more slowly (s.yaml: "
+     "chains[0].velocities, line 3): write `velocities: zero`, or give each joint its `qd`"},
     {"temperature_of_implicit_joints", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: 1}}
 dynamics: {integrator: staggered, step: 1}
 output: {observables: [temperature]})y",
-     "no temperature under integrator staggered, where stiff joints turn more slowly (s.yaml: "
-     "output.observables[0], line 6): leave it "
-     "out"},
+     "no temperature with integrator staggered, where stiff joints turn more slowly (s.yaml: "
+     "output.observables[0], line 6): leave it out"},
     {"elastic_rod_of_soft_joints",
      "chains: [{generator: {elastic_rod: {bodies: 9, mass: 1, length: 3.4, radius: 1, bend: 0.1, "
      "twist: 100}}}]\n"
      "dynamics: {integrator: implicit-g-baoab, step: 1, temperature: 300}",
      "a persistence length of 0.1 for rods of 3.4 (s.yaml: chains[0].generator.elastic_rod.bend, "
-     "line 1): take rods of at most ten times "
-     "that, or a freely jointed chain"},
+     "line 1): use rods of at most ten times that length, or a freely jointed chain"},
     {"thermal_without_dynamics", "chains: [{sequence: GGG, model: calvados2, velocities: thermal}]",
      "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): add "
      "`dynamics: {temperature: 300}`, or "

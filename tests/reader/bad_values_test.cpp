@@ -46,7 +46,7 @@ title: b
      "a key is not plain text (s.yaml: line 1): write `name: value`, and close every bracket"},
     {"alias_to_itself", R"y(title: &a [*a]
 )y",
-     "an alias refers to the value it stands in (s.yaml: line 1): write the value out"},
+     "an alias refers to the value that contains it (s.yaml: line 1): write the value out"},
     {"control_characters", R"y("ti\ntle": a
 )y",
      "unknown key `ti tle` (s.yaml: ti tle, line 1): did you mean `title`?"},
@@ -109,7 +109,7 @@ forces: {openmm: {bilder: calvados2}})y",
      "`conformation`, `rigid`, `charge_termini`, "
      "`velocities`"},
     {"nothing_in_chain", "chains: [{name: a}]",
-     "the chain says nothing of its bodies (s.yaml: chains[0], line 1): add one of `sequence`, "
+     "the chain does not define its bodies (s.yaml: chains[0], line 1): add one of `sequence`, "
      "`fasta`, `pdb`, `bodies`, `generator`"},
     {"two_sources",
      "chains: [{sequence: GGG, model: calvados2, generator: {pendulum: {links: 2}}}]",
@@ -119,7 +119,7 @@ forces: {openmm: {bilder: calvados2}})y",
      "chains: [{name: a, sequence: G, model: calvados2}, {name: a, sequence: G, model: calvados2}]",
      "two chains are named `a` (s.yaml: chains[1], line 1): give each its own `name`"},
     {"key_for_another_source", "chains: [{generator: {pendulum: {links: 3}}, links: model}]",
-     "key `links` means nothing for generator `pendulum` (s.yaml: chains[0].links, line 1): leave "
+     "key `links` does not apply to generator `pendulum` (s.yaml: chains[0].links, line 1): leave "
      "it out"},
     {"unit_system", R"y(units: cgs
 chains: [{sequence: GGG, model: calvados2}])y",

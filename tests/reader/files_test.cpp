@@ -32,7 +32,7 @@ TEST_F(SceneFiles, bad_tables) {
     std::string const where = " (s.yaml: chains[0].positions, line 1): ";
     write("start.csv", "0,0,0\n1,0,0\n");
     EXPECT_EQ(refusal(with_table_), "`start.csv` holds 2 positions, the chain has 3 beads" + where +
-                                        "give one position a bead");
+                                        "give one position per bead");
     write("start.csv", "0,0,0\n1,0\n2,0,0\n");
     EXPECT_EQ(refusal(with_table_),
               "the line has 2 columns, not 3 (start.csv: line 2): give x,y,z");
@@ -47,8 +47,8 @@ TEST_F(SceneFiles, bad_tables) {
               "the line has 4 columns, not 3 (start.csv: line 2): give x,y,z");
     write("start.csv", "0,0,0\n1,0,0\n1,0,0\n");
     EXPECT_EQ(refusal(with_table_),
-              "bead 3 stands on bead 2: their link has no direction (s.yaml: chains[0].positions, "
-              "bead 3, line 1): move one of them");
+              "bead 3 coincides with bead  2: their link has no direction (s.yaml: "
+              "chains[0].positions, bead 3, line 1): move one of them");
     fs::remove(folder_ / "start.csv");
     EXPECT_EQ(refusal(with_table_), "no such file: `start.csv`" + where + "check the path");
 }
@@ -77,7 +77,7 @@ TEST_F(SceneFiles, records_of_a_fasta_file_are_chosen_by_name_or_number) {
               "`a.fasta` holds 4 records: `one`, `sp|P1|TWO_X`, `2`, `one`" + where +
                   "name the chain after one of them, or add `record: NAME` or its number");
     EXPECT_EQ(refusal("chains: [{name: one, fasta: a.fasta, model: calvados2}]"),
-              "2 records bear the name `one` (s.yaml: chains[0].name, line 1): choose one by its "
+              "2 records have the name `one` (s.yaml: chains[0].name, line 1): choose one by its "
               "number: `record: 1`");
     EXPECT_EQ(refusal("chains: [{fasta: a.fasta, model: calvados2, record: 5}]"),
               "`a.fasta` has no record `5`: it holds `one`, `sp|P1|TWO_X`, `2`, `one` (s.yaml: "
@@ -103,23 +103,25 @@ TEST_F(SceneFiles, bad_fasta_files) {
         write("a.fasta", ">one\n" + sequence + "\n");
         EXPECT_EQ(refusal(with_fasta_), what + " (s.yaml: chains[0].fasta, line 1): " + remedy);
     };
-    refused("GXS", "`X` at position 2 of the sequence is no residue of calvados2", codes);
-    refused("GU",
-            "`U` at position 2 of the sequence is no residue of calvados2: selenocysteine, or RNA",
-            "write C for selenocysteine");
+    refused("GXS", "`X` at position 2 of the sequence is not a residue of calvados2", codes);
     refused(
-        "G*S",
-        "`*` at position 2 of the sequence is no residue of calvados2: a stop within the sequence",
-        "end the sequence there");
-    refused("G-S",
-            "`-` at position 2 of the sequence is no residue of calvados2: a gap of an alignment",
-            "give the sequence without gaps");
-    refused("1 GAS", "`1` at position 1 of the sequence is no residue of calvados2: a number",
+        "GU",
+        "`U` at position 2 of the sequence is not a residue of calvados2: selenocysteine, or RNA",
+        "write C for selenocysteine");
+    refused("G*S",
+            "`*` at position 2 of the sequence is not a residue of calvados2: a stop within the "
+            "sequence",
+            "end the sequence there");
+    refused(
+        "G-S",
+        "`-` at position 2 of the sequence is not a residue of calvados2: a gap of an alignment",
+        "give the sequence without gaps");
+    refused("1 GAS", "`1` at position 1 of the sequence is not a residue of calvados2: a number",
             "leave the numbers of positions out");
     write("a.fasta", std::string(">one\0GAS\n", 9));
     EXPECT_EQ(refusal(with_fasta_),
-              "`a.fasta` is no text (s.yaml: chains[0].fasta, line 1): give a FASTA file: `>name`, "
-              "then one-letter codes");
+              "`a.fasta` is not a text file (s.yaml: chains[0].fasta, line 1): give a FASTA file: "
+              "`>name`, then one-letter codes");
 }
 
 TEST_F(SceneFiles, slips_in_sequences_are_noted) {
@@ -197,16 +199,14 @@ TEST_F(SystemFiles, map_of_chains) {
 
 TEST_F(SystemFiles, what_a_system_says_itself) {
     EXPECT_EQ(refusal(scene("ionic_strength: 0.1, topology: topology.pdb")),
-              "key `ionic_strength` means nothing for a finished system (s.yaml: "
-              "forces.openmm.ionic_strength, line 2): leave it out: the "
-              "system says it");
+              "key `ionic_strength` does not apply to a finished system (s.yaml: "
+              "forces.openmm.ionic_strength, line 2): leave it out: the System defines it");
     EXPECT_EQ(refusal(scene("threads: 1")),
-              "nothing tells which particles are which chain (s.yaml: forces.openmm, line 2): add "
-              "`topology: topology.pdb`, or `map: "
-              "{chain: [first, last]}`");
+              "the particles are not assigned to chains (s.yaml: forces.openmm, line 2): add "
+              "`topology: topology.pdb`, or `map: {chain: [first, last]}`");
     EXPECT_EQ(refusal("forces: {openmm: {system: system.xml, map: {a: [0, 2]}}}"),
-              "the scene has no `chains`, the system no topology (s.yaml: forces.openmm, line 1): "
-              "add `topology: topology.pdb`, or `chains`");
+              "the scene has no `chains` and the system has no topology (s.yaml: forces.openmm, "
+              "line 1): add `topology: topology.pdb`, or `chains`");
 }
 
 /// A scene without chains takes them from the System and its topology.

@@ -94,7 +94,7 @@ TEST(Tip, takes_the_nearest_image_of_its_anchor) {
     EXPECT_EQ(scene.chains[0].tip_joint.length, 1);
     EXPECT_EQ((*scene.chains[0].tip_joint.anchor)[0], 10.5);
     ASSERT_EQ(scene.notes.size(), 1U);
-    EXPECT_NE(scene.notes[0].find("the anchor is taken at its nearest image, [10.5, 5, 5]"),
+    EXPECT_NE(scene.notes[0].find("the nearest image of the anchor is used, [10.5, 5, 5]"),
               std::string::npos)
         << scene.notes[0];
 }
@@ -261,26 +261,25 @@ TEST_F(Domains, refusals) {
     EXPECT_EQ(refusal_of(yaml("[3]")), "`3` is not a pair of residues" + place + give);
     EXPECT_EQ(refusal_of(yaml("[[9, 13]]")), "residue 13 of a chain of 12" + place + give);
     EXPECT_EQ(refusal_of(yaml("[[2, 3]]")),
-              "residues 2 to 3 are no rigid body: it needs three that do not stand on one line" +
+              "residues 2 to 3 do not form a rigid body, which needs three residues that do not "
+              "lie on one line" +
                   place + give);
     EXPECT_EQ(refusal_of(yaml("[[2, 5], [5, 9]]")),
               "residues 5 to 9 overlap the domain 2 to 5 (s.yaml: chains[0].rigid[1], line 1): "
-              "give each residue to one domain");
+              "assign each residue to one domain");
     EXPECT_EQ(refusal_of("chains: [{sequence: GGGG, model: calvados2, rigid: [[1, 3]]}]"),
               "rigid domains in a chain without positions (s.yaml: chains[0].rigid, line 1): give "
-              "`pdb` or `positions`: they say what shape "
-              "the domains have");
+              "`pdb` or `positions`: they define the shape of the domains");
     EXPECT_EQ(refusal_of("chains: [{generator: {pendulum: {links: 3}}, rigid: [[1, 3]]}]"),
-              "key `rigid` means nothing for generator `pendulum` (s.yaml: chains[0].rigid, line "
+              "key `rigid` does not apply to generator `pendulum` (s.yaml: chains[0].rigid, line "
               "1): leave it out");
     std::ofstream line("line_test.csv");
     line << "0,0,0\n0.38,0,0\n0.76,0,0\n1.14,0,0\n";
     line.close();
     EXPECT_EQ(refusal_of("chains: [{sequence: GGGG, model: calvados2, positions: line_test.csv, "
                          "rigid: [[1, 3]]}]"),
-              "the beads of residues 1 to 3 stand on one line: a thin rod (s.yaml: "
-              "chains[0].rigid, line 1): take in a residue beside it, or "
-              "leave the domain out");
+              "the beads of residues 1 to 3 lie on one line and form a thin rod (s.yaml: "
+              "chains[0].rigid, line 1): include a residue next to it, or leave the domain out");
     std::filesystem::remove("line_test.csv");
 }
 

@@ -65,24 +65,25 @@ struct Bad {
 };
 Bad const bad[] = {
     {"dynamics.step",
-     "no `key.path=value` (--set dynamics.step): write, e.g., --set dynamics.steps=1000"},
-    {"=3", "no `key.path=value` (--set =3): write, e.g., --set dynamics.steps=1000"},
+     "not of the form `key.path=value` (--set dynamics.step): write, e.g., --set "
+     "dynamics.steps=1000"},
+    {"=3", "not of the form `key.path=value` (--set =3): write, e.g., --set dynamics.steps=1000"},
     {"title=", "the value is empty (--set title=): give one, or `null` to remove the key"},
     {"chains..count=1",
      "a key in the path is empty (--set chains..count=1): write, e.g., chains[0].count"},
     {"chains[x].count=1",
-     "`[x]` is no list index (--set chains[x].count=1): write a whole number from 0 in brackets, "
-     "as in chains[0]"},
+     "`[x]` is not a list index (--set chains[x].count=1): write a whole number from 0 in "
+     "brackets, as in chains[0]"},
     {"chains[0.count=1",
-     "`[0` is no list index (--set chains[0.count=1): write a whole number from 0 in brackets, as "
-     "in chains[0]"},
+     "`[0` is not a list index (--set chains[0.count=1): write a whole number from 0 in brackets, "
+     "as in chains[0]"},
     {"chains[2].count=1",
      "index 2 is beyond the list `chains` of 2 (--set chains[2].count=1): indices are counted from "
      "0"},
     {"chains.count=1",
-     "`chains` is a list, it has no key `count` (--set chains.count=1): correct the path"},
+     "`chains` is a listand has no key `count` (--set chains.count=1): correct the path"},
     {"chains[0].name.x=1",
-     "`name` is `a`, it has no key `x` (--set chains[0].name.x=1): correct the path"},
+     "`name` is `a`and has no key `x` (--set chains[0].name.x=1): correct the path"},
     {"chain[0].count=3", "there is no list `chain` (--set chain[0].count=3): correct the path"},
     {"chains[0].name[0]=1",
      "`name` is not a list (--set chains[0].name[0]=1): leave the index out"},

@@ -36,8 +36,8 @@ TEST_F(SceneFiles, bad_pdb_files) {
             "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where +
                 "keep one chain per file, each with its own entry in `chains`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "XYZ", 'A', 2, 1),
-            "`XYZ 2` is no residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename or "
-            "remove it in the file");
+            "`XYZ 2` is not a residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename "
+            "or remove it in the file");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "SEP", 'A', 2, 1),
             "`SEP 2` has another charge than SER, and calvados2 has no parameters for it (s.yaml: "
             "chains[0].pdb, bead 2, line 1): write SER "
@@ -57,7 +57,7 @@ TEST_F(SceneFiles, bad_pdb_files) {
                 "chain per file");
     refused(" \n", "the file is empty" + own);
     refused("<!DOCTYPE html>\n", "the file holds HTML or XML" + own);
-    refused(std::string("ATOM\0", 5), "the file is no text" + own);
+    refused(std::string("ATOM\0", 5), "the file is not a text file" + own);
     refused("\x1F\x8B", "the file is compressed (a.pdb): unpack it: gunzip");
     refused(">p\nGAS\n", "the file holds sequences (FASTA)" + own + ", or give it as `fasta`");
     for (char const* const head : {"data_x\n", "# made by x\nloop_\n_atom_site.id\n"})
@@ -156,7 +156,8 @@ TEST_F(SceneFiles, rigid_domains_of_a_pdb_file_bear_its_residue_numbers) {
             "give [first, last] with the file's residue numbers, here 10 to 12A, both included");
     EXPECT_EQ(
         refusal(with("[[10, 11]]")),
-        "residues 10 to 11 are no rigid body: it needs three that do not stand on one line" +
+        "residues 10 to 11 do not form a rigid body, which needs three residues that do not lie on "
+        "one line" +
             where +
             "give [first, last] with the file's residue numbers, here 10 to 12A, both included");
     EXPECT_EQ(refusal(with("[[10, 12], [12, 12A]]")).substr(0, 25), "residues 12 to 12A are no");
@@ -260,8 +261,8 @@ TEST_F(SceneFiles, solvent_may_be_numbered_from_one_again) {
 TEST_F(SceneFiles, a_lysine_called_k_is_no_ion) {
     write("a.pdb", atom(1, "CA", "K", 'A', 1, 0) + atom(2, "CA", "GLY", 'A', 2, 3.8));
     EXPECT_EQ(refusal(with_pdb_),
-              "`K 1` is no residue of calvados2 (s.yaml: chains[0].pdb, bead 1, line 1): rename or "
-              "remove it in the file");
+              "`K 1` is not a residue of calvados2 (s.yaml: chains[0].pdb, bead 1, line 1): rename "
+              "or remove it in the file");
 }
 
 TEST_F(SceneFiles, alternate_locations_in_blocks_and_of_two_residues) {

@@ -108,7 +108,7 @@ TEST_P(OpenMmRuns, ARestartOnAnotherPlatformSaysSo) {
     EXPECT_TRUE(same.at("notes").empty()) << same.at("notes");
     ASSERT_EQ(other.at("notes").size(), 1U);
     EXPECT_NE(other["notes"][0].get<std::string>().find(
-                  "made on OpenMM's platform Reference, this run goes on on CPU"),
+                  "made on OpenMM's platform Reference, this run continues on CPU"),
               std::string::npos);
 }
 

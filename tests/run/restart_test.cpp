@@ -198,7 +198,7 @@ TEST_P(Restart, RefusesAnExistingFolder) {
         std::string const newest = folder_ / "parts/" + file;
         std::string const message = message_of([&] { run("parts", 5); });
         EXPECT_NE(message.find("the output folder exists"), std::string::npos) << message;
-        EXPECT_NE(message.find("go on with --restart " + newest), std::string::npos) << message;
+        EXPECT_NE(message.find("continue with --restart " + newest), std::string::npos) << message;
         EXPECT_NE(message.find("--overwrite"), std::string::npos) << message;
         std::filesystem::remove(newest);
     }

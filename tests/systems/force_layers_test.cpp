@@ -85,7 +85,7 @@ TEST_F(Layers, HoldTheBeadsThatActInForcesThatReachFarther) {
     ASSERT_EQ(m.system->getNumForces(), 1);
     EXPECT_EQ(m.system->getForce(0).getForceGroup(), 0);
     EXPECT_EQ(text_of(layer, scene),
-              "force 1 in a Context of its own: 2 of 8 beads act in it, up to 4 nm");
+              "force 1 in a Context of its own: it acts on 2 of 8 beads, up to 4 nm");
 }
 
 TEST_F(Layers, OfParticlesInAnotherOrderThanBeads) {

@@ -92,8 +92,7 @@ TEST_F(Import, Messages) {
     std::string const short_file = scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions));
     EXPECT_EQ(complaint([&] { import_openmm_system(spec(short_file), "scene.yaml"); }),
               "the topology has 2 atoms and the System 7 particles (scene.yaml: "
-              "forces.openmm.topology): give one atom a particle, in the "
-              "System's order");
+              "forces.openmm.topology): give one atom per particle, in the System's order");
     EXPECT_EQ(complaint([&] { import_openmm_system(spec("/nowhere/a.pdb"), "scene.yaml"); }),
               "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB file "
               "that can be read");
