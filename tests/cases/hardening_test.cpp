@@ -268,7 +268,8 @@ TEST(Datasets, ThatClaimMoreThanTheFileHoldsAreRefused) {
     H5Dclose(H5Dcreate2(made, "mass", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT));
     H5Fclose(made);
     write(folder / "s.yaml", "chains: [{base: fixed, bodies: {hdf5: x.h5}}]\n");
-    expect_refused(catena({"check", "s.yaml"}, folder.path()), 2, "which the file does not hold");
+    expect_refused(catena({"check", "s.yaml"}, folder.path()), 2,
+                   "but the file does not contain them all");
 }
 
 TEST(Memory, IsWhatTheControlGroupAllows) {

@@ -124,7 +124,7 @@ TEST(Text, ATitleThatIsNotUtf8IsSaidAndReplaced) {
               "mol\xEF\xBF\xBD"
               "cule");
     EXPECT_TRUE(fs::exists(folder / "m/report.html"));
-    EXPECT_NE(catena({"check", scene}).out.find("bytes that are not UTF-8 stand as U+FFFD"),
+    EXPECT_NE(catena({"check", scene}).out.find("bytes that are not UTF-8 are shown as U+FFFD"),
               std::string::npos);
 }
 
@@ -160,7 +160,7 @@ TEST(Plan, ANetworkOfOneHostIsRefusedBeforeBodiesAreMade) {
                       "--ranks",   "64",
                       "--hosts",   "16",
                       "--network", case_file("plan-one-host/network.json")};
-    expect_refused(catena(words), 2, "it knows no link between hosts");
+    expect_refused(catena(words), 2, "has no link between hosts");
 }
 
 // 1 / (12.5 GB/s) = 8e-11 s a byte.
@@ -232,7 +232,7 @@ TEST(Figures, NoTimeIsBelowZeroAndNothingIsDrawnThatWasNotMeasured) {
                     for (Json const& time : level.at(place)) missing += time.is_null() ? 1 : 0;
             }
     EXPECT_EQ(json.at("not_resolved"), missing);
-    EXPECT_EQ(e.out.find("times not resolved") != std::string::npos, missing > 0) << e.out;
+    EXPECT_EQ(e.out.find("times are below the noise") != std::string::npos, missing > 0) << e.out;
     bool const timed = e.out.find("Figure 2.7: transfers of one solve, full handles: left out") ==
                        std::string::npos;
     EXPECT_EQ(fs::exists(folder / "figures/figure-2.7-full.svg"), timed);

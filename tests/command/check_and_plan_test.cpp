@@ -147,7 +147,7 @@ TEST(Plan, PredictsStepsOnMoreRanks) {
     Ended const e = catena(words);
     expect_good(e);
     for (std::string const part : {"speed-up", "efficiency", "predicted messages per step",
-                                   "every rank is taken to be like this one"})
+                                   "every rank is assumed to be like this one"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 

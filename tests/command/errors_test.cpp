@@ -85,10 +85,10 @@ TEST(Errors, NothingIsWrittenOverBesides) {
                    "the scene would be overwritten");
     expect_refused(
         catena({"solve", scene, "--json", folder / "a", "--accelerations", folder / "a"}), 2,
-        "name one file");
+        "name the same file");
     std::ofstream(folder / "observables.csv") << "step\n";
     expect_refused(catena({"report", scene, "--quick", "--output", folder.path()}), 2,
-                   "the folder holds a run");
+                   "the folder contains a run");
     EXPECT_EQ(std::filesystem::file_size(scene), size);
     EXPECT_FALSE(std::filesystem::exists(folder / "report.html"));
 }

@@ -84,7 +84,7 @@ TEST(Ranks, TheRunSaysTheSharesOfItsRanks) {
     EXPECT_NE(second.out.find("bodies, by the checkpoint's shares"), std::string::npos)
         << second.out;
     EXPECT_NE(catena_on(2, {"plan", input("spherical-chain.yaml"), "--set", "solver.balance=true"})
-                  .out.find("cuts the chains by their speeds"),
+                  .out.find("divides the chains accordingly"),
               std::string::npos);
 }
 

@@ -257,8 +257,8 @@ TEST(Failure, WithinAStepNamesTheStepBeforeTheMasses) {
     std::string const lost = std::string("a matrix is lost (body 2): ") + dca::cause_of_lost_matrix;
     EXPECT_EQ(failure_in_step(0, lost, scene, false), "at step 0: " + lost);
     EXPECT_EQ(failure_in_step(7, lost, scene, true),
-              "at step 7: a matrix is lost (body 2): dynamics.step = 0.01 is too long for forces "
-              "and speeds there: choose a smaller one; otherwise " +
+              "at step 7: a matrix is lost (body 2): dynamics.step = 0.01 is too long for the "
+              "forces and speeds there: choose a smaller one; otherwise " +
                   std::string(dca::cause_of_lost_matrix));
     EXPECT_EQ(failure_in_step(7, "no disk", scene, true), "at step 7: no disk");
 }

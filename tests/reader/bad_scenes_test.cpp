@@ -41,8 +41,8 @@ chains: [{sequence: GGG, model: calvados2}])y",
      "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, position: "
      "[0.4, 0, 0], joint: {type: link}}, "
      "{mass: 1, position: [0.4, 0, 0], joint: {type: link}}]}]",
-     "bead 3 coincides with bead  2: their link has no direction (s.yaml: chains[0].bodies, bead "
-     "3, line 1): move one of them"},
+     "bead 3 coincides with bead 2: their link has no direction (s.yaml: chains[0].bodies, bead 3, "
+     "line 1): move one of them"},
     {"on_the_anchor",
      "chains: [{base: fixed, anchor: [1, 0, 0], bodies: [{mass: 1, position: [1, 0, 0], joint: "
      "{type: link}}]}]",
@@ -343,7 +343,8 @@ dynamics: {integrator: staggered, step: 1})y",
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: [1, 1e11, 1]}}
 dynamics: {integrator: staggered, step: 1})y",
-     "a joint 1e+11 times as stiff along one coordinate as along another with integrator staggered "
+     "a joint that is 1e+11 times as stiff along one coordinate as along another with integrator "
+     "staggered "
      "(s.yaml: chains[0], body 1, line 2): keep this ratio within 1e+10"},
     {"damping_under_baoab", R"y(chains:
   - base: fixed
@@ -375,8 +376,8 @@ dynamics: {integrator: staggered, step: 1, temperature: 300})y",
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: 1}}
 dynamics: {integrator: staggered, step: 1}
 output: {observables: [temperature]})y",
-     "no temperature with integrator staggered, where stiff joints turn more slowly (s.yaml: "
-     "output.observables[0], line 6): leave it out"},
+     "the temperature is undefined with integrator staggered, whose stiff joints rotate more "
+     "slowly (s.yaml: output.observables[0], line 6): leave it out"},
     {"elastic_rod_of_soft_joints",
      "chains: [{generator: {elastic_rod: {bodies: 9, mass: 1, length: 3.4, radius: 1, bend: 0.1, "
      "twist: 100}}}]\n"

@@ -31,8 +31,8 @@ TEST_F(SceneFiles, table_of_positions) {
 TEST_F(SceneFiles, bad_tables) {
     std::string const where = " (s.yaml: chains[0].positions, line 1): ";
     write("start.csv", "0,0,0\n1,0,0\n");
-    EXPECT_EQ(refusal(with_table_), "`start.csv` holds 2 positions, the chain has 3 beads" + where +
-                                        "give one position per bead");
+    EXPECT_EQ(refusal(with_table_), "`start.csv` contains 2 positions, the chain has 3 beads" +
+                                        where + "give one position per bead");
     write("start.csv", "0,0,0\n1,0\n2,0,0\n");
     EXPECT_EQ(refusal(with_table_),
               "the line has 2 columns, not 3 (start.csv: line 2): give x,y,z");
@@ -47,7 +47,7 @@ TEST_F(SceneFiles, bad_tables) {
               "the line has 4 columns, not 3 (start.csv: line 2): give x,y,z");
     write("start.csv", "0,0,0\n1,0,0\n1,0,0\n");
     EXPECT_EQ(refusal(with_table_),
-              "bead 3 coincides with bead  2: their link has no direction (s.yaml: "
+              "bead 3 coincides with bead 2: their link has no direction (s.yaml: "
               "chains[0].positions, bead 3, line 1): move one of them");
     fs::remove(folder_ / "start.csv");
     EXPECT_EQ(refusal(with_table_), "no such file: `start.csv`" + where + "check the path");
@@ -80,9 +80,8 @@ TEST_F(SceneFiles, records_of_a_fasta_file_are_chosen_by_name_or_number) {
               "2 records have the name `one` (s.yaml: chains[0].name, line 1): choose one by its "
               "number: `record: 1`");
     EXPECT_EQ(refusal("chains: [{fasta: a.fasta, model: calvados2, record: 5}]"),
-              "`a.fasta` has no record `5`: it holds `one`, `sp|P1|TWO_X`, `2`, `one` (s.yaml: "
-              "chains[0].record, line 1): give a name, or a "
-              "number from 1 to 4");
+              "`a.fasta` has no record `5`: it contains `one`, `sp|P1|TWO_X`, `2`, `one` (s.yaml: "
+              "chains[0].record, line 1): give a name, or a number from 1 to 4");
     EXPECT_EQ(refusal("chains: [{sequence: GG, model: calvados2, record: 5}]"),
               "key `record` chooses among the sequences of a `fasta` file (s.yaml: "
               "chains[0].record, line 1): leave it out");
@@ -199,7 +198,7 @@ TEST_F(SystemFiles, map_of_chains) {
 
 TEST_F(SystemFiles, what_a_system_says_itself) {
     EXPECT_EQ(refusal(scene("ionic_strength: 0.1, topology: topology.pdb")),
-              "key `ionic_strength` does not apply to a finished system (s.yaml: "
+              "key `ionic_strength` does not apply to a serialised System (s.yaml: "
               "forces.openmm.ionic_strength, line 2): leave it out: the System defines it");
     EXPECT_EQ(refusal(scene("threads: 1")),
               "the particles are not assigned to chains (s.yaml: forces.openmm, line 2): add "

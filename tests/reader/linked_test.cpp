@@ -44,7 +44,7 @@ TEST(Linked, the_first_of_long_links_is_left_and_noted) {
     EXPECT_EQ(scene.chains[0].linked.length[0], 1.7);
     ASSERT_EQ(scene.notes.size(), 1U);
     EXPECT_NE(scene.notes[0].find(
-                  "the link to body 1 is 1.7 long, beyond half an edge of the periodic box"),
+                  "the link to body 1 is 1.7 long, more than half an edge of the periodic box"),
               std::string::npos);
 }
 

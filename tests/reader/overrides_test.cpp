@@ -81,9 +81,9 @@ Bad const bad[] = {
      "index 2 is beyond the list `chains` of 2 (--set chains[2].count=1): indices are counted from "
      "0"},
     {"chains.count=1",
-     "`chains` is a listand has no key `count` (--set chains.count=1): correct the path"},
+     "`chains` is a list and has no key `count` (--set chains.count=1): correct the path"},
     {"chains[0].name.x=1",
-     "`name` is `a`and has no key `x` (--set chains[0].name.x=1): correct the path"},
+     "`name` is `a` and has no key `x` (--set chains[0].name.x=1): correct the path"},
     {"chain[0].count=3", "there is no list `chain` (--set chain[0].count=3): correct the path"},
     {"chains[0].name[0]=1",
      "`name` is not a list (--set chains[0].name[0]=1): leave the index out"},

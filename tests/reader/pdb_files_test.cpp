@@ -184,8 +184,7 @@ TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
         BeadArrays const& beads = s.chains.at(0).beads;
         EXPECT_EQ(notes_of(s),
                   std::vector<std::string>{"`a.pdb` names other residues than the sequence in 1 of "
-                                           "2 places: its positions are "
-                                           "taken all the same"});
+                                           "2 places: its positions are used all the same"});
         EXPECT_DOUBLE_EQ(beads.position[1][0], 0.4);
         EXPECT_DOUBLE_EQ(beads.length[1], 0.4);
     }
