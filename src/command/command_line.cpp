@@ -243,7 +243,7 @@ void add_commands(CLI::App& app, Words& words) {
         ->add_option("--joints", words.joints,
                      "link, planar, spherical, universal, revolute, prismatic, helical, weld, "
                      "mixed (default: link,spherical,revolute; "
-                     "evaluation: link,spherical; peers takes these and planar)")
+                     "evaluation: link,spherical; peers accepts these and planar)")
         ->type_name("J,...");
     command
         ->add_option(
