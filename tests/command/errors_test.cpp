@@ -19,7 +19,7 @@ TEST(Errors, TheCommandLine) {
     expect_refused(catena({"bench", "sweeps"}), 2, "not in this version: catena bench sweeps");
     expect_refused(catena({"bench", "peers", "--joints", "helical"}), 2,
                    "use link, spherical, revolute or planar");
-    expect_refused(catena({"bench", "peers", "--sizes", "2e6"}), 2, "take 1e6 at most");
+    expect_refused(catena({"bench", "peers", "--sizes", "2e6"}), 2, "use at most 1e6");
     expect_refused(catena({"bench", "solve", "--figure", "2.5"}), 2,
                    "catena bench solve does not take --figure");
     expect_refused(catena({"bench", "openmm", "--joints", "link"}), 2,
