@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that the repository's pages stay manuals: short sentences and paragraphs, links that resolve, a line for every folder.
 
-What a page names in code must be there: files, functions, and the founding chapter's equations, each once in src/dca and in its page.
+What a page names in code must be there: files, functions, and the DCA chapter's equations, each once in src/dca and in its page.
 usage: pages.py [ROOT]
 """
 import os
