@@ -16,7 +16,8 @@ FIRST_PAGE = "README.md"  # shorter in everything: bytes, words of a sentence, w
 FIRST_BYTES, FIRST_SENTENCE, FIRST_PARAGRAPH = 8192, 30, 80
 ROOMS = ("src", "cuda", "mpi", "tests")
 CODE = (".hpp", ".cpp", ".cuh", ".cu", ".py")
-WRITTEN = {"my.yaml", "scene.yaml", "summary.json", "timeline.json", "report.json", "network.json", "figures.json"}  # by users and programs
+WRITTEN = {"my.yaml", "scene.yaml", "summary.json", "timeline.json", "report.json", "network.json", "figures.json",
+           "error.py", "density.py", "a.json", "boom.json"}  # by users and programs
 MATHEMATICS, EQUATIONS = "src/dca/README.md", range(1, 13)
 DEEPEST = 3  # below lie inputs that the line of their folder stands for
 
