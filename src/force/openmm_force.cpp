@@ -20,7 +20,6 @@
 #include "scene/node.hpp"
 #include "systems/box.hpp"
 #include "systems/force_layers.hpp"
-#include "systems/plugins.hpp"
 #include "systems/subset.hpp"
 
 namespace catena {
@@ -279,7 +278,7 @@ std::vector<std::string> OpenMmForces::description() const {
         lines.push_back("replicated: every rank computes the whole System");
     if (communicator_.size() > 1 && !replicate_ && own_count() > 0)
         lines.push_back(split_text(*rank_));
-    for (auto const& failure : load_openmm_plugins())
+    for (auto const& failure : platform_.not_loaded)
         lines.push_back("plugin not loaded: " + failure);
     return lines;
 }

@@ -28,6 +28,16 @@ bool contains(std::vector<std::string> const& names, std::string const& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Returns the failures that concern a run. The CUDA plugin cannot be loaded without a GPU's
+/// driver, which is a failure only if the chains are on a GPU.
+std::vector<std::string> failures_of_run(std::vector<std::string> failures, bool on_gpu) {
+    if (!on_gpu)
+        std::erase_if(failures, [](std::string const& failure) {
+            return failure.find(cuda_plugin) != std::string::npos;
+        });
+    return failures;
+}
+
 std::string refused_plugins(std::vector<std::string> const& failures) {
     return failures.empty() ? "" : fmt::format(" (not loaded: {})", fmt::join(failures, "; "));
 }
@@ -54,6 +64,7 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads,
                          openmm_key(beads.scene_file, "precision"), "use single, mixed or double");
 
     OpenMmPlatform chosen;
+    chosen.not_loaded = failures_of_run(failures, on_gpu);
     chosen.platform = &OpenMM::Platform::getPlatformByName(name);
     auto const known = chosen.platform->getPropertyNames();
     auto const set = [&](char const* property, std::string const& value) {

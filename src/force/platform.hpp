@@ -18,6 +18,8 @@ struct OpenMmPlatform {
     std::map<std::string, std::string> properties;
     // threads of platform CPU
     int threads = 1;
+    // plugins that this run could have used and OpenMM could not load, one line each
+    std::vector<std::string> not_loaded;
 
     std::string const& name() const { return platform->getName(); }
     bool on_cpu() const { return name() == "CPU" || name() == "Reference"; }

@@ -23,7 +23,7 @@ class SweepWatch {
     /// Records the violation at which a sweep was added.
     void added(double error) { added_at_ = error; }
 
-    /// State for checkpoints: a restart must reproduce the undisturbed run.
+    /// State for checkpoints: a restart must reproduce the uninterrupted run.
     std::vector<double> state() const { return {added_at_, in_vain_at_}; }
     void set_state(std::vector<double> const& state) {
         if (state.size() != 2) throw std::invalid_argument("a sweep watch has two numbers");

@@ -20,7 +20,7 @@ class RunVerdict {
     /// Records the constraint error of joints at a step, if it is the largest so far.
     void note_error(std::int64_t step, double error);
     /// Records the constraint error where the run ends. A restart does not inherit it, because the
-    /// undisturbed run need not have computed it there.
+    /// uninterrupted run need not have computed it there.
     void note_end(std::int64_t step, double error) { end_ = {step, error}; }
     /// Records the distance of a body from the origin.
     void note_coordinate(double distance) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace catena::scene {
@@ -19,6 +20,13 @@ double constexpr same_temperature = 1e-9;
 
 /// Longest plausible step, ps, of residues with friction.
 double constexpr longest_usual_step = 0.2;
+
+/// Returns whether a force field is expected to know the beads of the chain.
+bool has_residues(ChainSpec const& chain) {
+    auto const& residues = chain.is_beads() ? chain.beads.residue : chain.carried().residue;
+    return std::any_of(residues.begin(), residues.end(),
+                       [](std::string const& residue) { return residue != "UNK"; });
+}
 
 }  // namespace
 
@@ -62,6 +70,16 @@ void note_forces(Scene& scene) {
         scene.note(fmt::format(
             "water is frozen at {:.6g} K: its permittivity is extrapolated below {:.6g} K.",
             openmm.temperature, coldest_water));
+}
+
+void note_missing_forces(Scene& scene) {
+    if (scene.si || !scene.dynamics.given || scene.forces.openmm) return;
+    auto const found = std::find_if(scene.chains.begin(), scene.chains.end(), has_residues);
+    if (found != scene.chains.end())
+        scene.note(fmt::format(
+            "no forces act between the residues of chain `{}`: did you mean forces: {{openmm: "
+            "{{builder: calvados2}}}}?",
+            found->name));
 }
 
 }  // namespace catena::scene

@@ -10,6 +10,9 @@ namespace catena::scene {
 /// strength, pH or step. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
+/// Notes residues between which no forces act, if the scene is to be run: they would move as an
+/// ideal chain. Precondition: all sections have been read.
+void note_missing_forces(Scene&);
 /// Notes a box that the forces of the scene's System do not use.
 void note_box_that_no_force_knows(Scene&, bool system_is_periodic);
 

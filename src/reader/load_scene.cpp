@@ -113,6 +113,7 @@ Scene parse_scene(std::string const& text, std::string const& name,
     give_places(fields, drafts, made);
     made.chains.reserve(drafts.size());
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
+    scene::note_missing_forces(made);
     made.hash = scene::fingerprint(made);
     return made;
 } catch (std::bad_alloc const&) {

@@ -36,7 +36,7 @@ std::vector<fs::path> plugin_folders() {
 std::vector<std::string> load_plugins() {
     std::vector<std::string> failures;
     auto const folders = plugin_folders();
-    for (char const* name : {"libOpenMMCPU.so", "libOpenMMPME.so", "libOpenMMCUDA.so"}) {
+    for (char const* name : {"libOpenMMCPU.so", "libOpenMMPME.so", cuda_plugin}) {
         auto const folder = std::find_if(folders.begin(), folders.end(), [&](fs::path const& f) {
             std::error_code ignored;
             return fs::exists(f / name, ignored);

@@ -121,7 +121,7 @@ TEST_F(Runs, NoStepsAreOneFrameWithEnergies) {
                    "no steps to run");
 }
 
-/// The frame at an interrupted run's end is none of the undisturbed run's, and goes when it is
+/// The frame at an interrupted run's end is none of the uninterrupted run's, and goes when it is
 /// continued.
 TEST_F(Runs, ARestartTakesAwayTheFrameWhereTheRunBeforeEnded) {
     expect_good(

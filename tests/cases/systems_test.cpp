@@ -221,6 +221,16 @@ TEST(Slips, StepsInFemtosecondsAndImpossiblePhAreNoted) {
               "ph is 70, outside 0 to 14"));
 }
 
+TEST(Slips, ResiduesWithoutForcesAreNoted) {
+    std::vector<std::string> const without{"--set", "forces.openmm=null"};
+    EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml", without),
+                      "no forces act between the residues of chain `p`: did you mean forces: "
+                      "{openmm: {builder: calvados2}}?"));
+    EXPECT_EQ(notes_of("22-slips-of-the-pen/temperatures.yaml",
+                       {"--set", "forces.openmm=null", "--set", "dynamics=null"}),
+              "[]");
+}
+
 TEST(Slips, FrozenWaterIsNoted) {
     EXPECT_TRUE(holds(
         notes_of("22-slips-of-the-pen/temperatures.yaml",

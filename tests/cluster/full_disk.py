@@ -1,5 +1,5 @@
 """The file system fills up in mid-run: one line says so, all ranks end in good order, the last checkpoint is whole, and with more room what is
-resumed from it is bit for bit the undisturbed run. Needs root: it mounts small disks. Usage: full_disk.py"""
+resumed from it is bit for bit the uninterrupted run. Needs root: it mounts small disks. Usage: full_disk.py"""
 import ctypes
 import os
 import sys

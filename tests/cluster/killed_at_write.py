@@ -1,5 +1,5 @@
 """The program is killed before its n-th write into its folder, n = 0, stride, 2 stride, ... to the last: in the middle of frames, flushes and
-checkpoints. What is resumed is bit for bit the undisturbed run. Usage: killed_at_write.py [--stride N] [--preload LIBRARY]"""
+checkpoints. What is resumed is bit for bit the uninterrupted run. Usage: killed_at_write.py [--stride N] [--preload LIBRARY]"""
 import os
 import signal
 import sys

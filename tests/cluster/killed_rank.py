@@ -1,5 +1,5 @@
 """A rank, or all of a run, is killed at a random moment: the run ends within 10 s and says so, the checkpoint is whole, and what is resumed
-from it is bit for bit the undisturbed run. Usage: killed_rank.py [--times N] [--steps N] [--seed S] [--ranks 1,2,3,4, one of which each kill
+from it is bit for bit the uninterrupted run. Usage: killed_rank.py [--times N] [--steps N] [--seed S] [--ranks 1,2,3,4, one of which each kill
 draws] [--all 0.3, the share of kills of every rank and the launcher] [--openmm 1: beads in OpenMM, on Reference] [--folder F, for the runs]"""
 import collections
 import os
@@ -72,17 +72,17 @@ def check(runs, number, seconds, draw, options):
 
 
 def whole(ranks, options):
-    """Name of the undisturbed run; OpenMM's sums over pieces of the beads are those of so many ranks."""
+    """Name of the uninterrupted run; OpenMM's sums over pieces of the beads are those of so many ranks."""
     return f"whole-{ranks if options.openmm else 1}"
 
 
-def undisturbed(runs, ranks, options):
+def uninterrupted(runs, ranks, options):
     """Seconds that a run takes; the runs to compare with are there afterwards."""
     start = time.monotonic()
     runs.complete(ranks, f"whole-{ranks}")
     seconds = time.monotonic() - start
     difference = runs.difference(whole(ranks, options), f"whole-{ranks}")
-    return seconds, verdict(f"undisturbed on {ranks}", not difference, f"{difference or 'as it should be'}; {seconds:.1f} s")
+    return seconds, verdict(f"uninterrupted on {ranks}", not difference, f"{difference or 'as it should be'}; {seconds:.1f} s")
 
 
 def main():
@@ -92,7 +92,7 @@ def main():
         counts = sorted({int(word) for word in options.ranks.split(",")})
         if not options.openmm and 1 not in counts:
             runs.complete(1, "whole-1")
-        found = {ranks: undisturbed(runs, ranks, options) for ranks in counts}
+        found = {ranks: uninterrupted(runs, ranks, options) for ranks in counts}
         seconds = {ranks: took for ranks, (took, _) in found.items()}
         good = [verdict_ for _, verdict_ in found.values()]
         kills = [check(runs, number + 1, seconds, draw, options) for number in range(options.times)]

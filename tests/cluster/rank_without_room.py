@@ -1,5 +1,5 @@
 """One of three ranks may write no further than some bytes into a file, and the others may: what it cannot write ends all of them with one line
-and without delay, and what is resumed is bit for bit the undisturbed run. Usage: rank_without_room.py"""
+and without delay, and what is resumed is bit for bit the uninterrupted run. Usage: rank_without_room.py"""
 import sys
 import time
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The job scripts of jobs/ on a real Slurm, made on this machine for the test alone: a job reaches its time limit's signal, writes a
 # checkpoint, goes back to the queue, goes on when its turn comes (after the 120 s that Slurm makes it wait) and ends in the bits of an
-# undisturbed run; a job of threads and one of GPUs, which Slurm counts and this machine may lack, are the run alone; a job array gives
+# uninterrupted run; a job of threads and one of GPUs, which Slurm counts and this machine may lack, are the run alone; a job array gives
 # each element its own run. Needs root and the packages slurmctld, slurmd, slurm-client, munge.
 # Usage: tests/cluster/slurm.sh [PROGRAM]
 set -euo pipefail
@@ -143,4 +143,4 @@ wait_for 120 "the array's end" eval "is ${array}_1 JobState COMPLETED && is ${ar
 "$CATENA_PROGRAM" run scene.yaml --output alone --steps 500 --set dynamics.seed=2 --quiet
 "$python" "$root/tests/cluster/compare_runs.py" alone each-2
 if "$python" "$root/tests/cluster/compare_runs.py" each-1 each-2 >different.log; then cat different.log; echo "FAILED: two seeds, one run"; exit 1; fi
-echo "passed: Slurm's requeued job and array are the undisturbed runs"
+echo "passed: Slurm's requeued job and array are the uninterrupted runs"

@@ -1,5 +1,5 @@
 """SIGTERM, SIGINT, SIGUSR1, SIGHUP or SIGXCPU on one rank, on all, or on the launcher: the run ends after a whole step with status 3 and one line; what is
-resumed from its checkpoint, stopped again and resumed, is bit for bit the undisturbed run. Usage: stopped_run.py [--steps N] [--cases M, the first]
+resumed from its checkpoint, stopped again and resumed, is bit for bit the uninterrupted run. Usage: stopped_run.py [--steps N] [--cases M, the first]
 [--only TEXT, those whose name has it]"""
 import os
 import signal

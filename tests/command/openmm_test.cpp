@@ -18,6 +18,8 @@ TEST(OpenMm, CheckAndPlanDescribeIt) {
         expect_good(e);
         EXPECT_NE(e.out.find("139 links replace the model's harmonic bonds"), std::string::npos)
             << e.out;
+        EXPECT_EQ(e.out.find("not loaded"), std::string::npos)  // no GPU, and none asked for
+            << e.out;
     }
 }
 

@@ -77,7 +77,7 @@ TEST_F(Places, AreFoundAnewForAStrayAndAfterAWhile) {
     EXPECT_LT(evaluations, 300);
 }
 
-/// A restart there is the undisturbed run to the bit.
+/// A restart there is the uninterrupted run to the bit.
 TEST_F(Places, OnReferenceDependOnThesePositionsAlone) {
     ForceContext context(pair(true), platform("Reference"), box_);
     for (double const first : {9.5, 10.5, -0.25}) {

@@ -51,11 +51,11 @@ TEST(Observables, EveryRecordIsThereBeforeTheFileIsClosed) {
 
 TEST(Observables, RestartCutsLaterRecordsAndGoesOn) {
     TemporaryFolder const folder;
-    std::string const file = folder / "observables.csv", undisturbed = folder / "undisturbed.csv";
-    write_records(undisturbed, {0, 100, 200, 300, 400});
+    std::string const file = folder / "observables.csv", uninterrupted = folder / "uninterrupted.csv";
+    write_records(uninterrupted, {0, 100, 200, 300, 400});
     write_records(file, {0, 100, 200, 250, 300});
     write_records(file, {300, 400}, 200);
-    EXPECT_EQ(read_text_file(file), read_text_file(undisturbed));
+    EXPECT_EQ(read_text_file(file), read_text_file(uninterrupted));
     write_records(file, {}, -1);
     EXPECT_EQ(read_observables(file).columns[0].size(), 0U);
 }

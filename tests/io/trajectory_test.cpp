@@ -173,15 +173,15 @@ TEST(Trajectory, UnitsAreTheScenes) {
 
 TEST(Trajectory, RestartCutsLaterFramesAndGoesOn) {
     TemporaryFolder const folder;
-    std::string const file = folder / "trajectory.h5md", undisturbed = folder / "undisturbed.h5md";
-    write_frames(undisturbed, {0, 10, 20, 30, 40, 50});
+    std::string const file = folder / "trajectory.h5md", uninterrupted = folder / "uninterrupted.h5md";
+    write_frames(uninterrupted, {0, 10, 20, 30, 40, 50});
     write_frames(file, {0, 10, 20, 30, 35});
     write_frames(file, {30, 40, 50}, 29);
     EXPECT_EQ(steps(file), (std::vector<std::int64_t>{0, 10, 20, 30, 40, 50}));
     for (char const* name : {"particles/trajectory/position/value",
                              "particles/trajectory/velocity/value", "catena/orientation/value",
                              "catena/joint_force/value", "particles/trajectory/position/time"})
-        expect_same_bits(numbers(file, name), numbers(undisturbed, name));
+        expect_same_bits(numbers(file, name), numbers(uninterrupted, name));
 }
 
 TEST(Trajectory, RestartAtAFramesOwnStepKeepsItAndBeforeAllKeepsNone) {

@@ -3,6 +3,7 @@
 
 usage: checks_test.py [--catena PROGRAM]      (with it also commands and scenes of pages)
 """
+import importlib.util
 import os
 import subprocess
 import sys
@@ -45,10 +46,10 @@ def rooms(**files):
         return run(os.path.join(HERE, "rooms.py"), root)
 
 
-def commands(catena, page):
+def commands(catena, page, path="page.md"):
     with tempfile.TemporaryDirectory() as root:
-        write(root, "page.md", page)
-        return run(os.path.join(HERE, "commands.py"), "--catena", catena, os.path.join(root, "page.md"))
+        write(root, path, page)
+        return run(os.path.join(HERE, "commands.py"), "--catena", catena, os.path.join(root, path))
 
 
 def expect(name, answer, status, words):
@@ -97,7 +98,23 @@ def of_commands(catena):
     yield expect("a script's option", commands(catena, good + "```\ntests/run.sh --fast\n```\n"), 1, "tests/run.sh does not take --fast")
     yield expect("a wrong scene", commands(catena, good.replace("links: 2", "link: 2")), 1, "its scene is refused")
     yield expect("a command that fails", commands(catena, good + "```\ncatena run lost.yaml --output x\n```\n"), 1, "ended with status 2")
+    answer = "```text\n$ catena check my.yaml --set dynamics.step=0\ncatena: {} (my.yaml: dynamics.step...): give ...\n```\n"
+    yield expect("a quoted answer", commands(catena, good + answer.format("step 0 ...")), 0, "3 commands ran")
+    yield expect("a wrong quotation", commands(catena, good + answer.format("no such step")), 1, "does not print `catena: no such step")
+    yield from of_tutorials(catena, good)
     yield expect("nothing to run", commands(catena, "# Page\n"), 1, "nothing to run")
+
+
+def of_tutorials(catena, good):
+    page = "tutorials/page.md"
+    if importlib.util.find_spec("h5py") is None or importlib.util.find_spec("matplotlib") is None:
+        return
+    plot = good + "```\npython3 jobs/plot.py out\n```\n"
+    program = plot + "```python\nopen('out/observables.csv').read()[0]\n```\n"
+    yield expect("a folder of another block", commands(catena, plot), 1, "no such folder (out)")
+    yield expect("a tutorial's folder", commands(catena, plot, page), 0, "3 commands ran")
+    yield expect("a tutorial's program", commands(catena, program, page), 0, "4 commands ran")
+    yield expect("a program that fails", commands(catena, program.replace("[0]", "[0][1]"), page), 1, "IndexError")
 
 
 def main():

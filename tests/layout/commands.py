@@ -4,11 +4,15 @@
 usage: commands.py --catena PROGRAM [--mpirun WORD,WORD,...] [PAGE ...]
 
 Of every command in code, also within a line, the options must be in the help of its program. Commands of fenced blocks are run too, those
-of a block one after the other in a folder of its own: `check`, `plan`, `solve` and `run`, whose steps are made few. What needs a GPU, a cluster,
-a network or minutes (bench, report, calibration) is only looked at. Fenced YAML that has `chains` is read by `catena check`, and is the
-`my.yaml` of the blocks that follow it.
+of a block one after the other in a folder of its own: `check`, `plan`, `solve` and `run`, whose steps are made few, and jobs/plot.py where its
+packages are there. What needs a GPU, a cluster, a network or minutes (bench, report, calibration) is only looked at. Fenced YAML that has
+`chains` is read by `catena check`, and is the `my.yaml` of the blocks that follow it.
+
+The blocks of a tutorial (inputs/tutorials) share one folder, and its Python programs are run there. A `text` block that begins with a prompt
+(`$ command`) quotes the command's answer: each quoted line must be in it, `...` stands for anything.
 """
 import argparse
+import importlib.util
 import os
 import re
 import shlex
@@ -21,6 +25,8 @@ import markdown
 PROGRAM = re.compile(r"^(.*/)?catena$")
 SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench")
 RUN = ("check", "plan", "solve", "run")
+TUTORIALS = "tutorials"  # name of their folder
+PLOT = "jobs/plot.py"
 PLACEHOLDERS = {"SCENE", "scene.yaml", "DIR", "FILE", "OTHER"}
 FEW_STEPS = 4
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -107,13 +113,36 @@ def faults_of(words, help_of):
         yield from faults_of_script(words, help_of)
 
 
+def can_plot():
+    return all(importlib.util.find_spec(name) for name in ("h5py", "matplotlib", "numpy"))
+
+
+def quoted(line):
+    """The pattern of a line that a page quotes from a program's answer."""
+    return ".*".join(re.escape(part) for part in line.split("..."))
+
+
 class Blocks:
     """Runs what can be run of a block."""
 
     def __init__(self, catena, mpirun):
-        self.catena, self.mpirun = catena, mpirun
+        self.catena, self.mpirun, self.plots = catena, mpirun, can_plot()
         self.run_commands = self.checked_scenes = 0
         self.scene = ""
+        self.shared = None  # folder of all blocks of a tutorial
+
+    def begin(self, path, parent):
+        """Begins a page."""
+        self.scene, self.shared = "", None
+        if os.path.basename(os.path.dirname(path)) == TUTORIALS:
+            self.shared = self.folder(parent)
+
+    def work(self, parent):
+        """The folder of a block, with the page's last scene in it."""
+        work = self.shared or self.folder(parent)
+        with open(os.path.join(work, "my.yaml"), "w", encoding="utf-8") as file:
+            file.write(self.scene)
+        return work
 
     def folder(self, parent):
         work = tempfile.mkdtemp(dir=parent)
@@ -121,8 +150,6 @@ class Blocks:
             os.symlink(os.path.join(markdown.ROOT, name), os.path.join(work, name))
         with open(os.path.join(work, "asyn.fasta"), "w", encoding="utf-8") as file:
             file.write(">asyn\nMDVFMKGLSKAKEGVVAAAE\n")
-        with open(os.path.join(work, "my.yaml"), "w", encoding="utf-8") as file:
-            file.write(self.scene)
         return work
 
     def can_run(self, words):
@@ -140,24 +167,52 @@ class Blocks:
             del words[words.index("--steps"):words.index("--steps") + 2]
         return [*words, "--steps", str(FEW_STEPS * (runs + 1))]
 
+    def command(self, words, runs):
+        """The command line that stands for a page's; None for what is only looked at."""
+        if self.plots and PLOT in words:
+            return [sys.executable, *words[words.index(PLOT):]]
+        if not self.can_run(words):
+            return None
+        command = [self.catena, *self.shortened(catena_words(words), runs)]
+        return [*self.mpirun, "-n", "2", *command] if words[0] == "mpirun" and self.mpirun else command
+
+    def answer(self, command, work):
+        self.run_commands += 1
+        return subprocess.run(command, cwd=work, env={**os.environ, **AS_ROOT}, capture_output=True, text=True, timeout=250, check=False)
+
     def run(self, block, parent):
-        work, runs = self.folder(parent), 0
+        work, runs = self.work(parent), 0
         for words in commands_of(block):
-            if not self.can_run(words):
+            command = self.command(words, runs)
+            if command is None:
                 continue
-            after = self.shortened(catena_words(words), runs)
-            runs += after[0] == "run"
-            command = [self.catena, *after]
-            if words[0] == "mpirun" and self.mpirun:
-                command = [*self.mpirun, "-n", "2", *command]
-            answer = subprocess.run(command, cwd=work, env={**os.environ, **AS_ROOT}, capture_output=True, text=True, timeout=250, check=False)
-            self.run_commands += 1
+            runs += "run" in command
+            answer = self.answer(command, work)
             if answer.returncode != 0:
                 yield f"{' '.join(words)} ended with status {answer.returncode}: {answer.stderr.strip() or answer.stdout.strip()[-300:]}"
 
+    def quote(self, block, parent):
+        """Runs a command whose answer the block quotes."""
+        words = next(commands_of(block[:1]))
+        command = self.command(words, 0)
+        if command is None:
+            return
+        answer = self.answer(command, self.work(parent))
+        for line in filter(None, block[1:]):
+            if not re.search(quoted(line), answer.stdout + answer.stderr):
+                yield f"{' '.join(words)} does not print `{line}`: {answer.stdout[-600:]}{answer.stderr}"
+
+    def program(self, block):
+        """Runs a tutorial's Python program."""
+        if not self.shared or not self.plots:
+            return
+        answer = self.answer([sys.executable, "-W", "ignore", "-c", "\n".join(block)], self.shared)
+        if answer.returncode != 0:
+            yield f"its program `{block[0]} ...` fails: {answer.stderr.strip()[-300:]}"
+
     def check_scene(self, block, parent):
         self.scene = "\n".join(block) + "\n"
-        work = self.folder(parent)
+        work = self.work(parent)
         self.checked_scenes += 1
         few = ["--set=chains[0].count=2"] if re.search(r"count: *[1-9]\d\d", self.scene) else []
         answer = subprocess.run([self.catena, "check", "my.yaml", *few], cwd=work, capture_output=True, text=True, timeout=120, check=False)
@@ -167,6 +222,7 @@ class Blocks:
 
 def faults_of_page(path, help_of, blocks, parent):
     prose, fenced = markdown.split(markdown.read(path))
+    blocks.begin(path, parent)
     for code in markdown.inline_code(prose):
         try:
             words = shlex.split(code)
@@ -181,6 +237,10 @@ def faults_of_page(path, help_of, blocks, parent):
             for words in commands_of(block):
                 yield from faults_of(words, help_of)
             yield from blocks.run(block, parent)
+        if language == "text" and block and block[0].startswith("$ "):
+            yield from blocks.quote(block, parent)
+        if language == "python":
+            yield from blocks.program(block)
 
 
 def main():

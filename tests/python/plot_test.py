@@ -27,8 +27,8 @@ def plot(*arguments):
     return subprocess.run([sys.executable, PLOT, *arguments], capture_output=True, text=True, check=False)
 
 
-def check_picture(run, output):
-    done = plot(run, "--output", output)
+def check_picture(run, output, *options):
+    done = plot(run, "--output", output, *options)
     check(done.returncode == 0 and done.stdout == output + "\n", f"{run}: {done.stdout}{done.stderr}")
     picture = matplotlib.image.imread(output)
     check(picture.shape[0] > 800 and picture.shape[1] > 1500, f"{run}: the picture has {picture.shape}")
@@ -68,14 +68,52 @@ def check_refusals(runs, scratch):
     check_refusal(f"no frames ({trajectory})", broken)
 
 
+def check_means(runs, scratch):
+    """A summary's means and standard errors stand in the labels; without a summary the unit alone does."""
+    sys.path.insert(0, os.path.dirname(PLOT))
+    import plot as module
+    folder = os.path.join(scratch, "means")
+    shutil.copytree(os.path.join(runs, "synthetic-beads"), folder)
+    names, records = module.read_observables(os.path.join(folder, "observables.csv"))
+    column = module.chosen_columns(names, records)[0]
+    name, unit = module.name_and_unit(names[column])
+    summary = os.path.join(folder, "summary.json")
+    for text, said in (("{}", f"[{unit}]"), ("no JSON", f"[{unit}]"),
+                       (f'{{"observables": {{"{name}": {{"mean": 2.71828, "standard_error": 0.0123}}}}}}', f"2.718 \u00b1 0.012 {unit}"),
+                       (f'{{"observables": {{"{name}": {{"mean": null, "standard_error": null}}}}}}', f"[{unit}]")):
+        with open(summary, "w", encoding="utf-8") as file:
+            file.write(text)
+        labels = [label for label, _ in module.observable_panels(names, records, module.read_means(folder))]
+        check(any(label.lower().startswith(name.replace("_", " ").lower()) and label.endswith(said) for label in labels), f"{said} is not in {labels}")
+
+
+def check_joints(runs, scratch):
+    """Joint coordinates are drawn where the trajectory has them, in the order asked for."""
+    folder = os.path.join(scratch, "joints")
+    shutil.copytree(os.path.join(runs, "synthetic-bodies"), folder)
+    check_refusal("no joint coordinates (", folder, "--joints", "1")
+    with h5py.File(os.path.join(folder, "trajectory.h5md"), "r+") as file:
+        frames = file["particles/trajectory/position/value"].shape[0]
+        angles = [[[0.1 * frame * joint, 0, 0, 0] for joint in range(3)] for frame in range(frames)]
+        file.require_group("catena/joint_position")["value"] = angles
+    check_picture(folder, os.path.join(scratch, "joints.png"), "--joints", "3,2", "--up", "z")
+    check_refusal("no such joint (--joints 4): the run has joints 1 to 3", folder, "--joints", "1,4")
+    import plot as module
+    _, joints = module.read_joints(os.path.join(folder, "trajectory.h5md"))
+    panels = module.joint_panels(joints, "3,1")
+    check([label for label, _ in panels] == ["q of joint 3", "q of joint 1"] and panels[0][1][-1] == 0.2 * (frames - 1), f"wrong panels: {panels}")
+
+
 def main():
     runs = sys.argv[1]
-    check("example:" in plot("--help").stdout, "--help without an example")
+    check("examples:" in plot("--help").stdout, "--help without an example")
     with tempfile.TemporaryDirectory() as scratch:
         for kind in ("beads", "bodies", "si"):
             check_picture(os.path.join(runs, f"synthetic-{kind}"), os.path.join(scratch, f"{kind}.png"))
         check_refusals(runs, scratch)
-    print("three pictures and eight refusals are as they should be")
+        check_means(runs, scratch)
+        check_joints(runs, scratch)
+    print("four pictures, ten refusals and the labels are as they should be")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 // Whole runs with OpenMM's double-precision platform on several ranks: replicated they are the run
-// on one rank, bit for bit; with ghosts no pair is missed, and a restart is the undisturbed run.
+// on one rank, bit for bit; with ghosts no pair is missed, and a restart is the uninterrupted run.
 #include <fmt/format.h>
 
 #include <cmath>

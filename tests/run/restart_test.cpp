@@ -1,4 +1,4 @@
-// A run that is stopped and restarted is the undisturbed run, bit for bit: state, trajectory and
+// A run that is stopped and restarted is the uninterrupted run, bit for bit: state, trajectory and
 // table.
 #include <gtest/gtest.h>
 #include <pthread.h>
