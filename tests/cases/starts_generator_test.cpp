@@ -90,7 +90,7 @@ void expect_notes(Opened const& opened, Start const& given) {
 StartForces look(Scene const& scene) {
     SingleRankForces forces(scene);
     std::vector<Vec3> const at = bead_positions_of(scene);
-    SingleRankForces::FusedSweep const found = forces.at(at);
+    SingleRankForces::EnergyAndForces const found = forces.at(at);
     return start_forces_of(scene, forces.beads(), at, found.forces, found.energy);
 }
 

@@ -1,6 +1,7 @@
 // Where a Context's particles are placed: coordinates go on where beads do, and forces are those of
 // nearest images all the same.
 #include "force/context.hpp"
+#include "systems/plugins.hpp"
 
 #include <gtest/gtest.h>
 
