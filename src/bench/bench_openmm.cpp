@@ -316,7 +316,7 @@ std::vector<std::int64_t> sizes_of(BenchRequest const& request,
     return sizes;
 }
 
-/// Writes the phases of steps as a page, in the manner of the founding chapter's Fig. 2.7.
+/// Writes the phases of steps as a page, in the manner of the DCA chapter's Fig. 2.7.
 void write_pictures(std::string const& folder, std::string const& pictures) {
     std::string const intro =
         "<h1>Work that runs during the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";

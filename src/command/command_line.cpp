@@ -261,9 +261,8 @@ void add_commands(CLI::App& app, Words& words) {
                      "processors; openmm, overlap and sampling take one, cuda if there is a GPU)")
         ->type_name("B,...");
     command
-        ->add_option(
-            "--figure", words.figures,
-            "for figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
+        ->add_option("--figure", words.figures,
+                     "for figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the DCA chapter (default: all)")
         ->type_name("F,...");
     command
         ->add_option("--output", words.output,

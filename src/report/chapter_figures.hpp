@@ -1,4 +1,4 @@
-// Measurements and counts of the founding chapter (tests/data/reference/chapter-figures.csv;
+// Measurements and counts of the DCA chapter (tests/data/reference/chapter-figures.csv;
 // Table 2.1).
 #pragma once
 

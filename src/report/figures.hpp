@@ -1,4 +1,4 @@
-// Implements `catena bench figures`: the founding chapter's table and figures on this machine.
+// Implements `catena bench figures`: the DCA chapter's table and figures on this machine.
 #pragma once
 
 #include "console/outcome.hpp"
