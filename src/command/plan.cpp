@@ -69,10 +69,12 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
     text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"),
                              group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
-    text.entry("tree", fmt::format("{0} bodies: {2} runs of up to {1} bodies, then {3} levels of "
-                                   "merges; depth {4}; table version {5}",
-                                   tree.bodies, tree.run_length, tree.runs, tree.levels(),
-                                   tree.depth(), dca::tree_table_version));
+    text.entry("tree",
+               fmt::format("{} bodies: {} of up to {} bodies, then {} of merges; depth {}; table "
+                           "version {}",
+                           tree.bodies, counted(tree.runs, "run", "runs"), tree.run_length,
+                           counted(tree.levels(), "level", "levels"), tree.depth(),
+                           dca::tree_table_version));
     text.entry("units",
                fmt::format("{} (one rank computes each; every rank computes the tree above them)",
                            tree.units));

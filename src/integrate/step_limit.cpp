@@ -211,7 +211,7 @@ std::optional<StepLimit> estimate_step_limit(Scene const& scene) {
 }
 
 std::string text_of(StepLimit const& limit, Scene const& scene) {
-    return fmt::format("{:.3g} {}, {:.3g} / the largest frequency of the joints' springs",
+    return fmt::format("{:.3g} {} ({:.3g} / the largest frequency of the joints' springs)",
                        limit.step, scene.si ? "s" : "ps", reach_of(scene.dynamics.integrator));
 }
 
