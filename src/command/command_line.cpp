@@ -41,7 +41,7 @@ struct Words {
          calibrate = false, alike = false;
 };
 
-/// Adds the options that every command has: what it prints, and where.
+/// Adds the options that every command has: --json, --quiet and --log-level.
 void add_answer(CLI::App& command, CommonOptions& c) {
     command
         .add_option(
