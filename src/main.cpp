@@ -1,5 +1,5 @@
-// Entry point of the command line: catena check | plan | solve | run | report | bench. The commands
-// are implemented in command/.
+// Entry point of the command line: catena check | plan | solve | run | report | bench | keys. The
+// commands are implemented in command/.
 #include "bench/benchmarks.hpp"
 #include "command/commands.hpp"
 #include "command/report_scenes.hpp"
@@ -54,6 +54,10 @@ int execute(Session const& session, ReportRequest const& request) {
 
 int execute(Session const& session, BenchRequest const& request) {
     return session.conclude(run_bench(session.communicator(), request));
+}
+
+int execute(Session const& session, KeysRequest const& request) {
+    return session.conclude(declared_keys(request));
 }
 
 }  // namespace

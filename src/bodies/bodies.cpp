@@ -9,6 +9,7 @@
 #include "bodies/carried_beads.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
+#include "keys/maps.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
@@ -92,7 +93,7 @@ struct Needed {
 std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
     std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
     if (!wrench) return load;
-    Fields const parts(*wrench, {"torque", "force"});
+    Fields const parts(*wrench, keys::wrench);
     if (Node const* const torque = parts.find("torque")) load.first = vector3(*torque);
     if (Node const* const force = parts.find("force")) load.second = vector3(*force);
     return load;
@@ -135,7 +136,7 @@ BodyList kind_of_list(Node const& bodies) {
 }
 
 std::array<double, 2> read_drag(Node const& drag) {
-    Fields const parts(drag, {"linear", "angular"});
+    Fields const parts(drag, keys::drag);
     Node const* const linear = parts.find("linear");
     Node const* const angular = parts.find("angular");
     return {linear ? non_negative(*linear) : 0, angular ? non_negative(*angular) : 0};
@@ -148,8 +149,7 @@ ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> co
     Needed needed;
     CarriedList carried;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
-        Fields const body(node.items[k],
-                          {"mass", "com", "inertia", "joint", "wrench", "drag", "beads"});
+        Fields const body(node.items[k], keys::body);
         bodies.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         Node const* const com = body.find("com");
         bodies.com.push_back(com ? vector3(*com) : Vec3::zero());
@@ -180,7 +180,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
             if (Node const* const extra = item.find(key))
                 fail(*extra, fmt::format("key `{}` does not apply to a point bead on a link", key),
                      "leave it out or change `joint`");
-        Fields const body(item, {"mass", "position", "velocity", "residue", "joint"});
+        Fields const body(item, keys::bead);
         made.beads.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         made.beads.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
         Node const* const velocity = body.find("velocity");
@@ -193,7 +193,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
             k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
         // Bead 1 of a free base has no link and thus no length.
         if (joint_node) {
-            Fields const joint(*joint_node, {"type", "length"});
+            Fields const joint(*joint_node, keys::bead_link);
             Node const* const given = joint.find("length");
             if (given && k == 0 && base == Base::free)
                 fail(*given, "a link length for bead 1 of a free base, which has no link",

@@ -1,6 +1,7 @@
 // Implements the list of carried beads.
 #include "bodies/carried_beads.hpp"
 
+#include "keys/maps.hpp"
 #include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 
@@ -20,7 +21,7 @@ void CarriedList::close() {
 void CarriedList::add(Node const* beads, Vec3 const& origin) {
     if (beads) {
         for (Node const& item : list(*beads).items) {
-            Fields const bead(item, {"residue", "position", "mass"});
+            Fields const bead(item, keys::carried_bead);
             Node const* const mass = bead.find("mass");
             Node const* const residue = bead.find("residue");
             std::string const name = residue ? text(*residue) : "UNK";

@@ -11,6 +11,7 @@
 #include "bodies/physics.hpp"
 #include "error.hpp"
 #include "io/trial.hpp"
+#include "keys/maps.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
@@ -23,12 +24,6 @@ constexpr std::pair<std::string_view, JointType> types[] = {
     {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
     {"universal", JointType::universal}, {"weld", JointType::weld},
     {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
-
-/// Datasets that a file may have.
-constexpr std::string_view known[] = {
-    "mass", "com",    "inertia",    "joint_type",    "axis",         "rotation",  "translation",
-    "q",    "qd",     "first_axis", "pitch",         "torque",       "stiffness", "damping",
-    "rest", "wrench", "drag",       "free_position", "free_velocity"};
 
 Vec3 vector_at(double const* v) { return {{v[0], v[1], v[2]}}; }
 
@@ -51,10 +46,11 @@ class Hdf5Bodies {
     }
 
   private:
-    /// Throws InputError for a dataset that is unknown, with the nearest known name.
+    /// Throws InputError for a dataset that is not declared, with the nearest known name.
     void refuse_unknown() const {
+        std::vector<std::string_view> const known = keys::datasets.names();
         for (std::string const& name : table_.names()) {
-            if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
+            if (keys::datasets.find(name)) continue;
             auto const near = nearest(name, known);
             table_.refuse(name, Hdf5Table::whole, "unknown dataset",
                           near ? "did you mean `" + *near + "`?" : "use " + joined(known));

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "bodies/physics.hpp"
+#include "keys/maps.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 
@@ -43,6 +44,14 @@ void check_keys(Node const& joint, JointType type, std::vector<std::string_view>
             fail(item,
                  fmt::format("key `{}` does not apply to a {} joint", item.key, name_of(type)),
                  "leave it out or correct `type`");
+}
+
+/// Refuses a `length`, which only links have.
+void refuse_length(Node const& joint) {
+    if (Node const* const length = joint.find("length"))
+        fail(*length,
+             fmt::format("key `length` does not apply to a {} joint", name_of(type_of(joint).type)),
+             "leave it out or correct `type`");
 }
 
 /// Keys of the joint's axes and frame.
@@ -105,13 +114,13 @@ Four position(Node const& node, JointType type, bool alike) {
 void read_free(Fields const& joint, JointEntry& entry) {
     entry.q = entry.rest = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) {
-        Fields const pose(*q, {"position", "quaternion"});
+        Fields const pose(*q, keys::free_pose);
         if (Node const* const position = pose.find("position")) entry.position = vector3(*position);
         if (Node const* const quaternion = pose.find("quaternion"))
             entry.q = unit_quaternion(*quaternion);
     }
     if (Node const* const qd = joint.find("qd")) {
-        Fields const rates(*qd, {"omega", "velocity"});
+        Fields const rates(*qd, keys::free_rates);
         if (Node const* const omega = rates.find("omega")) entry.qd = vector3(*omega);
         if (Node const* const velocity = rates.find("velocity"))
             entry.velocity = vector3(*velocity);
@@ -147,7 +156,7 @@ void read_geometry(Fields const& joint, Entry& entry) {
 
 /// Reads one prescribed coordinate.
 PrescribedMotion read_course(Node const& node) {
-    Fields const fields(node, {"offset", "rate", "amplitude", "frequency", "phase"});
+    Fields const fields(node, keys::motion);
     if (node.items.empty())
         fail(node, "the motion has no parameters",
              "add one of `offset`, `rate`, `amplitude`, `frequency`, `phase`, or use a weld");
@@ -208,8 +217,8 @@ int numbers_of(JointType type) {
 
 // The joint's type decides which keys have a meaning.
 JointEntry read_joint(Node const& node) {
-    Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "qd",
-                              "torque", "stiffness", "damping", "rest", "motion", "length"});
+    refuse_length(node);
+    Fields const joint(node, keys::joint);
     JointEntry entry;
     auto const [type, planar] = type_of(node);
     entry.type = type;
@@ -226,18 +235,17 @@ JointEntry read_joint(Node const& node) {
 
 // Links and joints with axes have different keys; both may have an anchor unless they close a ring.
 TipEntry read_tip_joint(Node const& node, bool ring) {
-    Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q",
-                              "anchor", "length"});
+    for (char const* const key : {"anchor", "q"})
+        if (Node const* const given = ring ? node.find(key) : nullptr)
+            fail(*given,
+                 fmt::format("key `{}` does not apply to the joint that closes a ring", key),
+                 "leave it out: the bodies define it");
+    Fields const joint(node, ring ? keys::tip_ring : keys::tip_joint);
     TipEntry entry;
     auto const [type, planar] = type_of(node);
     entry.joint.ring = ring;
     entry.joint.type = type;
     entry.planar = planar;
-    for (char const* const key : {"anchor", "q"})
-        if (Node const* const given = ring ? joint.find(key) : nullptr)
-            fail(*given,
-                 fmt::format("key `{}` does not apply to the joint that closes a ring", key),
-                 "leave it out: the bodies define it");
     if (type == JointType::free)
         fail(*node.find("type"), "a free joint at the tip restricts nothing", "write `tip: free`");
     std::vector<std::string_view> keys =
@@ -258,6 +266,7 @@ TipEntry read_tip_joint(Node const& node, bool ring) {
                    "translation: [1, 0, 0], where the first body's origin is in the last body");
     read_geometry(joint, entry.joint);
     if (type == JointType::spherical) entry.joint.q = {1, 0, 0, 0};
+    if (ring) return entry;
     if (Node const* const q = joint.find("q")) entry.joint.q = position(*q, type, false);
     if (Node const* const anchor = joint.find("anchor")) entry.joint.anchor = vector3(*anchor);
     return entry;

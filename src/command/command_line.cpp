@@ -33,15 +33,30 @@ constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 /// All texts of the command line, before any value is read.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, loads,
-        backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases;
+    std::string scene, key, repeat, accelerations, steps, output, restart, name, sizes, joints,
+        loads, backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases;
     std::vector<std::string> scenes;
     SamplingOptionTexts sampling;
     bool quick = false, overwrite = false, branch = false, explain = false, measure = false,
          calibrate = false, alike = false;
 };
 
-/// Adds the options that every command has.
+/// Adds the options that every command has: --json, --quiet and --log-level.
+void add_answer(CLI::App& command, CommonOptions& c) {
+    command
+        .add_option(
+            "--json", c.json,
+            "also write the results as JSON; - writes them to standard output instead of the text")
+        ->type_name("FILE");
+    command.add_flag("--quiet", c.quiet, "print errors only");
+    command
+        .add_option(
+            "--log-level", c.log_level,
+            "log lines on standard error: trace | debug | info | warn (default) | error | off")
+        ->type_name("LEVEL");
+}
+
+/// Adds the options that every command with a scene or a benchmark has.
 void add_common(CLI::App& command, Words& words) {
     CommonOptions& c = words.common;
     command
@@ -69,17 +84,7 @@ void add_common(CLI::App& command, Words& words) {
                     "for cuda-levels: number of lowest tree levels that the GPU assembles (UP) and "
                     "disassembles (DOWN), 0 to all; from 1 on also the bodies (auto: as predicted)")
         ->type_name("UP[,DOWN]");
-    command
-        .add_option(
-            "--json", c.json,
-            "also write the results as JSON; - writes them to standard output instead of the text")
-        ->type_name("FILE");
-    command.add_flag("--quiet", c.quiet, "print errors only");
-    command
-        .add_option(
-            "--log-level", c.log_level,
-            "log lines on standard error: trace | debug | info | warn (default) | error | off")
-        ->type_name("LEVEL");
+    add_answer(command, c);
 }
 /// Adds --backend for one backend.
 void add_backend(CLI::App& command, Words& words) {
@@ -109,6 +114,21 @@ void add_refine(CLI::App& command, Words& words) {
                     "scene's solver.refine, 0): 1 or 2 restore the digits lost to nearly parallel "
                     "revolute joints, light bodies between heavy ones and thin bodies")
         ->type_name("K");
+}
+
+/// Adds `keys`, which takes no scene and none of the options that change one.
+void add_keys(CLI::App& app, Words& words) {
+    CLI::App* const command = app.add_subcommand(
+        "keys", "print the keys that a scene may have: type, default, unit, meaning");
+    command
+        ->add_option("NAME", words.key,
+                     "a map, such as dynamics or forces.openmm, or a key, such as friction "
+                     "(default: all maps)")
+        ->type_name("");
+    add_answer(*command, words.common);
+    command->footer(
+        "Examples:\n  catena keys dynamics\n  catena keys friction\n  catena keys --json "
+        "keys.json");
 }
 
 /// Adds all commands with their options and examples.
@@ -280,6 +300,7 @@ void add_commands(CLI::App& app, Words& words) {
         if (each->get_name() != "bench") add_backend(*each, words);
         add_common(*each, words);
     }
+    add_keys(app, words);
 }
 
 /// Returns views of the texts.
@@ -517,6 +538,14 @@ BenchRequest bench_request(Words const& words) {
     return request;
 }
 
+/// Returns the request of `keys`.
+KeysRequest keys_request(Words const& words) {
+    KeysRequest request;
+    static_cast<CommonOptions&>(request) = checked(words.common);
+    request.name = words.key;
+    return request;
+}
+
 /// Returns the request of a command.
 Request request_of(std::string const& command, Words const& words) {
     if (command == "check") return scene_request<CheckRequest>(words, command);
@@ -524,6 +553,7 @@ Request request_of(std::string const& command, Words const& words) {
     if (command == "run") return run_request(words);
     if (command == "report") return report_request(words);
     if (command == "bench") return bench_request(words);
+    if (command == "keys") return keys_request(words);
     auto request = scene_request<SolveRequest>(words, "solve");
     request.accelerations = words.accelerations;
     request.repeat = repeat_of(words, request.repeat);

@@ -40,4 +40,8 @@ Outcome report_scenes(ReportScenes const&, Communicator const&, ReportRequest co
 /// Measures the stability suite, which has scenes of its own; writes the same files.
 Outcome report_stability(Communicator const&, ReportRequest const&);
 
+/// Declared keys of the maps, or of the key, that the request names. Throws InputError for a name
+/// that is neither.
+Outcome declared_keys(KeysRequest const&);
+
 }  // namespace catena::command

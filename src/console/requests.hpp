@@ -112,12 +112,16 @@ std::vector<std::int64_t> bench_sizes(std::string const& name);
 /// True if the benchmark has the option --figure, --output, --joints, --alike, --loads, --sizes or
 /// --repeat.
 bool bench_takes(std::string const& name, std::string const& option);
+/// Options of `keys`, which prints the keys that a scene may have.
+struct KeysRequest : CommonOptions {
+    std::string name;  // name of a map or a key; empty: all maps
+};
 /// The text that answers --help or --version.
 struct Answer : CommonOptions {
     std::string text;
 };
 
 using Request = std::variant<Answer, CheckRequest, PlanRequest, SolveRequest, RunRequest,
-                             ReportRequest, BenchRequest>;
+                             ReportRequest, BenchRequest, KeysRequest>;
 
 }  // namespace catena::command

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "keys/maps.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
@@ -36,7 +37,7 @@ double Distribution::draw(Draws& draws) const {
 
 Distribution read_distribution(Node const& node) {
     if (node.kind != Node::Kind::map) return positive(node);
-    Fields const kinds(node, {"uniform", "log_uniform", "normal", "choice"});
+    Fields const kinds(node, keys::distribution);
     if (node.items.size() != 1)
         fail(node, fmt::format("the distribution has {} kinds", node.items.size()),
              "give a number or one of `uniform`, `log_uniform`, `normal`, `choice`");

@@ -16,6 +16,7 @@
 #include "generate/start_fit.hpp"
 #include "io/memory_limit.hpp"
 #include "io/printable.hpp"
+#include "keys/maps.hpp"
 #include "reader/chain_request.hpp"
 #include "reader/generator_entry.hpp"
 #include "reader/linked.hpp"
@@ -32,11 +33,7 @@ namespace catena::scene {
 namespace {
 
 /// The entry with all keys that a chain may have.
-Fields chain_fields(Node const& entry) {
-    return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies",
-                          "generator", "model", "positions", "links", "base", "tip", "anchor",
-                          "conformation", "rigid", "charge_termini", "velocities"});
-}
+Fields chain_fields(Node const& entry) { return Fields(entry, keys::chain); }
 
 /// Returns the single key that defines the bodies of the chain. Throws InputError for none or
 /// several.
@@ -206,7 +203,7 @@ class ChainReader {
             }
         } else if (source_.kind == Node::Kind::map) {
             request_.allow("rigid bodies", {});
-            Node const& file = Fields(source_, {"hdf5"}).need("hdf5", "hdf5: chain.h5");
+            Node const& file = Fields(source_, keys::hdf5).need("hdf5", "hdf5: chain.h5");
             chain.bodies =
                 read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
         } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {

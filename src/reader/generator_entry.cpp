@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "generate/random.hpp"
+#include "keys/maps.hpp"
 
 namespace catena::scene {
 
@@ -12,8 +13,7 @@ namespace {
 
 /// Returns the single generator of the entry; throws InputError for several.
 Node const& single_entry(Node const& node) {
-    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "elastic_rod", "polygon",
-                              "freely_jointed", "worm_like"});
+    Fields const kinds(node, keys::generator);
     if (node.items.size() != 1)
         fail(node, fmt::format("the chain has {} generators", node.items.size()),
              "give one of `random`, `pendulum`, `coil`, `dill`, `elastic_rod`, `polygon`, "
@@ -66,8 +66,7 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
 
 // Random bodies and joints; `rigid` mixes rigid bodies into chains of links.
 void GeneratorEntry::read_random() {
-    Fields const fields(entry_,
-                        {"bodies", "joint", "rigid", "mass", "length", "inertia", "seed", "loads"});
+    Fields const fields(entry_, keys::random);
     RandomChain& chain = random_.emplace();
     size_ = chain.bodies = whole(fields.need("bodies", "bodies: 100"), 1);
     chain.joint = random_joint(fields.need("joint", "joint: revolute"));
@@ -95,10 +94,9 @@ void GeneratorEntry::read_random() {
 void GeneratorEntry::read_rods() {
     bool const swinging = entry_.key == "pendulum", dill = entry_.key == "dill";
     char const* const count = swinging ? "links" : "bodies";
-    Fields const fields =
-        swinging ? Fields(entry_, {"links", "mass", "length", "radius", "seed"})
-        : dill   ? Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "ratio"})
-                 : Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "twist"});
+    Fields const fields = swinging ? Fields(entry_, keys::pendulum)
+                          : dill   ? Fields(entry_, keys::dill)
+                                   : Fields(entry_, keys::coil);
     Rods& rods = rods_.emplace();
     size_ = rods.bodies = whole(fields.need(count, std::string(count) + ": 8"), 1);
     take(fields, "mass", rods.mass), take(fields, "length", rods.length);
@@ -128,8 +126,8 @@ void GeneratorEntry::read_rods() {
 void GeneratorEntry::read_walk() {
     bool const worm = entry_.key == "worm_like";
     char const* const count = worm ? "bodies" : "beads";
-    Fields const fields = worm ? Fields(entry_, {"bodies", "persistence", "length", "mass", "seed"})
-                               : Fields(entry_, {"beads", "length", "mass", "seed"});
+    Fields const fields =
+        worm ? Fields(entry_, keys::worm_like) : Fields(entry_, keys::freely_jointed);
     Walk& walk = walk_.emplace();
     size_ = walk.beads = whole(fields.need(count, std::string(count) + ": 100"), 1);
     take(fields, "mass", walk.mass);
@@ -144,7 +142,7 @@ void GeneratorEntry::read_walk() {
 
 // Regular polygons, to be closed by a tip.
 void GeneratorEntry::read_polygon() {
-    Fields const fields(entry_, {"bodies", "joint", "mass", "length", "radius", "spin"});
+    Fields const fields(entry_, keys::polygon);
     Polygon& shape = polygon_.emplace();
     size_ = shape.sides = whole(fields.need("bodies", "bodies: 12"), 3);
     shape.joint = choice<JointType>(fields.need("joint", "joint: spherical"),
@@ -170,7 +168,7 @@ void GeneratorEntry::read_polygon() {
 
 // Elastic rods in thermal equilibrium; rods longer than ten persistence lengths are refused.
 void GeneratorEntry::read_elastic_rod() {
-    Fields const fields(entry_, {"bodies", "mass", "length", "radius", "bend", "twist", "seed"});
+    Fields const fields(entry_, keys::elastic_rod);
     ElasticRod& rod = elastic_.emplace();
     size_ = rod.bodies = whole(fields.need("bodies", "bodies: 100"), 1);
     rod.mass = positive(fields.need("mass", "mass: 6500"));

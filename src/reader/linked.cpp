@@ -13,6 +13,7 @@
 #include "bodies/physics.hpp"
 #include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
+#include "keys/maps.hpp"
 
 namespace catena::scene {
 
@@ -43,8 +44,7 @@ class LinkedReader {
             if (Node const* const extra = item.find(key))
                 fail(*extra, fmt::format("key `{}` does not apply to a chain of links", key),
                      "leave it out");
-        Fields const body(item, {"mass", "inertia", "com", "position", "quaternion", "velocity",
-                                 "omega", "residue", "beads", "joint"});
+        Fields const body(item, keys::linked);
         linked_.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         bead ? add_bead(body) : add_rigid(body);
         Node const* const velocity = body.find("velocity");
@@ -109,7 +109,7 @@ class LinkedReader {
             k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
         Node const* length = nullptr;
         if (node) {
-            Fields const joint(*node, {"type", "length", "translation"});
+            Fields const joint(*node, keys::link);
             length = joint.find("length");
             if (length && none)
                 fail(*length, "a link length for body 1 of a free base, which has no link",

@@ -13,6 +13,7 @@
 
 #include "error.hpp"
 #include "io/printable.hpp"
+#include "keys/maps.hpp"
 #include "reader/chains.hpp"
 #include "reader/filling.hpp"
 #include "reader/force_notes.hpp"
@@ -105,8 +106,7 @@ Scene parse_scene(std::string const& text, std::string const& name,
                   std::vector<std::string> const& overrides) try {
     std::unique_ptr<Node> const root = scene::parse_document(text, name);
     for (std::string const& change : overrides) scene::apply_override(*root, change);
-    Fields const fields(*root, {"title", "units", "chains", "box", "forces", "dynamics", "solver",
-                                "output", "relax"});
+    Fields const fields(*root, scene::keys::top);
     Scene made = read_frame(fields, name);
     std::vector<scene::Draft> drafts = read_chains(fields, made);
     scene::check_together(*root, made, drafts);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "bodies/bodies.hpp"
+#include "keys/maps.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 
@@ -79,11 +80,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 
 /// Reads `forces.openmm`.
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
-    Fields const fields(
-        node, {"builder",        "system",    "topology",     "map",          "temperature",
-               "ionic_strength", "ph",        "switch_width", "platform",     "precision",
-               "threads",        "device",    "path",         "overlap",      "layers",
-               "split",          "replicate", "audit",        "force_groups", "charge_termini"});
+    Fields const fields(node, keys::openmm);
     if (si)
         fail(node, "OpenMM's forces in SI units",
              "write `units: md`: OpenMM uses nm, ps, amu and kJ/mol only");
@@ -149,8 +146,7 @@ std::optional<Vec3> read_box(Node const& box) {
     if (box.kind == Node::Kind::scalar && box.text == "none") return std::nullopt;
     if (box.kind != Node::Kind::map)
         fail(box, describe(box) + " is not a box", "give `{periodic: [60, 60, 60]}` or `none`");
-    Node const& edges =
-        Fields(box, {"periodic", "fill"}).need("periodic", "periodic: [60, 60, 60]");
+    Node const& edges = Fields(box, keys::box).need("periodic", "periodic: [60, 60, 60]");
     Vec3 const lengths = vector3(edges);
     for (double const length : lengths.data) {
         if (!(length > 0))
@@ -196,8 +192,7 @@ calvados2::ChargedTermini read_charged_termini(Node const& node) {
 
 // `implicit-midpoint` is a documented name that this version refuses.
 DynamicsSpec read_dynamics(Node const& node, bool si) {
-    Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed",
-                               "constraint_tolerance", "tolerance", "fixman"});
+    Fields const fields(node, keys::dynamics);
     DynamicsSpec dynamics;
     dynamics.given = true;
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
@@ -227,7 +222,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
 }
 
 ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::string const& file) {
-    Fields const fields(node, {"gravity", "drag", "openmm"}, {"springs", "torques"});
+    Fields const fields(node, keys::forces);
     ForceSpec forces;
     take(fields, "gravity", forces.gravity, vector3);
     if (Node const* const drag = fields.find("drag")) {
@@ -240,9 +235,7 @@ ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::stri
 }
 
 SolverSpec read_solver(Node const& node) {
-    Fields const fields(
-        node, {"backend", "handles", "threads", "gpu_levels", "simd", "refine", "balance"},
-        {"precision"});
+    Fields const fields(node, keys::solver);
     SolverSpec solver;
     take(fields, "backend", solver.backend, [](Node const& n) {
         return choice<Backend>(n, {{"auto", Backend::automatic},
@@ -278,8 +271,7 @@ SolverSpec read_solver(Node const& node) {
 
 // Observables are compared with the known columns; the others have simple ranges.
 OutputSpec read_output(Node const& node) {
-    Fields const fields(node, {"every", "checkpoint_every", "checkpoint_minutes", "observables",
-                               "joint_forces", "velocities", "coordinates"});
+    Fields const fields(node, keys::output);
     OutputSpec output;
     take(fields, "every", output.every, [](Node const& n) { return whole(n, 1); });
     take(fields, "checkpoint_every", output.checkpoint_every,

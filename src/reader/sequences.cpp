@@ -9,6 +9,7 @@
 
 #include "generate/conformation.hpp"
 #include "generate/generators.hpp"
+#include "keys/maps.hpp"
 #include "reader/gaps.hpp"
 #include "scene/calvados2.hpp"
 #include "scene/fasta.hpp"
@@ -137,7 +138,7 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
     BeadArrays made = beads_at(start, length, 1, request.base, request.anchor());
     request.set_lengths(made);
     Node const* const from =
-        file ? &Fields(*conformation, {"pdb"}).need("pdb", "pdb: start.pdb") : positions;
+        file ? &Fields(*conformation, keys::conformation).need("pdb", "pdb: start.pdb") : positions;
     if (from) request.place(made, request.positions_from(*from, made.size()), *from);
     return made;
 }

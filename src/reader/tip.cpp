@@ -15,6 +15,7 @@
 #include "bodies/ring.hpp"
 #include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
+#include "keys/maps.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 
@@ -207,7 +208,7 @@ ReadTip read_tip(Fields const& chain) {
     Node const* const tip = chain.find("tip");
     if (!tip) return read;
     if (tip->kind == Node::Kind::map) {
-        Fields const fields(*tip, {"joint", "ring"});
+        Fields const fields(*tip, keys::tip);
         Node const* const ring = fields.find("ring");
         if (ring && fields.find("joint"))
             fail(*ring, "both `ring` and `joint`", "keep one of them");

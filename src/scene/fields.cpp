@@ -7,12 +7,13 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 namespace catena::scene {
 
 namespace {
 
-bool among(std::string_view name, Names names) {
+bool among(std::string_view name, std::span<std::string_view const> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -45,24 +46,31 @@ Node const& scalar(Node const& node, char const* expected, char const* remedy) {
     return node;
 }
 
+/// Throws the InputError for a key that is not declared.
+[[noreturn]] void refuse_key(Node const& item, KeyMap const& declared) {
+    if (among(item.key, declared.later)) fail_later(item, "key `" + item.key + "`");
+    std::vector<std::string_view> const names = declared.names();
+    std::vector<std::string_view> all = names;
+    all.insert(all.end(), declared.later.begin(), declared.later.end());
+    auto const near = nearest(item.key, all);
+    fail(item, "unknown key `" + shown(item.key) + "`",
+         near ? "did you mean `" + *near + "`?" : "use one of " + joined(names));
+}
+
 }  // namespace
 
-Fields::Fields(Node const& map, Names known, Names later) : map_(map) {
-    std::vector<std::string_view> const names(known);
+Fields::Fields(Node const& map, KeyMap const& declared) : map_(map), declared_(&declared) {
     if (map.kind != Node::Kind::map)
-        fail(map, describe(map) + " is not a map", "give a map with keys among " + joined(names));
-    for (Node const& item : map.items) {
-        if (among(item.key, known)) continue;
-        if (among(item.key, later)) fail_later(item, "key `" + item.key + "`");
-        std::vector<std::string_view> all = names;
-        all.insert(all.end(), later.begin(), later.end());
-        auto const near = nearest(item.key, all);
-        fail(item, "unknown key `" + shown(item.key) + "`",
-             near ? "did you mean `" + *near + "`?" : "use one of " + joined(names));
-    }
+        fail(map, describe(map) + " is not a map",
+             "give a map with keys among " + joined(declared.names()));
+    for (Node const& item : map.items)
+        if (!declared.find(item.key)) refuse_key(item, declared);
 }
 
 Node const* Fields::find(std::string_view key) const {
+    if (!declared_->find(key))
+        throw std::logic_error(
+            fmt::format("key `{}` is not declared among those of {}", key, declared_->name));
     Node const* const found = map_.find(key);
     if (found && found->kind == Node::Kind::null)
         fail(*found, fmt::format("key `{}` has no value", key), "give one or leave the key out");
@@ -237,7 +245,7 @@ std::string joined(std::span<std::string_view const> names) {
 }
 
 void refuse_choice(Node const& node, std::vector<std::string_view> const& choices, Names later) {
-    if (node.kind == Node::Kind::scalar && among(node.text, later))
+    if (node.kind == Node::Kind::scalar && among(node.text, {later.begin(), later.size()}))
         fail_later(node, fmt::format("`{}: {}`", node.key, node.text));
     std::vector<std::string_view> all = choices;
     all.insert(all.end(), later.begin(), later.end());

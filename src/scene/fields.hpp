@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "keys/key.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
 #include "scene/node.hpp"
@@ -19,21 +20,24 @@ namespace catena::scene {
 
 using Names = std::initializer_list<std::string_view>;
 
-/// A map with known keys only. Throws InputError for a value that is not a map. Throws InputError
-/// for an unknown key and names the nearest known key, or all of them. Keys of `later` belong to
-/// the documented format and are refused as not supported by this version.
+/// A map with declared keys only. Throws InputError for a value that is not a map. Throws
+/// InputError for an unknown key and names the nearest declared key, or all of them. Keys for later
+/// versions are refused as not supported by this version.
 class Fields {
   public:
-    Fields(Node const& map, Names known, Names later = {});
+    /// Checks the keys of `map` against the declared ones, which must outlive this object.
+    Fields(Node const& map, KeyMap const& declared);
 
     Node const& node() const { return map_; }
-    /// Returns nullptr if the key is absent. Throws InputError if the key has no value.
+    /// Returns nullptr if the key is absent. Throws InputError if the key has no value, and
+    /// std::logic_error for a key that is not declared.
     Node const* find(std::string_view key) const;
     /// Throws InputError if the key is absent; `example`, e.g. "mass: 1.2", is the remedy.
     Node const& need(std::string_view key, std::string const& example) const;
 
   private:
     Node const& map_;
+    KeyMap const* declared_;
 };
 
 /// Result of parse_number(). The grammar is strict: an optional sign, decimal digits with at most

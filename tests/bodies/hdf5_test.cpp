@@ -4,6 +4,7 @@
 #include <map>
 
 #include "io/hdf5_data.hpp"
+#include "keys/maps.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/reader/refusal.hpp"
 
@@ -151,6 +152,18 @@ TEST_F(Hdf5Bodies, refusals_of_the_file) {
     EXPECT_EQ(refusal(), "the dataset is missing" + at("mass") + "add it: its rows are the bodies");
     EXPECT_EQ(refusal_of("chains: [{bodies: {hdf: a.h5}}]"),
               "unknown key `hdf` (s.yaml: chains[0].bodies.hdf, line 1): did you mean `hdf5`?");
+}
+
+TEST_F(Hdf5Bodies, each_declared_dataset_is_read) {
+    auto const right = data_;
+    for (scene::Key const& dataset : scene::keys::datasets.keys) {
+        std::string const name(dataset.name);
+        if (name == "joint_type") continue;  // refusals_of_values
+        data_[name] = {{3, 7}, Numbers(21, 0)};
+        EXPECT_NE(refusal().find("dataset `" + name + "`"), std::string::npos)
+            << name << ": " << refusal();
+        data_ = right;
+    }
 }
 
 TEST_F(Hdf5Bodies, refusals_of_values) {

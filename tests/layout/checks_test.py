@@ -4,6 +4,7 @@
 usage: checks_test.py [--catena PROGRAM]      (with it also commands and scenes of pages)
 """
 import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -117,10 +118,31 @@ def of_tutorials(catena, good):
     yield expect("a program that fails", commands(catena, program.replace("[0]", "[0][1]"), page), 1, "IndexError")
 
 
+def keys(catena, change=None):
+    """What keys.py says of a page with a table of each map, all of them current unless `change` changed the page."""
+    maps = json.loads(subprocess.run([catena, "keys", "--json", "-"], capture_output=True, text=True, check=True).stdout)["maps"]
+    script = [os.path.join(HERE, "keys.py"), "--catena", catena]
+    with tempfile.TemporaryDirectory() as root:
+        write(root, "inputs/README.md", "# Page\n\n" + "\n".join(f"<!-- keys {each['map']} -->\n<!-- end -->\n" for each in maps))
+        written = run(*script, root)
+        with open(os.path.join(root, "inputs/README.md"), encoding="utf-8") as file:
+            page = file.read()
+        write(root, "inputs/README.md", change(page) if change else page)
+        return run(*script, "--check", root) if written[0] == 0 else written
+
+
+def of_keys(catena):
+    yield expect("current tables", keys(catena), 0, "tables of keys are current")
+    yield expect("a changed default", keys(catena, lambda page: page.replace("| 300 |", "| 310 |")), 1, "tables of keys are not current")
+    yield expect("a lost table", keys(catena, lambda page: page.replace("<!-- keys solver -->", "")), 1, "0 tables of the keys of solver")
+    yield expect("an unknown table", keys(catena, lambda page: page + "<!-- keys wallpaper -->\n<!-- end -->\n"), 1, "no map wallpaper")
+
+
 def main():
     results = [*of_pages(), *of_rooms()]
     if sys.argv[1:2] == ["--catena"]:
-        results += of_commands(os.path.abspath(sys.argv[2]))
+        catena = os.path.abspath(sys.argv[2])
+        results += [*of_commands(catena), *of_keys(catena)]
     print(f"{sum(results)} of {len(results)} checks passed")
     return 0 if all(results) else 1
 

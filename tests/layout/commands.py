@@ -23,8 +23,8 @@ import tempfile
 import markdown
 
 PROGRAM = re.compile(r"^(.*/)?catena$")
-SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench")
-RUN = ("check", "plan", "solve", "run")
+SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench", "keys")
+RUN = ("check", "plan", "solve", "run", "keys")
 TUTORIALS = "tutorials"  # name of their folder
 PLOT = "jobs/plot.py"
 PLACEHOLDERS = {"SCENE", "scene.yaml", "DIR", "FILE", "OTHER"}

@@ -1,0 +1,100 @@
+// Implements `keys`: the declared keys of a scene as text and JSON.
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "command/commands.hpp"
+#include "console/option_values.hpp"
+#include "console/text.hpp"
+#include "error.hpp"
+#include "keys/maps.hpp"
+
+namespace catena::command {
+namespace {
+
+using scene::Key;
+using scene::KeyMap;
+
+/// Declared keys of one map, all or some.
+struct Chosen {
+    KeyMap const& map;
+    std::vector<Key> keys;
+};
+
+/// True for the map itself, for the maps within it, and for the last part of its name.
+bool is_named(KeyMap const& map, std::string const& name) {
+    return map.name == name || map.name.starts_with(name + ".") || map.name.ends_with("." + name);
+}
+
+/// Returns the maps that `name` names; an empty name means all.
+std::vector<Chosen> maps_named(std::string const& name) {
+    std::vector<Chosen> chosen;
+    for (KeyMap const* const map : scene::keys::all())
+        if (name.empty() || is_named(*map, name))
+            chosen.push_back({*map, {map->keys.begin(), map->keys.end()}});
+    return chosen;
+}
+
+/// Returns the declarations of the key `name` in all maps that have it.
+std::vector<Chosen> keys_named(std::string const& name) {
+    std::vector<Chosen> chosen;
+    for (KeyMap const* const map : scene::keys::all())
+        if (Key const* const key = map->find(name)) chosen.push_back({*map, {*key}});
+    return chosen;
+}
+
+/// Throws InputError that suggests the nearest name of a map or key.
+[[noreturn]] void refuse_name(std::string const& name) {
+    std::vector<std::string_view> known;
+    for (KeyMap const* const map : scene::keys::all()) {
+        known.push_back(map->name);
+        for (Key const& key : map->keys) known.push_back(key.name);
+    }
+    std::string const remedy = remedy_for(name, known);
+    throw InputError("`" + name + "` is neither a key nor a map of keys", "command line",
+                     remedy.starts_with("did") ? remedy : "catena keys prints all of them");
+}
+
+void add(Text& text, Key const& key) {
+    text.entry(std::string(key.name),
+               fmt::format("{}{}{}; default: {}", key.type,
+                           key.unit.empty() ? "" : "; unit: ", key.unit, key.fallback));
+    text.entry("", std::string(key.meaning));
+    if (!key.example.empty()) text.entry("", std::string(key.example));
+}
+
+Text text_of(std::vector<Chosen> const& chosen) {
+    Text text;
+    for (auto const& [map, keys] : chosen) {
+        text.heading(fmt::format("{} ({})", map.name, map.place));
+        for (Key const& key : keys) add(text, key);
+    }
+    return text;
+}
+
+Json json_of(Chosen const& chosen) {
+    Json keys = Json::array();
+    for (Key const& key : chosen.keys)
+        keys.push_back({{"key", key.name},
+                        {"type", key.type},
+                        {"default", key.fallback},
+                        {"unit", key.unit},
+                        {"meaning", key.meaning},
+                        {"example", key.example}});
+    return {{"map", chosen.map.name}, {"place", chosen.map.place}, {"keys", keys}};
+}
+
+}  // namespace
+
+Outcome declared_keys(KeysRequest const& request) {
+    std::vector<Chosen> chosen = maps_named(request.name);
+    if (chosen.empty()) chosen = keys_named(request.name);
+    if (chosen.empty()) refuse_name(request.name);
+    Outcome outcome;
+    outcome.text = text_of(chosen).str();
+    outcome.json["maps"] = Json::array();
+    for (Chosen const& each : chosen) outcome.json["maps"].push_back(json_of(each));
+    return outcome;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,137 @@
+// Declares the keys of chains, their starts and their tips.
+#include "keys/maps.hpp"
+
+namespace catena::scene::keys {
+namespace {
+
+constexpr Key chain_keys[] = {
+    {"name", "text", "`chain-1`, `chain-2`, ...", "",
+     "The chain has this unique name; its copies have -1, -2 and so on behind it.", "name: asyn"},
+    {"count", "integer >= 1", "1", "", "The entry stands for this number of copies.", "count: 20"},
+    {"sequence", "text", "none", "",
+     "The chain has a bead for each of these one-letter codes; blanks are ignored.",
+     "sequence: MDVFMKGLSK"},
+    {"fasta", "path", "none", "", "The sequence is a record of this FASTA file.",
+     "fasta: asyn.fasta"},
+    {"record", "text or integer", "the record named as the chain, else the only one", "",
+     "This record of `fasta` counts: its name, a part of it between bars, or its number from 1.",
+     "record: P37840"},
+    {"pdb", "path", "none", "",
+     "Residues and start positions are those of a PDB file that holds one chain.", "pdb: asyn.pdb"},
+    {"bodies", "list of maps, or `{hdf5: path}`", "none", "",
+     "The chain has these bodies, one by one.", "bodies: {hdf5: chain.h5}"},
+    {"generator", "map with one key", "none", "", "A generator makes the chain from a few numbers.",
+     "generator: {pendulum: {links: 8}}"},
+    {"model", "`calvados2`", "required with `sequence`, `fasta`, `pdb`", "",
+     "Beads have the masses of this model and its links of 0.38 nm.", "model: calvados2"},
+    {"positions", "path", "none", "length; PDB: angstrom",
+     "A sequence or a `freely_jointed` or `worm_like` chain starts from this table of lines "
+     "`x,y,z`, or PDB file.",
+     "positions: start.csv"},
+    {"links", "`model`, `as_given`", "`model`", "",
+     "Links have the model's lengths, or each the length that it has in the positions.",
+     "links: as_given"},
+    {"base", "`free`, `fixed`", "`free`; `fixed` for `pendulum`, `coil`, `dill`", "",
+     "With `fixed`, joint 1 connects body 1 to the ground; with `free` there is no joint 1.",
+     "base: fixed"},
+    {"tip", "`free`, `fixed`, `ring`, or a map", "`free`", "",
+     "The last body is free, or joined to the ground or to the first body.", "tip: fixed"},
+    {"anchor", "3 numbers", "`[0, 0, 0]`", "length",
+     "The first link of a chain on a fixed base begins at this point of the ground.",
+     "anchor: [0, 0, 10]"},
+    {"conformation", "`extended`, `self_avoiding`, or `{pdb: path}`", "`extended`", "",
+     "A sequence without `positions` starts as a zig-zag, as a random walk that avoids itself, or "
+     "from a PDB file.",
+     "conformation: self_avoiding"},
+    {"rigid", "list of pairs", "none", "",
+     "Residues from the first to the last of each pair become one rigid body.",
+     "rigid: [[1, 34], [47, 80]]"},
+    {"charge_termini", "`both`, `N`, `C`, `none`", "`forces.openmm.charge_termini`", "",
+     "These ends are free termini: N adds +1 e and 2 amu, C adds -1 e and 16 amu.",
+     "charge_termini: none"},
+    {"velocities", "`thermal`, `zero`", "as given, else thermal if a temperature is named", "",
+     "The chain starts with thermal velocities or at rest.", "velocities: zero"},
+};
+
+constexpr Key conformation_keys[] = {
+    {"pdb", "path", "required", "", "The chain starts from the positions of this PDB file.",
+     "pdb: start.pdb"},
+};
+
+constexpr Key tip_keys[] = {
+    {"joint", "map", "required without `ring`", "",
+     "This joint connects the last body to the ground.",
+     "joint: {type: spherical, translation: [1, 0, 0]}"},
+    {"ring", "map", "required without `joint`", "",
+     "This joint connects the last body to the first.",
+     "ring: {type: spherical, translation: [1, 0, 0]}"},
+};
+
+constexpr std::string_view any_but_free =
+    "`revolute`, `planar`, `universal`, `spherical`, `prismatic`, `helical`, `weld`, `link`";
+constexpr Key tip_type{"type",
+                       any_but_free,
+                       "required",
+                       "",
+                       "The joint leaves the motions of this type free.",
+                       "type: spherical"};
+constexpr Key tip_axis{"axis",
+                       "3 numbers, not all 0",
+                       "required by `revolute`, `planar`, `prismatic`, `helical`",
+                       "",
+                       "The joint's axis has this direction.",
+                       "axis: [0, 0, 1]"};
+constexpr Key tip_axes{"axes",
+                       "2 axes",
+                       "required by `universal`",
+                       "",
+                       "The joint has these two axes, which are not parallel.",
+                       "axes: [[1, 0, 0], [0, 1, 0]]"};
+constexpr Key tip_pitch{"pitch",
+                        "number, not 0",
+                        "required by `helical`",
+                        "length / radian",
+                        "The joint shifts by this much per radian.",
+                        "pitch: 0.1"};
+constexpr Key tip_length{
+    "length",      "number > 0", "as the start has it", "length", "A link at the tip is this long.",
+    "length: 0.38"};
+
+constexpr Key tip_joint_keys[] = {
+    tip_type,
+    tip_axis,
+    tip_axes,
+    tip_pitch,
+    {"rotation", "3 rows of 3 numbers", "identity", "",
+     "This rotation matrix is the orientation of the joint's frame J in the last body."},
+    {"translation", "3 numbers", "`[0, 0, 0]`", "length",
+     "J has its origin here in the last body; a link starts here.", "translation: [1, 0, 0]"},
+    {"q", "as `q` of a joint", "0; identity", "as of a joint",
+     "The joint stands at this position at the start.", "q: 0.3"},
+    {"anchor", "3 numbers", "where the start puts it; required by `link`", "length",
+     "The ground's frame has its origin at this point of W.", "anchor: [2, 0, 0]"},
+    tip_length,
+};
+
+constexpr Key ring_keys[] = {
+    tip_type,
+    tip_axis,
+    tip_axes,
+    tip_pitch,
+    {"rotation", "3 rows of 3 numbers", "where the first body stands at the start", "",
+     "This rotation matrix is the orientation of the joint's frame J in the last body."},
+    {"translation", "3 numbers", "required but for `link`", "length",
+     "The first body's origin is here in the last body.", "translation: [1, 0, 0]"},
+    tip_length,
+};
+
+}  // namespace
+
+constinit KeyMap const chain{"chains", "chains[i]", chain_keys};
+constinit KeyMap const conformation{"chains.conformation", "chains[i].conformation",
+                                    conformation_keys};
+constinit KeyMap const tip{"tip", "chains[i].tip", tip_keys};
+constinit KeyMap const tip_joint{"tip.joint", "chains[i].tip.joint", tip_joint_keys};
+constinit KeyMap const tip_ring{"tip.ring", "chains[i].tip.ring", ring_keys};
+
+}  // namespace catena::scene::keys
