@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "bench/sampling_options.hpp"
+#include "command/analyse_options.hpp"
 #include "console/option_values.hpp"
 #include "error.hpp"
 #include "report/figures.hpp"
@@ -37,11 +38,27 @@ struct Words {
         backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases;
     std::vector<std::string> scenes;
     SamplingOptionTexts sampling;
+    AnalyseOptionTexts analyse;
     bool quick = false, overwrite = false, branch = false, explain = false, measure = false,
          calibrate = false, alike = false;
 };
 
-/// Adds the options that every command has.
+/// Adds the options of what is written, which every command has.
+void add_output(CLI::App& command, CommonOptions& c) {
+    command
+        .add_option(
+            "--json", c.json,
+            "also write the results as JSON; - writes them to standard output instead of the text")
+        ->type_name("FILE");
+    command.add_flag("--quiet", c.quiet, "print errors only");
+    command
+        .add_option(
+            "--log-level", c.log_level,
+            "log lines on standard error: trace | debug | info | warn (default) | error | off")
+        ->type_name("LEVEL");
+}
+
+/// Adds the options that every command on a scene has.
 void add_common(CLI::App& command, Words& words) {
     CommonOptions& c = words.common;
     command
@@ -69,17 +86,7 @@ void add_common(CLI::App& command, Words& words) {
                     "for cuda-levels: number of lowest tree levels that the GPU assembles (UP) and "
                     "disassembles (DOWN), 0 to all; from 1 on also the bodies (auto: as predicted)")
         ->type_name("UP[,DOWN]");
-    command
-        .add_option(
-            "--json", c.json,
-            "also write the results as JSON; - writes them to standard output instead of the text")
-        ->type_name("FILE");
-    command.add_flag("--quiet", c.quiet, "print errors only");
-    command
-        .add_option(
-            "--log-level", c.log_level,
-            "log lines on standard error: trace | debug | info | warn (default) | error | off")
-        ->type_name("LEVEL");
+    add_output(command, c);
 }
 /// Adds --backend for one backend.
 void add_backend(CLI::App& command, Words& words) {
@@ -281,6 +288,8 @@ void add_commands(CLI::App& app, Words& words) {
         if (each->get_name() != "bench") add_backend(*each, words);
         add_common(*each, words);
     }
+    for (CLI::App* each : add_trajectory_commands(app, words.analyse))
+        add_output(*each, words.common);
 }
 
 /// Returns views of the texts.
@@ -525,6 +534,8 @@ Request request_of(std::string const& command, Words const& words) {
     if (command == "run") return run_request(words);
     if (command == "report") return report_request(words);
     if (command == "bench") return bench_request(words);
+    if (command == "analyse") return analyse_request(words.analyse, checked(words.common));
+    if (command == "convert") return convert_request(words.analyse, checked(words.common));
     auto request = scene_request<SolveRequest>(words, "solve");
     request.accelerations = words.accelerations;
     request.repeat = repeat_of(words, request.repeat);

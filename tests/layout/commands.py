@@ -23,7 +23,7 @@ import tempfile
 import markdown
 
 PROGRAM = re.compile(r"^(.*/)?catena$")
-SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench")
+SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench", "analyse", "convert")
 RUN = ("check", "plan", "solve", "run")
 TUTORIALS = "tutorials"  # name of their folder
 PLOT = "jobs/plot.py"
