@@ -44,7 +44,7 @@ def read_table(path):
 
 
 def read_maps(path):
-    """(title, cutoff label, probabilities) of the first maps in the file."""
+    """(title, cutoff label, probabilities, sites a row) of the first maps in the file."""
     import h5py
     maps = []
     with h5py.File(path, "r") as file:
@@ -52,10 +52,10 @@ def read_maps(path):
             return maps
         contacts = file["contacts"]
         label = f"{contacts['cutoff'][0]:g} {contacts.attrs['unit']}"
-        for part, words in (("within", "within"), ("between", "between")):
+        for part in ("within", "between"):
             for name, group in contacts[part].items():
                 if group["mean"].size > 1:
-                    maps.append((f"Contacts {words} {name}", label, group["mean"][:]))
+                    maps.append((f"Contacts {part} {name}", label, group["mean"][:], int(file.attrs["sites_a_row"])))
     return maps[:MOST_MAPS]
 
 
@@ -66,7 +66,7 @@ def draw_curves(axes, name, table):
     for number, (kind, points) in enumerate(list(curves.items())[:MOST_KINDS]):
         x, value, error = (np.array(part) for part in points)
         colour = COLOURS[number % len(COLOURS)]
-        axes.plot(x, value, color=colour, linewidth=1.3, label=kind)
+        axes.plot(x, value, drawstyle="steps-mid" if name == "radius_distribution" else "default", color=colour, linewidth=1.3, label=kind)
         known = np.isfinite(error)
         axes.fill_between(x[known], (value - error)[known], (value + error)[known], color=colour, alpha=0.25, linewidth=0)
     if log_x and any(max(points[0]) > 0 for points in curves.values()):
@@ -75,7 +75,7 @@ def draw_curves(axes, name, table):
         axes.set_yscale("log")
     axes.set_title(title, fontsize=11, color=INK)
     axes.set_xlabel(x_label.replace("_", " "), fontsize=9, color=SOFT)
-    axes.set_ylabel(y_label.replace("value ", "").replace("value", "cosine"), fontsize=9, color=SOFT)
+    axes.set_ylabel(y_label.replace("value [", "").rstrip("]").replace("value", "cosine"), fontsize=9, color=SOFT)
     axes.grid(True, color=GRID)
     axes.set_axisbelow(True)
     axes.tick_params(colors=SOFT, labelsize=8)
@@ -83,14 +83,16 @@ def draw_curves(axes, name, table):
         axes.legend(fontsize=7, frameon=False)
 
 
-def draw_map(figure, axes, title, label, probability):
+def draw_map(figure, axes, title, label, probability, sites):
     import numpy as np
     from matplotlib.colors import LogNorm
     shown = np.where(probability > 0, probability, np.nan)
     norm = LogNorm(vmin=max(np.nanmin(shown), 1e-5), vmax=np.nanmax(shown)) if np.isfinite(shown).any() else None
-    image = axes.imshow(shown, origin="lower", cmap="viridis", norm=norm, aspect="auto")
+    image = axes.imshow(shown, origin="lower", cmap="viridis", norm=norm, aspect="auto",
+                        extent=[0.5, sites * probability.shape[1] + 0.5, 0.5, sites * probability.shape[0] + 0.5])
     figure.colorbar(image, ax=axes, fraction=0.05)
     axes.set_title(f"{title}, {label}", fontsize=10, color=INK)
+    axes.set_xlabel("site", fontsize=9, color=SOFT)
     axes.tick_params(colors=SOFT, labelsize=8)
 
 
@@ -110,8 +112,8 @@ def draw_picture(folder, output):
     panels = iter(grid.flat)
     for name, table in tables.items():
         draw_curves(next(panels), name, table)
-    for title, label, probability in maps:
-        draw_map(figure, next(panels), title, label, probability)
+    for one in maps:
+        draw_map(figure, next(panels), *one)
     for axes in panels:
         axes.set_visible(False)
     try:

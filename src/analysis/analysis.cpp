@@ -112,6 +112,11 @@ void report_contacts(Analysis& to, Contacts const& contacts) {
             "chains come within the cutoff of their own periodic images {} times: the box is too "
             "small for them; these pairs are not counted",
             contacts.own_images()));
+    if (to.kinds.size() > Contacts::most_paired_kinds)
+        to.notes.push_back(
+            fmt::format("there are no contact maps between different kinds of chains: {} kinds are "
+                        "more than {}",
+                        to.kinds.size(), Contacts::most_paired_kinds));
     if (to.sites_a_row > 1)
         to.notes.push_back(
             fmt::format("{} consecutive sites share a row of the contact maps", to.sites_a_row));

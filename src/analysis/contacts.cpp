@@ -14,7 +14,8 @@ namespace catena::analysis {
 namespace {
 
 constexpr std::int64_t most_rows = 1000;  // rows of all kinds together
-constexpr std::int64_t map_blocks = 16;   // blocks of frames that give the errors
+constexpr std::size_t most_paired_kinds = Contacts::most_paired_kinds;
+constexpr std::int64_t map_blocks = 16;  // blocks of frames that give the errors
 
 /// Counts of one map, and the scatter of its blocks of frames.
 class MapCounts {
@@ -93,7 +94,10 @@ struct Contacts::State {
     std::size_t rows_of(std::size_t kind) const {
         return static_cast<std::size_t>((kinds[kind].sites + sites_a_row - 1) / sites_a_row);
     }
-    bool has_pairs(std::size_t a, std::size_t b) const { return a != b || kinds[a].copies() > 1; }
+    /// True if there is a map for chains of two kinds, a <= b.
+    bool has_pairs(std::size_t a, std::size_t b) const {
+        return a == b ? kinds[a].copies() > 1 : kinds.size() <= most_paired_kinds;
+    }
     /// Index in `between` of two kinds, a <= b.
     std::size_t pair(std::size_t a, std::size_t b) const {
         return a * kinds.size() - a * (a + 1) / 2 + b;
@@ -111,9 +115,11 @@ struct Contacts::State {
     }
     void count_between(Owner const& a, Owner const& b) {
         if (a.kind > b.kind) return count_between(b, a);
-        MapCounts& map = between[pair(a.kind, b.kind)];
-        map.add(a.row, b.row);
-        if (a.kind == b.kind) map.add(b.row, a.row);
+        if (has_pairs(a.kind, b.kind)) {
+            MapCounts& map = between[pair(a.kind, b.kind)];
+            map.add(a.row, b.row);
+            if (a.kind == b.kind) map.add(b.row, a.row);
+        }
         ++other_contacts[of_copy(a)];
         ++other_contacts[of_copy(b)];
     }

@@ -38,6 +38,9 @@ class Contacts {
     /// ContactNumbers::within. The maps hold all pairs.
     static constexpr std::int64_t least_separation = 3;
 
+    /// Largest number of kinds for which there are maps between different kinds.
+    static constexpr std::size_t most_paired_kinds = 32;
+
     Contacts(Topology const&, std::vector<Kind> const&, double cutoff, std::int64_t frames);
     ~Contacts();
     /// Throws InputError if the cutoff exceeds half an edge of the box.
@@ -46,9 +49,11 @@ class Contacts {
     /// Number of consecutive sites that share a row or column. It is 1 unless all kinds together
     /// have more than 1,000 sites.
     std::int64_t sites_a_row() const;
-    /// One map within each kind, then between all pairs of kinds that have two different chains.
+    /// Returns one map within each kind, then between all pairs of kinds that have two different
+    /// chains.
     std::vector<ContactMap> maps() const;
-    /// Numbers of contacts of a chain, by kind. A contact between two chains counts for both.
+    /// Returns numbers of contacts of a chain, by kind. A contact between two chains counts for
+    /// both.
     std::vector<ContactNumbers> const& numbers() const;
     /// Number of pairs, over all frames, in which a chain is near its own periodic image. They are
     /// no contacts.

@@ -137,6 +137,20 @@ TEST(Contacts, LongChainsShareRows) {
     EXPECT_DOUBLE_EQ(map.mean[2], 0);
 }
 
+TEST(Contacts, ManyKindsHaveNumbersAndNoMapsOfPairs) {
+    std::vector<std::int64_t> lengths;
+    for (std::int64_t n = 2; n < 42; ++n) lengths.push_back(n);
+    Topology const topology = test::topology_of(lengths);
+    std::vector<Kind> const kinds = kinds_of(topology);
+    Snapshot s;
+    s.position.assign(topology.mass.size(), Vec3::zero());
+    Contacts contacts(topology, kinds, 0.4, 1);
+    contacts.add(s);
+    EXPECT_EQ(contacts.maps().size(), 40U);
+    EXPECT_EQ(contacts.numbers()[0].between.values()[0],
+              2.0 * static_cast<double>(topology.mass.size() - 2));
+}
+
 /// Single sites with a dense part of 20 nm around `middle` in a box of 100 nm.
 DensityProfile slab(double middle, int frames) {
     std::size_t const inside = 900, outside = 100;
