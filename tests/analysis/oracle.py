@@ -226,6 +226,19 @@ def read_dcd(topology, dcd):
         return universe.trajectory.dt, frames
 
 
+def check_with_mdtraj(folder, dcd, right, box):
+    """mdtraj reads DCD files by VMD's plugin."""
+    try:
+        import mdtraj
+    except ImportError:
+        print("mdtraj is missing (pip install mdtraj): DCD files were read by MDAnalysis alone")
+        return
+    found = mdtraj.load(dcd, top=os.path.join(folder, "topology.pdb"))
+    agree("positions by mdtraj", found.xyz, right, 1e-6)
+    agree("boxes by mdtraj", found.unitcell_lengths, [box] * len(right), 1e-6)
+    agree("angles by mdtraj", found.unitcell_angles, np.full((len(right), 3), 90.0), 1e-6)
+
+
 def check_dcd(catena, folder, scratch):
     topology = os.path.join(folder, "topology.psf")
     with h5py.File(os.path.join(folder, "trajectory.h5md")) as file:
@@ -246,6 +259,7 @@ def check_dcd(catena, folder, scratch):
         agree("times", [f[0] for f in frames], time, 1e-6)
         agree("boxes", [f[1] for f in frames], [[*(10 * box), 90, 90, 90]] * len(frames), 1e-12)
         agree("positions", [f[2] for f in frames], (10 * right).astype(np.float32), 0)
+        check_with_mdtraj(folder, dcd, right, box)
     part = os.path.join(scratch, "part.dcd")
     run(catena, "convert", folder, part, "--first", "10", "--last", "19", "--quiet")
     dt, frames = read_dcd(topology, part)
