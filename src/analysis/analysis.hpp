@@ -70,8 +70,8 @@ struct Analysis {
 Analysis analyse(TrajectoryFile const&, Options const&);
 
 /// Writes the tables of an analysis into an existing folder: summary.csv, one table per kind of
-/// curve, and with HDF5 maps.h5, which holds contact maps and the series of every copy. Returns
-/// their paths.
+/// curve, and with HDF5 maps.h5, which holds contact maps and the series of every copy. Tables
+/// and the picture of an earlier analysis are removed. Returns the paths.
 std::vector<std::string> write_tables(Analysis const&, std::string const& folder);
 
 /// Writes maps.h5.

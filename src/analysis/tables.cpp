@@ -39,6 +39,15 @@ std::string summary(Analysis const& analysis) {
     return text;
 }
 
+/// Removes what an earlier analysis left, so that the folder holds one analysis.
+void remove_earlier(std::filesystem::path const& folder) {
+    std::error_code ignored;
+    for (char const* name :
+         {"radius_distribution.csv", "internal_distances.csv", "bond_correlation.csv",
+          "displacement.csv", "density.csv", "analysis.png"})
+        std::filesystem::remove(folder / name, ignored);
+}
+
 std::string with_unit(std::string const& name, std::string const& unit) {
     return unit.empty() ? name : name + " [" + unit + "]";
 }
@@ -49,6 +58,7 @@ std::vector<std::string> write_tables(Analysis const& analysis, std::string cons
     auto const path = [&](std::string const& name) {
         return (std::filesystem::path(folder) / name).string();
     };
+    remove_earlier(folder);
     std::vector<std::string> written{path("summary.csv")};
     write_text_file(written.back(), summary(analysis));
     std::map<std::string, std::string> tables;

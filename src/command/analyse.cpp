@@ -35,8 +35,8 @@ std::string number(double value, char const* mark = "") {
 std::string kinds_text(Analysis const& a) {
     std::string text;
     for (std::size_t k = 0; k < a.kinds.size() && k < most_named_kinds; ++k)
-        text += fmt::format("{}{} x {} of {} sites", k > 0 ? ", " : "", a.kinds[k].copies(),
-                            a.kinds[k].name, a.kinds[k].sites);
+        text += fmt::format("{}{} x {} of {}", k > 0 ? ", " : "", a.kinds[k].copies(),
+                            a.kinds[k].name, counted(a.kinds[k].sites, "site", "sites"));
     if (a.kinds.size() > most_named_kinds)
         text += fmt::format(" and {} more kinds", a.kinds.size() - most_named_kinds);
     return text;

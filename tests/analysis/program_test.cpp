@@ -55,6 +55,9 @@ TEST_F(Trajectories, AnAnalysisPrintsItsTableAndWritesItsFiles) {
          {"summary.csv", "internal_distances.csv", "bond_correlation.csv", "maps.h5"})
         EXPECT_TRUE(is_there("run/analysis/" + name)) << name;
     EXPECT_FALSE(is_there("run/analysis/density.csv"));
+    std::ofstream(folder_ / "run/analysis/density.csv") << "of an earlier analysis";
+    expect_good(in_folder({"analyse", "run", "--cutoff", "0"}));
+    EXPECT_FALSE(is_there("run/analysis/density.csv"));
     EXPECT_NE(read_text_file(folder_ / "run/analysis/summary.csv").find("asphericity,chain,,"),
               std::string::npos);
 }
