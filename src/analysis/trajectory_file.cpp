@@ -16,6 +16,8 @@ namespace {
 
 using namespace hdf5;
 
+/// Largest ratio of compression to believe: deflate compresses at most 1032 bytes into one.
+constexpr double best_compression = 1100;
 std::string const reading = "read the trajectory";
 std::string const position_group = "particles/trajectory/position/";
 
@@ -40,14 +42,26 @@ Dataset open_data(Place const& place, std::string const& name) {
                          place.doing));
 }
 
+/// Returns the number of entries of a one-dimensional dataset. Throws InputError if the dataset has
+/// another shape or claims more than the file can hold, as damaged ones may.
+std::size_t entries_of(Dataset const& data, Place const& place, std::string const& name) {
+    std::vector<hsize_t> const shape = shape_of(data, place);
+    Type const type(check(H5Dget_type(data.get()), place.file, place.doing));
+    double const claimed = shape.size() == 1 ? static_cast<double>(shape[0]) *
+                                                   static_cast<double>(H5Tget_size(type.get()))
+                                             : INFINITY;
+    if (claimed > best_compression * static_cast<double>(std::filesystem::file_size(place.file)))
+        throw InputError("the trajectory is damaged, its " + name + " claims more than it holds",
+                         place.file, "run the scene again");
+    return shape[0];
+}
+
 /// Reads a one-dimensional dataset of numbers as `type`.
 template <class Number>
 std::vector<Number> read_list(Place const& place, std::string const& name, hid_t type) {
     Dataset const data = open_data(place, name);
-    std::vector<hsize_t> const shape = shape_of(data, place);
-    if (shape.size() != 1) fail(place.file + ", " + name, place.doing);
-    std::vector<Number> numbers(shape[0]);
-    if (shape[0] > 0)
+    std::vector<Number> numbers(entries_of(data, place, name));
+    if (!numbers.empty())
         check(H5Dread(data.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
               place.file + ", " + name, place.doing);
     return numbers;
@@ -57,17 +71,16 @@ std::vector<Number> read_list(Place const& place, std::string const& name, hid_t
 std::vector<std::string> read_texts(Place const& place, std::string const& name) {
     Dataset const data = open_data(place, name);
     Type const type(check(H5Dget_type(data.get()), place.file, place.doing));
-    std::vector<hsize_t> const shape = shape_of(data, place);
-    if (shape.size() != 1 || H5Tget_class(type.get()) != H5T_STRING ||
-        H5Tis_variable_str(type.get()) > 0)
+    std::size_t const count = entries_of(data, place, name);
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0)
         fail(place.file + ", " + name, place.doing);
     std::size_t const length = H5Tget_size(type.get());
-    std::string all(length * shape[0], '\0');
-    if (shape[0] > 0)
+    std::string all(length * count, '\0');
+    if (count > 0)
         check(H5Dread(data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()),
               place.file + ", " + name, place.doing);
     std::vector<std::string> texts;
-    for (std::size_t k = 0; k < shape[0]; ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
         std::string const text = all.substr(k * length, length);
         texts.push_back(text.substr(0, text.find('\0')));
     }

@@ -8,6 +8,7 @@ import argparse
 import csv
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -267,6 +268,18 @@ def check_dcd(catena, folder, scratch):
     agree("positions of a part", [f[2] for f in frames], (10 * x[10:20]).astype(np.float32), 0)
 
 
+def check_damage(catena, folder, scratch):
+    """A list that claims more than its file can hold is refused before memory is taken for it."""
+    damaged = os.path.join(scratch, "damaged.h5md")
+    shutil.copy(os.path.join(folder, "trajectory.h5md"), damaged)
+    with h5py.File(damaged, "r+") as file:
+        del file["catena/chains/beads"]
+        file.create_dataset("catena/chains/beads", shape=(10 ** 10,), chunks=(1024,), dtype="i8")
+    done = subprocess.run([catena, "analyse", damaged], capture_output=True, text=True, check=False)
+    check(done.returncode == 2 and done.stderr.count("\n") == 1, f"damage: {done.returncode} {done.stderr}")
+    check("its catena/chains/beads claims more than it holds" in done.stderr, done.stderr)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder")
@@ -288,6 +301,7 @@ def main():
         check_density(t, scratch)
         check_displacement(t, numbers, scratch)
         check_dcd(arguments.catena, arguments.folder, scratch)
+        check_damage(arguments.catena, arguments.folder, scratch)
     print(f"{compared} numbers agree with numpy and MDAnalysis")
 
 
