@@ -60,6 +60,14 @@ int execute(Session const& session, KeysRequest const& request) {
     return session.conclude(declared_keys(request));
 }
 
+int execute(Session const& session, AnalyseRequest const& request) {
+    return session.conclude(analyse_run(session.communicator(), request));
+}
+
+int execute(Session const& session, ConvertRequest const& request) {
+    return session.conclude(convert_run(session.communicator(), request));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {

@@ -8,7 +8,6 @@
 #include "bench/sampling_rows.hpp"
 #include "console/option_values.hpp"
 #include "error.hpp"
-#include "scene/fields.hpp"
 
 namespace catena::command {
 namespace {
@@ -16,19 +15,6 @@ namespace {
 /// Bounds of the options: ps, and number of steps between samples.
 constexpr double longest_step = 10, longest_time = 1e9;  // ps
 constexpr double most_steps = 1e9;                       // between samples
-
-/// Reads a number within bounds. Throws InputError for anything else.
-double number_between(std::string const& option, std::string const& text, double least,
-                      double most) {
-    double value = 0;
-    if (scene::parse_number(text, value) != scene::NumberFault::none)
-        throw InputError(fmt::format("`{}` is not a number", text), option,
-                         fmt::format("give a number from {} to {}", least, most));
-    if (!(value >= least && value <= most))
-        throw InputError(fmt::format("{} is not between {} and {}", text, least, most), option,
-                         "give a number in this range");
-    return value;
-}
 
 /// Throws InputError if an option of `bench sampling` was given for another benchmark.
 void refuse_for(SamplingOptionTexts const& words, std::string const& name) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "bench/sampling_options.hpp"
+#include "command/analyse_options.hpp"
 #include "console/option_values.hpp"
 #include "error.hpp"
 #include "report/figures.hpp"
@@ -37,6 +38,7 @@ struct Words {
         loads, backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases;
     std::vector<std::string> scenes;
     SamplingOptionTexts sampling;
+    AnalyseOptionTexts analyse;
     bool quick = false, overwrite = false, branch = false, explain = false, measure = false,
          calibrate = false, alike = false;
 };
@@ -301,6 +303,8 @@ void add_commands(CLI::App& app, Words& words) {
         add_common(*each, words);
     }
     add_keys(app, words);
+    for (CLI::App* each : add_trajectory_commands(app, words.analyse))
+        add_answer(*each, words.common);
 }
 
 /// Returns views of the texts.
@@ -554,6 +558,8 @@ Request request_of(std::string const& command, Words const& words) {
     if (command == "report") return report_request(words);
     if (command == "bench") return bench_request(words);
     if (command == "keys") return keys_request(words);
+    if (command == "analyse") return analyse_request(words.analyse, checked(words.common));
+    if (command == "convert") return convert_request(words.analyse, checked(words.common));
     auto request = scene_request<SolveRequest>(words, "solve");
     request.accelerations = words.accelerations;
     request.repeat = repeat_of(words, request.repeat);

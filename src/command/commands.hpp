@@ -23,6 +23,11 @@ Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
 /// Runs a simulation and writes its folder.
 Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 
+/// Analyses the trajectory of a run on rank 0 and writes its tables. Collective.
+Outcome analyse_run(Communicator const&, AnalyseRequest const&);
+/// Writes the trajectory of a run in another format, on rank 0. Collective.
+Outcome convert_run(Communicator const&, ConvertRequest const&);
+
 /// Scenes that `report` measures: the solver's error on all scenes, the errors of integrators and
 /// forces on those that have them.
 struct ReportScenes {

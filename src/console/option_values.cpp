@@ -56,6 +56,18 @@ std::int64_t whole_number(std::string const& option, std::string const& text, st
     return number;
 }
 
+double number_between(std::string const& option, std::string const& text, double least,
+                      double most) {
+    double value = 0;
+    if (scene::parse_number(text, value) != scene::NumberFault::none)
+        throw InputError(fmt::format("`{}` is not a number", text), option,
+                         fmt::format("give a number from {} to {}", least, most));
+    if (!(value >= least && value <= most))
+        throw InputError(fmt::format("{} is not between {} and {}", text, least, most), option,
+                         "give a number in this range");
+    return value;
+}
+
 double number_with_unit(std::string const& option, std::string const& text,
                         std::span<Unit const> units) {
     std::size_t const end = text.find_last_of("0123456789.");

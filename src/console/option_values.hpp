@@ -20,6 +20,9 @@ void require_files_apart(std::string const& scene, std::string const& json,
 /// [least, most].
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least,
                           std::int64_t most = INT64_MAX);
+/// Reads a number from `least` to `most`. Throws InputError naming the option for anything else.
+double number_between(std::string const& option, std::string const& text, double least,
+                      double most);
 /// A unit and its value in the base unit.
 struct Unit {
     std::string_view name;

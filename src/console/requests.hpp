@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/analysis.hpp"
+#include "analysis/dcd.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::command {
@@ -107,6 +109,17 @@ struct BenchRequest : CommonOptions {
     int repeat = 21;
     SamplingOptions sampling;
 };
+/// A request of `analyse`.
+struct AnalyseRequest : CommonOptions {
+    std::string folder;  // of a run, or its trajectory
+    std::string output;  // folder; empty: `analysis` in the run's folder
+    analysis::Options options;
+};
+/// A request of `convert`.
+struct ConvertRequest : CommonOptions {
+    std::string folder;  // of a run, or its trajectory
+    analysis::DcdRequest dcd;
+};
 /// Returns the default numbers of bodies of a benchmark; empty if it chooses them itself.
 std::vector<std::int64_t> bench_sizes(std::string const& name);
 /// True if the benchmark has the option --figure, --output, --joints, --alike, --loads, --sizes or
@@ -121,7 +134,8 @@ struct Answer : CommonOptions {
     std::string text;
 };
 
-using Request = std::variant<Answer, CheckRequest, PlanRequest, SolveRequest, RunRequest,
-                             ReportRequest, BenchRequest, KeysRequest>;
+using Request =
+    std::variant<Answer, CheckRequest, PlanRequest, SolveRequest, RunRequest, ReportRequest,
+                 BenchRequest, KeysRequest, AnalyseRequest, ConvertRequest>;
 
 }  // namespace catena::command

@@ -20,6 +20,18 @@ TEST(Help, EveryCommandExplainsItselfWithExamples) {
     }
 }
 
+TEST(Help, CommandsOnTrajectoriesExplainThemselvesWithExamples) {
+    for (std::string const command : {"analyse", "convert"}) {
+        EXPECT_NE(catena({"--help"}).out.find("\n  " + command + " "), std::string::npos);
+        Ended const one = catena({command, "--help"});
+        expect_good(one);
+        EXPECT_NE(one.out.find("Examples:\n  catena " + command), std::string::npos) << one.out;
+        for (std::string const option : {"--first", "--json", "--quiet", "--log-level"})
+            EXPECT_NE(one.out.find(option), std::string::npos) << command << " " << option;
+        EXPECT_EQ(one.out.find("--backend"), std::string::npos) << one.out;
+    }
+}
+
 TEST(Help, VersionSaysWhatIsInTheBuild) {
     Ended const e = catena({"--version"});
     expect_good(e);

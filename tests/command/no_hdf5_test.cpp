@@ -10,6 +10,8 @@ TEST(NoHdf5, SaysSo) {
                    2, "built without HDF5 (--accelerations a.h5)");
     expect_refused(catena({"run", input("arm.yaml"), "--steps", "1", "--quiet"}, folder.path()), 2,
                    "built without HDF5");
+    expect_refused(catena({"analyse", "run"}, folder.path()), 2, "built without HDF5");
+    expect_refused(catena({"convert", "run", "a.dcd"}, folder.path()), 2, "built without HDF5");
     EXPECT_NE(catena({"--version"}).out.find("HDF5    none"), std::string::npos);
 }
 

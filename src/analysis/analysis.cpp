@@ -1,0 +1,186 @@
+// Reads the frames of a trajectory and collects what they show.
+#include "analysis/analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "analysis/chain_numbers.hpp"
+#include "analysis/density.hpp"
+#include "error.hpp"
+
+namespace catena::analysis {
+namespace {
+
+constexpr double default_cutoff = 1;  // nm
+constexpr double elongation = 1.5;    // least ratio of edges for a slab that is not asked for
+constexpr double least_contrast = 2;  // least ratio of the densities of two phases
+constexpr char const* axes[] = {"x", "y", "z"};
+
+/// Index of the first frame to analyse.
+std::size_t first_frame(TrajectoryFile const& trajectory, Options const& options) {
+    std::size_t const frames = trajectory.steps().size();
+    auto const discarded =
+        static_cast<std::size_t>(std::floor(options.discard * static_cast<double>(frames)));
+    std::size_t const first = std::max(options.first, discarded);
+    if (first >= frames || first > options.last)
+        throw InputError(
+            fmt::format("there is no frame from {} on, the trajectory has {}", first, frames),
+            "--first", "frames count from 0: choose fewer");
+    return first;
+}
+
+/// Axis of the slab: the one asked for, or the box's longest edge if there are several chains.
+std::optional<int> slab_axis(TrajectoryFile const& trajectory, Options const& options) {
+    std::optional<Vec3> const& box = trajectory.topology().box;
+    if (options.slab && !box)
+        throw InputError("a density profile needs a periodic box, and the trajectory has none",
+                         std::string("--slab ") + axes[*options.slab], "leave --slab out");
+    if (options.slab || !options.find_slab || !box || trajectory.topology().chains.size() < 2)
+        return options.slab;
+    for (int i = 0; i < 3; ++i)
+        if ((*box)[i] >= elongation * std::max((*box)[(i + 1) % 3], (*box)[(i + 2) % 3])) return i;
+    return std::nullopt;
+}
+
+/// Cutoff of contacts; 0 for none.
+double cutoff_of(TrajectoryFile const& trajectory, Options const& options) {
+    return options.cutoff.value_or(trajectory.topology().si ? 0 : default_cutoff);
+}
+
+/// Adds profiles and phases of a slab.
+void report_slab(Analysis& to, DensityProfile const& profile, bool si) {
+    std::string const unit = si ? "kg/m^3" : "mg/ml";
+    for (std::size_t k = 0; k <= to.kinds.size(); ++k) {
+        if (k == to.kinds.size() && k == 1) break;  // all chains are of one kind
+        Curve curve{"density", k < to.kinds.size() ? to.kinds[k].name : "all",
+                    "z",       to.length_unit,
+                    unit,      {},
+                    {}};
+        for (std::size_t bin = 0; bin < profile.bins(); ++bin) {
+            curve.x.push_back(profile.z(bin));
+            curve.y.push_back(profile.at(k, bin));
+        }
+        to.curves.push_back(std::move(curve));
+    }
+    Interfaces const found = profile.interfaces();
+    Range const inside = DensityProfile::dense_region(found),
+                outside = profile.dilute_region(found);
+    std::size_t const all = to.kinds.size();
+    Estimate const dense = profile.in(all, inside), dilute = profile.in(all, outside);
+    if (!(dense.mean >= least_contrast * dilute.mean)) {
+        to.notes.push_back(
+            "no slab was found: the density profile has no dense and dilute part with room between "
+            "its interfaces; see density.csv");
+        return;
+    }
+    for (std::size_t k = 0; k <= all; ++k) {
+        if (k == all && all == 1) break;
+        std::string const kind = k < all ? to.kinds[k].name : "";
+        to.quantities.push_back({"dense_concentration", kind, unit, profile.in(k, inside),
+                                 fmt::format("|z| to {:.4g} {}", inside.most, to.length_unit)});
+        to.quantities.push_back({"dilute_concentration", kind, unit, profile.in(k, outside),
+                                 fmt::format("|z| from {:.4g} {}", outside.least, to.length_unit)});
+    }
+    to.quantities.push_back(
+        {"slab_thickness",
+         "",
+         to.length_unit,
+         {2 * found.position, NAN, false, NAN},
+         fmt::format("between interfaces of width {:.3g} {}", found.width, to.length_unit)});
+}
+
+void report_contacts(Analysis& to, Contacts const& contacts) {
+    to.maps = contacts.maps();
+    to.sites_a_row = contacts.sites_a_row();
+    for (std::size_t k = 0; k < to.kinds.size(); ++k) {
+        ContactNumbers const& numbers = contacts.numbers()[k];
+        std::string const& kind = to.kinds[k].name;
+        std::string const basis = fmt::format("distance to {:g} {}", to.cutoff, to.length_unit);
+        if (to.kinds[k].sites > Contacts::least_separation)
+            to.quantities.push_back({"contacts_within", kind, "", numbers.within.estimate(),
+                                     basis + fmt::format(", s >= {}", Contacts::least_separation)});
+        bool const others = to.kinds.size() > 1 || to.kinds[k].copies() > 1;
+        if (others)
+            to.quantities.push_back(
+                {"contacts_between", kind, "", numbers.between.estimate(), basis + ", per chain"});
+    }
+    if (contacts.own_images() > 0)
+        to.notes.push_back(fmt::format(
+            "chains come within the cutoff of their own periodic images {} times: the box is too "
+            "small for them; these pairs are not counted",
+            contacts.own_images()));
+    if (to.kinds.size() > Contacts::most_paired_kinds)
+        to.notes.push_back(
+            fmt::format("there are no contact maps between different kinds of chains: {} kinds are "
+                        "more than {}",
+                        to.kinds.size(), Contacts::most_paired_kinds));
+    if (to.sites_a_row > 1)
+        to.notes.push_back(
+            fmt::format("{} consecutive sites share a row of the contact maps", to.sites_a_row));
+}
+
+/// Says which frames the displacement leaves out.
+void note_uneven(Analysis& to, EvenFrames const& even) {
+    if (even.between > 0)
+        to.notes.push_back(fmt::format(
+            "displacements leave out {} of the frames: they are not {} steps after the one before",
+            even.between, even.interval));
+    if (even.after > 0)
+        to.notes.push_back(
+            fmt::format("displacements end at step {}: the next frame is not {} steps later",
+                        to.steps[even.frames.back()], even.interval));
+}
+
+Analysis frame_of(TrajectoryFile const& trajectory, Options const& options) {
+    Analysis to;
+    to.trajectory = trajectory.name();
+    to.title = trajectory.topology().title;
+    to.length_unit = trajectory.topology().si ? "m" : "nm";
+    to.time_unit = trajectory.topology().si ? "s" : "ps";
+    to.kinds = kinds_of(trajectory.topology());
+    to.frames_in_file = trajectory.steps().size();
+    to.first_frame = first_frame(trajectory, options);
+    auto const skipped = static_cast<std::ptrdiff_t>(to.first_frame);
+    auto const end = static_cast<std::ptrdiff_t>(std::min(to.frames_in_file - 1, options.last)) + 1;
+    to.steps.assign(trajectory.steps().begin() + skipped, trajectory.steps().begin() + end);
+    to.times.assign(trajectory.times().begin() + skipped, trajectory.times().begin() + end);
+    to.cutoff = cutoff_of(trajectory, options);
+    if (!trajectory.has_residues())
+        to.notes.emplace_back(
+            "there is no topology.pdb beside the trajectory: chains with equal masses are taken as "
+            "copies");
+    return to;
+}
+
+}  // namespace
+
+Analysis analyse(TrajectoryFile const& trajectory, Options const& options) {
+    Topology const& topology = trajectory.topology();
+    Analysis to = frame_of(trajectory, options);
+    auto const frames = std::ssize(to.steps);
+    std::vector<ChainNumbers> chains;
+    for (Kind const& kind : to.kinds) chains.emplace_back(topology, kind, frames);
+    std::optional<DensityProfile> profile;
+    if (auto const axis = slab_axis(trajectory, options))
+        profile.emplace(topology, to.kinds, *axis, options.bins, frames);
+    std::unique_ptr<Contacts> contacts;
+    if (to.cutoff > 0) contacts = std::make_unique<Contacts>(topology, to.kinds, to.cutoff, frames);
+    Snapshot snapshot;
+    for (std::size_t f = 0; f < to.steps.size(); ++f) {
+        trajectory.read(to.first_frame + f, snapshot);
+        for (ChainNumbers& of_kind : chains) of_kind.add(snapshot);
+        if (profile) profile->add(snapshot);
+        if (contacts) contacts->add(snapshot);
+    }
+    EvenFrames const even = even_frames(to.steps);
+    for (ChainNumbers const& of_kind : chains) of_kind.report(to, options, even);
+    if (contacts) report_contacts(to, *contacts);
+    if (profile) report_slab(to, *profile, topology.si);
+    note_uneven(to, even);
+    return to;
+}
+
+}  // namespace catena::analysis

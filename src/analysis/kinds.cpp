@@ -1,0 +1,61 @@
+// Sorts the chains of a topology into kinds.
+#include "analysis/kinds.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+
+namespace catena::analysis {
+namespace {
+
+/// Bytes in which equal chains agree and other chains differ.
+std::string signature(Topology const& topology, Topology::Chain const& chain) {
+    auto const first = static_cast<std::size_t>(chain.first),
+               count = static_cast<std::size_t>(chain.count);
+    std::string key(chain.ring ? "ring " : "open ");
+    std::string masses(count * sizeof(double), '\0');
+    std::memcpy(masses.data(), topology.mass.data() + first, masses.size());
+    key += masses;
+    for (std::size_t k = first; k < first + count; ++k) key += topology.residue[k] + ' ';
+    return key;
+}
+
+/// Returns the beginning that all names share, without the digits and separators at its end.
+std::string shared_name(Topology const& topology, std::vector<std::size_t> const& chains) {
+    std::string name = topology.chains[chains.front()].name;
+    if (chains.size() == 1) return name;
+    for (std::size_t const chain : chains) {
+        std::string const& other = topology.chains[chain].name;
+        name.resize(static_cast<std::size_t>(
+            std::mismatch(name.begin(), name.end(), other.begin(), other.end()).first -
+            name.begin()));
+    }
+    std::size_t const end = name.find_last_not_of("0123456789 _-.:#[(");
+    return end == std::string::npos ? topology.chains[chains.front()].name
+                                    : name.substr(0, end + 1);
+}
+
+}  // namespace
+
+std::vector<Kind> kinds_of(Topology const& topology) {
+    std::vector<Kind> kinds;
+    std::map<std::string, std::size_t> known;
+    for (std::size_t c = 0; c < topology.chains.size(); ++c) {
+        Topology::Chain const& chain = topology.chains[c];
+        if (chain.count == 0) continue;
+        auto const [found, is_new] = known.emplace(signature(topology, chain), kinds.size());
+        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}});
+        kinds[found->second].chains.push_back(c);
+    }
+    std::set<std::string> taken;
+    for (Kind& kind : kinds) {
+        std::string const name = shared_name(topology, kind.chains);
+        kind.name = name;
+        for (int number = 2; !taken.insert(kind.name).second; ++number)
+            kind.name = name + " (" + std::to_string(number) + ")";
+    }
+    return kinds;
+}
+
+}  // namespace catena::analysis

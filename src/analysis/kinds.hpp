@@ -1,0 +1,27 @@
+// Kinds of chains: chains with the same sites are copies of each other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/output.hpp"
+
+namespace catena::analysis {
+
+/// Equal chains. They agree in the number of sites, in every mass and residue name, and in being a
+/// ring or not.
+struct Kind {
+    std::string name;  // unique among the kinds of a trajectory
+    std::int64_t sites = 0;
+    bool ring = false;
+    std::vector<std::size_t> chains;  // indices in the topology, ascending
+
+    std::size_t copies() const { return chains.size(); }
+};
+
+/// Returns the kinds in the order of their first chains. Chains without sites belong to none. A
+/// kind of several copies is named by what the names of its chains begin with.
+std::vector<Kind> kinds_of(Topology const&);
+
+}  // namespace catena::analysis

@@ -1,0 +1,16 @@
+// Replaces the reader of trajectories in a build without HDF5.
+#include "analysis/trajectory_file.hpp"
+#include "error.hpp"
+
+namespace catena::analysis {
+
+struct TrajectoryFile::Series {};
+
+TrajectoryFile::TrajectoryFile(std::string const& place) {
+    throw built_without("HDF5", "trajectory in " + place,
+                        "install HDF5 (libhdf5-dev) and build again");
+}
+TrajectoryFile::~TrajectoryFile() = default;
+void TrajectoryFile::read(std::size_t, Snapshot&) const {}
+
+}  // namespace catena::analysis

@@ -1,0 +1,64 @@
+// `catena convert`: a run's trajectory in another format.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analysis/dcd.hpp"
+#include "command/commands.hpp"
+#include "console/text.hpp"
+#include "mpi/first_rank.hpp"
+
+namespace catena::command {
+namespace {
+
+/// Returns what a reader of the file must know, because the format cannot hold it.
+std::vector<std::string> notes_on(analysis::TrajectoryFile const& trajectory,
+                                  analysis::DcdWritten const& written, std::size_t first) {
+    std::vector<std::string> notes;
+    if (written.left_out > 0)
+        notes.push_back(fmt::format(
+            "{} left out: a DCD file holds one interval, here {} steps",
+            counted(static_cast<long long>(written.left_out), "frame was", "frames were"),
+            written.interval));
+    double const time = trajectory.times()[first],
+                 shown = written.time_step * static_cast<double>(written.first_step);
+    if (std::abs(time - shown) > 1e-6 * std::max(std::abs(time), written.time_step) &&
+        written.frames > 1)
+        notes.push_back(fmt::format(
+            "the first frame is at {:.6g} ps, but readers of DCD files take step times time step, "
+            "{:.6g} ps",
+            time, shown));
+    return notes;
+}
+
+}  // namespace
+
+Outcome convert_run(Communicator const& communicator, ConvertRequest const& request) {
+    Outcome outcome;
+    on_first_rank(communicator, [&] {
+        analysis::TrajectoryFile const trajectory(request.folder);
+        analysis::DcdWritten const written = analysis::write_dcd(trajectory, request.dcd);
+        Text text;
+        text.heading(trajectory.topology().title);
+        text.entry("trajectory", trajectory.name());
+        text.entry("written", request.dcd.file);
+        text.entry("frames", fmt::format("{} of {} sites, from step {} every {} steps of {:.6g} ps",
+                                         written.frames, written.sites, written.first_step,
+                                         written.interval, written.time_step));
+        std::vector<std::string> const notes = notes_on(trajectory, written, request.dcd.first);
+        for (std::string const& note : notes) text.note(note);
+        outcome.text = text.str();
+        outcome.json = {{"trajectory", trajectory.name()},
+                        {"file", request.dcd.file},
+                        {"frames", written.frames},
+                        {"sites", written.sites},
+                        {"first_step", written.first_step},
+                        {"interval", written.interval},
+                        {"time_step", written.time_step},
+                        {"left_out", written.left_out},
+                        {"notes", notes}};
+    });
+    return outcome;
+}
+
+}  // namespace catena::command

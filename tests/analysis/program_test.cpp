@@ -1,0 +1,162 @@
+// `catena analyse` and `catena convert` from outside.
+#include <filesystem>
+#include <fstream>
+
+#include "io/output_file.hpp"
+#include "tests/analysis/sample_trajectory.hpp"
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+/// Writes a trajectory of chains without a box, with frames at the given steps.
+void write_run(std::string const& folder, Topology const& topology,
+               std::vector<std::int64_t> const& steps) {
+    std::filesystem::create_directories(folder);
+    RandomChains draw(1);
+    auto const trajectory =
+        make_trajectory(folder + "/trajectory.h5md", topology, false, false, {});
+    for (std::int64_t const step : steps) {
+        Frame frame;
+        frame.step = step;
+        frame.time = 0.01 * static_cast<double>(step);
+        for (Topology::Chain const& chain : topology.chains)
+            for (Vec3 const& x : draw.chain(static_cast<std::size_t>(chain.count), 0.38, 0.5))
+                frame.positions.push_back(x);
+        trajectory->write(frame);
+        if (step == steps.front()) write_topology(folder, topology, frame);
+    }
+    trajectory->close();
+}
+
+class Trajectories : public ::testing::Test {
+  protected:
+    void write(std::string const& name, std::vector<std::int64_t> const& steps,
+               Topology const& topology = topology_of({12, 12})) {
+        write_run(folder_ / name, topology, steps);
+    }
+    Ended in_folder(Words const& words) { return catena(words, folder_.path()); }
+    bool is_there(std::string const& name) { return std::filesystem::exists(folder_ / name); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Trajectories, AnAnalysisPrintsItsTableAndWritesItsFiles) {
+    write("run", {0, 10, 20, 30, 40, 50});
+    Ended const e = in_folder({"analyse", "run", "--discard", "0.4"});
+    expect_good(e);
+    for (std::string const part :
+         {"frames", "4 of 6, steps 20 to 50", "2 x chain of 12 sites", "radius_of_gyration",
+          "weighted by mass", "scaling_exponent", "persistence_length", "contacts_within",
+          "distance to 1 nm, s >= 3", "run/analysis/summary.csv"})
+        EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
+    for (std::string const name :
+         {"summary.csv", "internal_distances.csv", "bond_correlation.csv", "maps.h5"})
+        EXPECT_TRUE(is_there("run/analysis/" + name)) << name;
+    EXPECT_FALSE(is_there("run/analysis/density.csv"));
+    std::ofstream(folder_ / "run/analysis/density.csv") << "of an earlier analysis";
+    expect_good(in_folder({"analyse", "run", "--cutoff", "0"}));
+    EXPECT_FALSE(is_there("run/analysis/density.csv"));
+    EXPECT_NE(read_text_file(folder_ / "run/analysis/summary.csv").find("asphericity,chain,,"),
+              std::string::npos);
+}
+
+TEST_F(Trajectories, WhatCannotBeComputedIsRefusedInOneLine) {
+    write("run", {0, 10});
+    expect_refused(in_folder({"analyse"}), 2, "no folder is named (command line)");
+    expect_refused(in_folder({"analyse", "nowhere"}), 2, "there is no trajectory (nowhere)");
+    expect_refused(
+        in_folder({"analyse", "run", "--slab", "z"}), 2,
+        "a density profile needs a periodic box, and the trajectory has none (--slab z)");
+    expect_refused(in_folder({"analyse", "run", "--slab", "w"}), 2, "`w` is not a value of --slab");
+    expect_refused(in_folder({"analyse", "run", "--first", "2"}), 2,
+                   "there is no frame from 2 on, the trajectory has 2 (--first)");
+    expect_refused(in_folder({"analyse", "run", "--discard", "1"}), 2, "(--discard)");
+    expect_refused(in_folder({"analyse", "run", "--first", "1", "--discard", "0.1"}), 2,
+                   "both --first and --discard");
+    expect_refused(in_folder({"analyse", "run", "--fit", "9"}), 2,
+                   "`9` is not two numbers (--fit)");
+    expect_refused(in_folder({"analyse", "run", "--fit", "9,3"}), 2, "`9,3` is no range (--fit)");
+    expect_refused(in_folder({"analyse", "run", "--bins", "11"}), 2, "11 is odd (--bins)");
+    expect_refused(in_folder({"analyse", "run", "--cutoff", "-1"}), 2, "(--cutoff)");
+    EXPECT_FALSE(is_there("run/analysis"));
+}
+
+TEST_F(Trajectories, OtherFilesAreNoTrajectories) {
+    std::ofstream(folder_ / "text.h5md") << "no HDF5 at all";
+    expect_refused(in_folder({"analyse", "text.h5md"}), 2, "the trajectory cannot be opened");
+    write("cut", {0, 10, 20});
+    std::filesystem::resize_file(folder_ / "cut/trajectory.h5md", 3000);
+    expect_refused(in_folder({"analyse", "cut"}), 2, "(cut/trajectory.h5md)");
+    write("other", {0, 10});
+    std::filesystem::copy_file(folder_ / "other/topology.pdb", folder_ / "kept.pdb");
+    write_run(folder_ / "other", topology_of({5}), {0});
+    std::filesystem::copy_file(folder_ / "kept.pdb", folder_ / "other/topology.pdb",
+                               std::filesystem::copy_options::overwrite_existing);
+    expect_refused(in_folder({"analyse", "other"}), 2,
+                   "the topology has 24 sites, but the trajectory 5 (other/topology.pdb)");
+}
+
+TEST_F(Trajectories, OneFrameHasValuesWithoutErrors) {
+    write("run", {0});
+    Ended const e = in_folder({"analyse", "run", "--json", "-"});
+    expect_good(e);
+    for (auto const& quantity : e.json().at("quantities")) {
+        if (quantity.at("name") != "radius_of_gyration") continue;
+        EXPECT_GT(quantity.at("value").get<double>(), 0);
+        EXPECT_TRUE(quantity.at("error_by_blocking").is_null());
+    }
+}
+
+TEST_F(Trajectories, MissingResiduesAreNoted) {
+    write("run", {0, 10});
+    std::filesystem::remove(folder_ / "run/topology.pdb");
+    Ended const e = in_folder({"analyse", "run/trajectory.h5md"});
+    expect_good(e);
+    EXPECT_NE(e.out.find("chains with equal masses are taken as copies"), std::string::npos);
+}
+
+TEST_F(Trajectories, DcdHoldsWhatItsFormatCan) {
+    write("run", {0, 100, 200, 250});
+    Ended const e = in_folder({"convert", "run", "run.dcd", "--json", "-"});
+    expect_good(e);
+    EXPECT_EQ(e.json().at("frames"), 3);
+    EXPECT_EQ(e.json().at("left_out"), 1);
+    // Header 92, titles 172, sites 12, three frames of three records of 24 floats.
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "run.dcd"), 92U + 172 + 12 + 3 * 3 * 104);
+    write("gap", {0, 100, 200, 400});
+    expect_refused(in_folder({"convert", "gap", "gap.dcd"}), 2,
+                   "frames are not evenly spaced: after step 200 there is none 100 steps on");
+    EXPECT_FALSE(is_there("gap.dcd"));
+    expect_refused(in_folder({"convert", "run", "run.xtc"}), 2, "is no name of a DCD file");
+    expect_refused(in_folder({"convert", "run", "run.dcd", "--wrap", "chains"}), 2,
+                   "there is no periodic box to wrap into");
+    Topology metres = topology_of({12});
+    metres.si = true;
+    write("si", {0, 10}, metres);
+    expect_refused(in_folder({"convert", "si", "si.dcd"}), 2, "a DCD file holds Angstrom");
+}
+
+TEST_F(Trajectories, ARestartedRunLosesNoFrame) {
+    Words const run{"run",      input("freely-jointed-trimer.yaml"),
+                    "--set",    "output.every=10",
+                    "--output", "trimer",
+                    "--quiet",  "--steps"};
+    Words first = run, second = run;
+    first.push_back("25");
+    second.insert(second.end(), {"50", "--restart", "trimer/checkpoint.h5"});
+    ASSERT_EQ(in_folder(first).status, 0);
+    Ended const before = in_folder({"convert", "trimer", "trimer.dcd", "--json", "-"});
+    expect_good(before);
+    EXPECT_EQ(before.json().at("frames"), 3);  // 0, 10, 20; the last state is between
+    EXPECT_EQ(before.json().at("left_out"), 1);
+    ASSERT_EQ(in_folder(second).status, 0);
+    Ended const after = in_folder({"convert", "trimer", "trimer.dcd", "--json", "-"});
+    expect_good(after);
+    EXPECT_EQ(after.json().at("frames"), 6);
+    EXPECT_EQ(after.json().at("left_out"), 0);
+}
+
+}  // namespace
+}  // namespace catena::test
