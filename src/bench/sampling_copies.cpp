@@ -42,8 +42,8 @@ void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
     if (!chain.is_beads() || chain.base != Base::free || chain.tip != Tip::free || chain.size() < 4)
         refuse("bench sampling takes a free chain of 4 beads or more",
                "name a scene such as inputs/alpha-synuclein.yaml");
-    if (!scene.forces.openmm || scene.forces.openmm->builder != "calvados2")
-        refuse("bench sampling takes forces of CALVADOS 2, whose bonds OpenMM then computes",
+    if (!scene.forces.openmm || scene.forces.openmm->builder.empty())
+        refuse("bench sampling takes forces of CALVADOS 2 or 3, whose bonds OpenMM then computes",
                "add forces: {openmm: {builder: calvados2}}");
     if (norm(scene.forces.gravity) > 0 || scene.forces.linear_drag != 0)
         refuse("gravity or drag, which OpenMM's own integrators ignore", "leave them out");

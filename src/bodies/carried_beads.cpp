@@ -26,7 +26,7 @@ void CarriedList::add(Node const* beads, Vec3 const& origin) {
             Node const* const residue = bead.find("residue");
             std::string const name = residue ? text(*residue) : "UNK";
             // The mass defaults to that of a known residue.
-            Calvados2Residue const* const known = find_calvados2(name);
+            ResidueType const* const known = find_calvados2(name);
             append(vector3(bead.need("position", "position: [0, 0, 0]")) - origin,
                    mass    ? positive(*mass)
                    : known ? known->mass

@@ -8,6 +8,7 @@
 #include "plan/describe.hpp"
 #include "start/start_relaxation.hpp"
 #include "start/start_report.hpp"
+#include "systems/charges.hpp"
 
 namespace catena::command {
 namespace {
@@ -85,6 +86,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("bodies", std::to_string(scene.bodies()));
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
     text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");
+    if (std::string const charges = assumed_charges(scene); !charges.empty())
+        text.entry("net charge", charges);
     text.add(chain_table(scene));
     text.heading("start");
     for (auto const& [name, value] : lines_of(scene, found.start)) text.entry(name, value);
@@ -120,6 +123,7 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator, bool j
     Outcome outcome;
     outcome.text = text_of(scene, found, memory, communicator.size(), limit).str();
     if (!json) return outcome;
+    std::string const charges = assumed_charges(scene);
     outcome.json = {
         {"scene", scene.file},
         {"title", scene.title},
@@ -128,6 +132,7 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator, bool j
         {"bodies", scene.bodies()},
         {"dof", degrees_of_freedom(scene)},
         {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},
+        {"net_charge", charges.empty() ? Json() : Json(charges)},
         {"backend", name_of(scene.solver.backend)},
         {"handles", handles_json(scene)},
         {"start", json_of(found.start)},

@@ -17,6 +17,7 @@
 #include "plan/choice.hpp"
 #include "plan/describe.hpp"
 #include "run/simulation.hpp"
+#include "systems/charges.hpp"
 
 namespace catena::command {
 namespace {
@@ -120,6 +121,8 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
     text.heading(title_of(scene));
+    if (std::string const charges = assumed_charges(scene); !charges.empty())
+        text.entry("net charge", charges);
     text.entry("steps",
                fmt::format("{} to {}, {:.6g} {} in all", run.at("first_step").get<std::int64_t>(),
                            run.at("last_step").get<std::int64_t>(), number(run, "time"),

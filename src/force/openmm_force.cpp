@@ -18,6 +18,7 @@
 #include "force/worker.hpp"
 #include "mpi/first_rank.hpp"
 #include "scene/node.hpp"
+#include "scene/residue_table.hpp"
 #include "systems/box.hpp"
 #include "systems/force_layers.hpp"
 #include "systems/subset.hpp"
@@ -350,7 +351,7 @@ OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
     if (beads.size() == 0)
         throw InputError("OpenMM has no beads to act on", where,
                          "give the scene a chain of beads, or leave forces.openmm out");
-    if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))
+    if (!built_in_table(spec.builder) && !(spec.builder.empty() && !spec.system.empty()))
         throw InputError(fmt::format("`{}` is not a builder of OpenMM's forces", spec.builder),
                          where, "use builder: calvados2, or system: and topology:");
     OpenMmModel model =

@@ -22,8 +22,9 @@ constexpr Key chain_keys[] = {
      "The chain has these bodies, one by one.", "bodies: {hdf5: chain.h5}"},
     {"generator", "map with one key", "none", "", "A generator makes the chain from a few numbers.",
      "generator: {pendulum: {links: 8}}"},
-    {"model", "`calvados2`", "required with `sequence`, `fasta`, `pdb`", "",
-     "Beads have the masses of this model and its links of 0.38 nm.", "model: calvados2"},
+    {"model", "`calvados2`, `calvados3`, or a map", "required with `sequence`, `fasta`, `pdb`", "",
+     "Beads and links have the masses, lengths and force parameters of this residue table.",
+     "model: calvados2"},
     {"positions", "path", "none", "length; PDB: angstrom",
      "A sequence or a `freely_jointed` or `worm_like` chain starts from this table of lines "
      "`x,y,z`, or PDB file.",
@@ -128,6 +129,12 @@ constexpr Key ring_keys[] = {
 }  // namespace
 
 constinit KeyMap const chain{"chains", "chains[i]", chain_keys};
+constexpr Key model_keys[] = {
+    {"residues", "path", "required", "",
+     "The chain has this table of residues, with the columns of the CALVADOS package.",
+     "residues: residues.csv"},
+};
+constinit KeyMap const model{"chains.model", "chains[i].model", model_keys};
 constinit KeyMap const conformation{"chains.conformation", "chains[i].conformation",
                                     conformation_keys};
 constinit KeyMap const tip{"tip", "chains[i].tip", tip_keys};

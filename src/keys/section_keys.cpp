@@ -57,7 +57,7 @@ constexpr Key forces_keys[] = {
 constexpr std::string_view forces_later[] = {"springs", "torques"};
 
 constexpr Key openmm_keys[] = {
-    {"builder", "`calvados2`", "none", "",
+    {"builder", "`calvados2`, `calvados3`", "none", "",
      "Catena builds this force field: Ashbaugh-Hatch up to 2 nm and Yukawa up to 4 nm, with links "
      "in the place of bonds.",
      "builder: calvados2"},

@@ -78,20 +78,28 @@ calvados2::ChargedTermini ChainRequest::termini() const {
     // The entry for all chains is the first one. Entries of preceding chains need no search.
     bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() &&
                       scene.forces.openmm->map.front().first.empty();
-    if (!said) return {};
+    if (!said) return protein_ends;
     auto const& ends = scene.forces.openmm->map.front().second;
-    return {ends.first != 0, ends.second != 0};
+    return {ends.first != 0 && protein_ends.n, ends.second != 0 && protein_ends.c};
 }
 
-void ChainRequest::set_lengths(BeadArrays& beads) const {
-    if (system == nullptr || links_as_given()) return;
+void ChainRequest::set_lengths(BeadArrays& beads, std::vector<double> lengths) const {
+    bool const by_system = system && !links_as_given();
+    std::size_t const first = base == Base::fixed ? 0 : 1;
+    for (std::size_t k = 1; by_system && k < beads.size(); ++k)
+        if (double const bond = system->length(particle + static_cast<std::int64_t>(k)); bond > 0)
+            lengths[k] = bond;
+    bool const same =
+        std::equal(lengths.begin() + static_cast<std::ptrdiff_t>(first), lengths.end(),
+                   beads.length.begin() + static_cast<std::ptrdiff_t>(first));
+    if (!by_system && same) return;
     // Each longer or shorter link shifts all beads after it.
     Vec3 shift = Vec3::zero();
-    for (std::size_t k = 1; k < beads.size(); ++k) {
-        double const length = system->length(particle + static_cast<std::int64_t>(k)),
-                     before = beads.length[k];
-        if (length > 0 && length != before) {
-            Vec3 const inboard = beads.position[k - 1] - shift;  // position before its shift
+    for (std::size_t k = first; k < beads.size(); ++k) {
+        double const length = lengths[k], before = beads.length[k];
+        if (length != before) {
+            Vec3 const inboard =  // position before its shift
+                k == 0 ? beads.anchor : beads.position[k - 1] - shift;
             shift = plus_scaled(shift, length / before - 1, beads.position[k] - inboard);
             beads.length[k] = length;
         }

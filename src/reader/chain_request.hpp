@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ struct ChainRequest {
     std::vector<Domain> rigid = {};
     /// Three-letter names of a chain of residues.
     std::vector<std::string> residues = {};
+    /// Residue table of a chain of residues, which its first copy sets.
+    std::shared_ptr<ResidueTable const> table = {};
+    /// Ends that are amino acids. Others have no charge of a terminus unless the chain asks for it.
+    calvados2::ChargedTermini protein_ends = {};
     /// System that the scene names together with written chains, or nullptr.
     WrittenSystem const* system = nullptr;
     /// Number of the chain's first bead in that System.
@@ -44,11 +49,12 @@ struct ChainRequest {
     std::string name() const;
     /// True for `links: as_given`: links take their lengths from the positions.
     bool links_as_given() const;
-    /// Value of the chain's `charge_termini`, by default that of the whole scene.
+    /// Value of the chain's `charge_termini`, by default that of the whole scene for the ends that
+    /// are amino acids.
     calvados2::ChargedTermini termini() const;
-    /// Sets the lengths of links from the System if it joins the two beads, and moves the beads
-    /// accordingly. Does nothing without a System or with `links: as_given`.
-    void set_lengths(BeadArrays& beads) const;
+    /// Sets the lengths of links, entry k that to bead k, and moves the beads accordingly. Where
+    /// the System joins the two beads its length counts, unless the chain has `links: as_given`.
+    void set_lengths(BeadArrays& beads, std::vector<double> lengths) const;
     /// Seed of one copy of this chain; each chain and copy has its own stream of the scene's seed.
     std::uint64_t seed(std::int64_t copy) const;
 

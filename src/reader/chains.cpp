@@ -148,6 +148,7 @@ class ChainReader {
         prepare(count_ == 1 ? name : name + "-1", next);
         std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
+        say_ends(count_ == 1 ? name : name + "-1");
         auto const beads = static_cast<std::int64_t>(first.bead_count());
         double const bytes =
             with_copies(before, static_cast<std::int64_t>(first.size()), first.is_beads());
@@ -162,6 +163,7 @@ class ChainReader {
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
+            say_ends(copy_name);
             bool const differs =
                 is_random() || (request_.system &&
                                 !request_.system->alike(first_particle, request_.particle, beads));
@@ -173,13 +175,18 @@ class ChainReader {
     }
 
   private:
-    /// Sets the next chain's first particle in the System, and its charged ends if they are
-    /// written.
+    /// Sets the next chain's first particle in the System.
     void prepare(std::string const& name, std::int64_t next) {
+        request_.particle = request_.system ? request_.system->first_particle(name, next) : next;
+    }
+    /// Tells the forces the charged ends of a chain that differ from those of the whole scene. They
+    /// are known as soon as the first copy is made.
+    void say_ends(std::string const& name) {
         OpenMmSpec* const openmm =
             request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
-        request_.particle = request_.system ? request_.system->first_particle(name, next) : next;
-        if (openmm && !openmm->builder.empty() && request_.fields.find("charge_termini"))
+        bool const differ = request_.fields.find("charge_termini") ||
+                            request_.protein_ends != calvados2::ChargedTermini{};
+        if (openmm && !openmm->builder.empty() && differ)
             openmm->map.push_back({name, as_numbers(request_.termini())});
     }
 

@@ -58,7 +58,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
         fail(fields.node(), "neither `builder` nor `system`",
              "add `builder: calvados2`, or `system: system.xml`");
     if (builder) {
-        choice<int>(*builder, {{"calvados2", 0}});
+        choice<int>(*builder, {{"calvados2", 2}, {"calvados3", 3}});
         spec.builder = builder->text;
         for (Node const* const extra : {topology, map, fields.find("force_groups")})
             if (extra)
@@ -80,6 +80,9 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 
 /// Reads `forces.openmm`.
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
+    if (Node const* const table = node.find("residues"))
+        fail(*table, "residue tables belong to the chains",
+             "write `model: {residues: FILE.csv}` in the chain");
     Fields const fields(node, keys::openmm);
     if (si)
         fail(node, "OpenMM's forces in SI units",

@@ -11,6 +11,7 @@
 #include "generate/generators.hpp"
 #include "keys/maps.hpp"
 #include "reader/gaps.hpp"
+#include "reader/models.hpp"
 #include "scene/calvados2.hpp"
 #include "scene/fasta.hpp"
 #include "scene/files.hpp"
@@ -21,38 +22,43 @@ namespace catena::scene {
 
 namespace {
 
-using Residues = std::vector<Calvados2Residue const*>;
-
-/// Parameters of each residue; precondition: valid one-letter codes.
-Residues residues_of(std::string const& letters) {
+/// Parameters of each residue of a sequence. Throws InputError for codes that are not in the table.
+Residues residues_of(std::string const& text, Node const& source, ChainRequest& request) {
+    ResidueTable const& table = table_of(request);
     Residues residues;
-    for (char const letter : letters) residues.push_back(find_calvados2(letter));
+    for (char const letter : one_letter_codes(text, source, table, request.scene))
+        residues.push_back(table.find(letter));
     return residues;
 }
 
-/// Returns the model's residues for a file's names. Other names and modifications map to their
-/// parents, with a note. Throws InputError for all others.
-Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) {
+/// Returns the table's residues for a file's names. Names and modifications that are not in the
+/// table map to their parents, with a note. Throws InputError for all others.
+Residues residues_named(PdbSites const& from, Node const& source, ResidueTable const& table,
+                        Scene& scene) {
     Residues residues;
     std::map<std::pair<std::string, std::string>, int> renamed;
     for (PdbSite const& site : from.sites) {
         ResidueMeaning const meaning = meaning_of(site.residue);
         std::string const residue = site.residue + (site.label.empty() ? "" : " " + site.label);
         auto const bead = static_cast<std::int64_t>(residues.size()) + 1;
+        if (ResidueType const* const known = table.find(std::string_view(site.residue))) {
+            residues.push_back(known);
+            continue;
+        }
         // A bead would have the charge of the parent: the chain's charge would change silently.
         if (meaning.kind == ResidueKind::charged)
             fail_at(source, "bead", bead,
-                    fmt::format(
-                        "`{}` has another charge than {}, and calvados2 has no parameters for it",
-                        residue, meaning.parent),
-                    fmt::format("write {} in the file if that charge may be lost, or give the "
-                                "forces as a System",
+                    fmt::format("`{}` has another charge than {}, and {} has no parameters for it",
+                                residue, meaning.parent, table.name()),
+                    fmt::format("write {} in the file if that charge may be lost, or name a table "
+                                "that has it: `model: {{residues: FILE.csv}}`",
                                 meaning.parent));
-        residues.push_back(meaning.kind == ResidueKind::amino_acid ? find_calvados2(meaning.parent)
-                                                                   : nullptr);
+        residues.push_back(meaning.kind == ResidueKind::amino_acid
+                               ? table.find(std::string_view(meaning.parent))
+                               : nullptr);
         if (!residues.back())
             fail_at(source, "bead", bead,
-                    fmt::format("`{}` is not a residue of calvados2", residue),
+                    fmt::format("`{}` is not a residue of {}", residue, table.name()),
                     "rename or remove it in the file");
         if (meaning.parent != site.residue) ++renamed[{site.residue, meaning.parent}];
     }
@@ -107,6 +113,9 @@ void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues,
                     bare->label.empty() ? "" : " `" + bare->label + "`"));
 }
 
+/// Largest excluded distance of a self-avoiding walk, relative to its links.
+double constexpr widest_exclusion = 1.5;
+
 /// Sets masses and names of the beads.
 void set_residues(BeadArrays& beads, Residues const& residues, calvados2::ChargedTermini termini) {
     auto const n = static_cast<std::int64_t>(residues.size());
@@ -118,7 +127,8 @@ void set_residues(BeadArrays& beads, Residues const& residues, calvados2::Charge
 }
 
 /// Returns beads at their start positions; mass and residue of each bead are set later.
-BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_t copy) {
+BeadArrays at_start(ChainRequest const& request, std::vector<double> const& lengths,
+                    std::int64_t copy) {
     Node const* const positions = request.fields.find("positions");
     Node const* const conformation = request.fields.find("conformation");
     if (positions && conformation)
@@ -128,15 +138,15 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
     bool const self_avoiding =
         conformation && !file &&
         choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}});
-    double const length = calvados2::bond_length;
+    double const length = *std::max_element(lengths.begin(), lengths.end()),
+                 excluded = std::min(excluded_distance, widest_exclusion * length);
     // A fixed base needs one more point: the anchor.
-    std::int64_t const points = beads + (request.base == Base::fixed ? 1 : 0);
+    std::int64_t const points = std::ssize(lengths) + (request.base == Base::fixed ? 1 : 0);
     std::vector<Vec3> const start =
-        self_avoiding
-            ? self_avoiding_conformation(points, length, excluded_distance, request.seed(copy))
-            : extended_conformation(points, length);
+        self_avoiding ? self_avoiding_conformation(points, length, excluded, request.seed(copy))
+                      : extended_conformation(points, length);
     BeadArrays made = beads_at(start, length, 1, request.base, request.anchor());
-    request.set_lengths(made);
+    request.set_lengths(made, lengths);
     Node const* const from =
         file ? &Fields(*conformation, keys::conformation).need("pdb", "pdb: start.pdb") : positions;
     if (from) request.place(made, request.positions_from(*from, made.size()), *from);
@@ -147,7 +157,7 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
 Residues residues_of_pdb(ChainRequest& request, Node const& file, PdbSites& from) {
     from = read_pdb(resolved(text(file), request.scene.file), file, true);
     for (std::string const& note : from.notes) request.scene.note(note);
-    Residues residues = residues_named(from, file, request.scene);
+    Residues residues = residues_named(from, file, table_of(request), request.scene);
     refuse_gaps(from, request, file);
     return residues;
 }
@@ -162,11 +172,11 @@ Residues read_residues(ChainRequest& request, PdbSites& from) {
     if (Node const* const file = fields.find("pdb")) return residues_of_pdb(request, *file, from);
     if (fasta) {
         std::string const path = resolved(text(*fasta), request.scene.file);
-        return residues_of(one_letter_codes(read_fasta(path, *fasta, {record, fields.find("name")}),
-                                            *fasta, request.scene));
+        return residues_of(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta,
+                           request);
     }
     Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
-    return residues_of(one_letter_codes(text(sequence), sequence, request.scene));
+    return residues_of(text(sequence), sequence, request);
 }
 
 /// Reads `rigid`, which requires positions.
@@ -195,14 +205,15 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     if (request.scene.si)
         fail(request.node, "model calvados2 in SI units",
              "write `units: md`: its parameters are in nm, amu and kJ/mol");
-    choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
+    table_of(request);
     PdbSites from;
     Residues const residues = read_residues(request, from);
     read_rigid(request, residues.size(), from);
     request.residues.clear();
-    for (Calvados2Residue const* const residue : residues)
-        request.residues.push_back(residue->name);
-    BeadArrays beads = at_start(request, static_cast<std::int64_t>(residues.size()), copy);
+    for (ResidueType const* const residue : residues) request.residues.push_back(residue->name);
+    hand_to_forces(request, residues);
+    find_ends(request, residues);
+    BeadArrays beads = at_start(request, link_lengths(residues), copy);
     set_residues(beads, residues, request.termini());
     if (pdb) request.place(beads, from.positions(), *fields.find("pdb"));
     return beads;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "reader/models.hpp"
 #include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 #include "scene/freedom.hpp"
@@ -226,21 +227,23 @@ void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> cons
 }
 
 /// Checks that OpenMM's forces find beads, and the builder parameters for each residue.
-void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
+void check_openmm(Node const& root, Scene const& scene, std::vector<Draft> const& drafts) {
+    OpenMmSpec const& openmm = *scene.forces.openmm;
     Node const& at = *root.find("forces")->find("openmm");
     if (std::none_of(drafts.begin(), drafts.end(),
                      [](Draft const& d) { return has_beads(d.chain); }))
         fail(at, "OpenMM's forces act on beads, no chain of the scene has any",
              "add a chain of beads or leave `openmm` out");
     if (openmm.builder.empty()) check_map(at, openmm, drafts);
-    if (openmm.builder != "calvados2") return;
-    for (Draft const& draft : drafts)
-        for (std::size_t k = 0; k < residues_of(draft.chain).size(); ++k)
-            if (std::string const& residue = residues_of(draft.chain)[k]; !find_calvados2(residue))
-                fail_at(*draft.node, "bead", static_cast<std::int64_t>(k) + 1,
-                        fmt::format("residue `{}` has no parameters in calvados2", shown(residue)),
-                        "give the chain as `sequence`, or its beads a `residue` among the twenty "
-                        "amino acids");
+    if (openmm.builder.empty()) return;
+    ForceResidues const forces(openmm);
+    Draft const* previous = nullptr;
+    for (Draft const& draft : drafts) {
+        // Copies of one entry have the same residues.
+        if (!previous || previous->node != draft.node)
+            check_residues(*draft.node, residues_of(draft.chain), scene, forces);
+        previous = &draft;
+    }
 }
 
 /// Refuses the observable `temperature` if it has no meaning. The default columns omit it; a
@@ -287,7 +290,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         check_thermal(root, scene.dynamics, draft);
     }
     check_temperature(root, scene.output, scene.dynamics, drafts);
-    if (scene.forces.openmm) check_openmm(root, *scene.forces.openmm, drafts);
+    if (scene.forces.openmm) check_openmm(root, scene, drafts);
 }
 
 }  // namespace catena::scene

@@ -1,49 +1,33 @@
-// Implements the parameters and charges of CALVADOS 2.
+// Implements the charges of the CALVADOS models and the choice of a residue's parameters.
 #include "scene/calvados2.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-// Generated: embedded_parameters with one {name, mass, lambda, sigma, charge} per residue.
-#include "calvados2_parameters.inc"
+#include "scene/node.hpp"
 
 namespace catena {
 
-namespace {
-
-char letter_of(std::string_view name) {
-    static constexpr std::string_view names =
-        "ALA ARG ASN ASP CYS GLN GLU GLY HIS ILE LEU LYS MET PHE PRO SER THR TRP TYR VAL";
-    static constexpr std::string_view letters = "ARNDCQEGHILKMFPSTWYV";
-    std::size_t const at = names.find(name);
-    return at == std::string_view::npos ? '?' : letters[at / 4];
+std::vector<ResidueType> const& calvados2_residues() {
+    return built_in_table("calvados2")->types();
 }
 
-}  // namespace
+ResidueType const* find_calvados2(char letter) { return built_in_table("calvados2")->find(letter); }
 
-std::vector<Calvados2Residue> const& calvados2_residues() {
-    static std::vector<Calvados2Residue> const residues = [] {
-        std::vector<Calvados2Residue> made;
-        for (auto const& p : embedded_parameters)
-            made.push_back({letter_of(p.name), p.name, p.mass, p.lambda, p.sigma, p.charge});
-        return made;
-    }();
-    return residues;
+ResidueType const* find_calvados2(std::string_view name) {
+    return built_in_table("calvados2")->find(name);
 }
 
-Calvados2Residue const* find_calvados2(char letter) {
-    auto const& all = calvados2_residues();
-    auto const found =
-        std::find_if(all.begin(), all.end(), [&](auto const& r) { return r.letter == letter; });
-    return found == all.end() ? nullptr : &*found;
+ForceResidues::ForceResidues(OpenMmSpec const& spec) : built_in_(built_in_table(spec.builder)) {
+    if (spec.builder.empty() || spec.topology.empty()) return;
+    scene::Node at;  // the file itself
+    at.text = spec.topology;
+    own_ = read_residue_table(spec.topology, at);
 }
 
-Calvados2Residue const* find_calvados2(std::string_view name) {
-    auto const& all = calvados2_residues();
-    auto const found =
-        std::find_if(all.begin(), all.end(), [&](auto const& r) { return r.name == name; });
-    return found == all.end() ? nullptr : &*found;
+ResidueType const* ForceResidues::find(std::string_view name) const {
+    if (ResidueType const* const type = own_ ? own_->find(name) : nullptr) return type;
+    return built_in_ ? built_in_->find(name) : nullptr;
 }
 
 namespace calvados2 {
@@ -59,7 +43,7 @@ ChargedTermini ChainEnds::of(std::string const& chain) const {
     return found == ends_.end() ? ChargedTermini{} : found->second;
 }
 
-double bead_mass(Calvados2Residue const& residue, ChainPlace const& at) {
+double bead_mass(ResidueType const& residue, ChainPlace const& at) {
     return residue.mass + (at.is_n_terminus() ? first_bead_mass : 0) +
            (at.is_c_terminus() ? last_bead_mass : 0);
 }
@@ -68,10 +52,8 @@ double histidine_charge(std::optional<double> ph) {
     return ph ? 1 / (1 + std::pow(10.0, *ph - 6)) : 0;
 }
 
-double bead_charge(Calvados2Residue const& residue, ChainPlace const& at,
-                   std::optional<double> ph) {
-    double const inside =
-        residue.letter == 'H' ? residue.charge + histidine_charge(ph) : residue.charge;
+double bead_charge(ResidueType const& residue, ChainPlace const& at, std::optional<double> ph) {
+    double const inside = residue.letter == 'H' && ph ? histidine_charge(ph) : residue.charge;
     return inside + (at.is_n_terminus() ? first_bead_charge : 0) +
            (at.is_c_terminus() ? last_bead_charge : 0);
 }

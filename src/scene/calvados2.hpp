@@ -1,6 +1,7 @@
-// The CALVADOS 2 model of proteins, one bead per residue: Tesei & Lindorff-Larsen, Open Research
-// Europe 2:94 (2023). The parameters are those of inputs/calvados2_parameters.csv, embedded at
-// configuration of the build. The model needs no OpenMM.
+// The CALVADOS models of proteins, one bead per residue. CALVADOS 2: Tesei & Lindorff-Larsen, Open
+// Research Europe 2:94 (2023). CALVADOS 3: Cao, von Buelow, Tesei & Lindorff-Larsen, Protein
+// Science 33:e5172 (2024). Both have the same energy function and differ in their residue tables
+// (residue_table.hpp). The models need no OpenMM.
 #pragma once
 
 #include <cstdint>
@@ -10,30 +11,36 @@
 #include <unordered_map>
 #include <vector>
 
+#include "scene/residue_table.hpp"
 #include "scene/scene.hpp"
 
 namespace catena {
 
-/// Parameters of one residue type.
-struct Calvados2Residue {
-    char letter;       // one-letter code
-    std::string name;  // three-letter code, upper case
-    double mass;       // amu
-    double lambda;     // stickiness
-    double sigma;      // bead diameter, nm
-    double charge;     // e, inside a chain; histidine: neutral, see histidine_charge
+/// The twenty residues of CALVADOS 2, in the order of the parameter file.
+std::vector<ResidueType> const& calvados2_residues();
+
+/// Returns nullptr for a code that is not in CALVADOS 2. Letters and names must be in upper case.
+ResidueType const* find_calvados2(char letter);
+ResidueType const* find_calvados2(std::string_view three_letter_name);
+
+/// Parameters that a builder's forces give to residues: those of the chains' own table
+/// (OpenMmSpec::topology), else those of the builder's table.
+class ForceResidues {
+  public:
+    /// Reads the chains' own table if there is one. Throws InputError for a faulty file.
+    explicit ForceResidues(OpenMmSpec const&);
+    /// Returns nullptr for unknown names.
+    ResidueType const* find(std::string_view three_letter_name) const;
+    /// The chains' own table, or nullptr.
+    ResidueTable const* own() const { return own_ ? &*own_ : nullptr; }
+
+  private:
+    std::optional<ResidueTable> own_;
+    ResidueTable const* built_in_;
 };
-
-/// The twenty residues, in the order of the parameter file.
-std::vector<Calvados2Residue> const& calvados2_residues();
-
-/// Returns nullptr for a code that is not in the model. Letters and names must be in upper case.
-Calvados2Residue const* find_calvados2(char letter);
-Calvados2Residue const* find_calvados2(std::string_view three_letter_name);
 
 namespace calvados2 {
 
-inline constexpr double bond_length = 0.38;  // nm
 /// Stiffness of the harmonic bonds that the links replace, kJ/mol/nm2.
 inline constexpr double bond_stiffness = 8033;
 inline constexpr double first_bead_mass = 2.0;        // amu, added to a chain's first bead
@@ -72,14 +79,15 @@ struct ChainPlace {
 };
 
 /// Mass in amu of the bead, including the additional mass of a charged terminus.
-double bead_mass(Calvados2Residue const&, ChainPlace const&);
+double bead_mass(ResidueType const&, ChainPlace const&);
 
 /// Charge of histidine in e: its protonated fraction 1 / (1 + 10^(pH - 6)), as in the authors' own
-/// simulations. Without a pH histidine is neutral.
+/// simulations. Without a pH it is 0.
 double histidine_charge(std::optional<double> ph);
 
-/// Charge of the bead in e, charged termini included.
-double bead_charge(Calvados2Residue const&, ChainPlace const&, std::optional<double> ph);
+/// Charge of the bead in e, charged termini included. A pH sets the charge of the residue with the
+/// letter H, histidine, as in the CALVADOS package.
+double bead_charge(ResidueType const&, ChainPlace const&, std::optional<double> ph);
 
 /// Screened Coulomb energy between charges q_i, q_j: q_i q_j prefactor exp(-kappa r) / r.
 struct Yukawa {

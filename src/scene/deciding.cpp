@@ -44,7 +44,7 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     };
     if (!o.builder.empty()) add(values, at + "builder", o.builder);
     content("system", o.system);
-    content("topology", o.topology);
+    content(o.builder.empty() ? "topology" : "residues", o.topology);
     std::vector<std::string> map;
     for (auto const& [chain, range] : o.map)
         map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <sstream>
 
-#include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/residue_names.hpp"
@@ -128,11 +127,13 @@ Record const& chosen(std::vector<Record> const& records, Node const& at, RecordC
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-[[noreturn]] void refuse_letter(char letter, std::size_t position, Node const& source) {
-    std::string what =
-        fmt::format("`{}` at position {} of the sequence is not a residue of calvados2",
-                    shown(std::string(1, letter)), position);
-    std::string remedy = "use the one-letter codes ARNDCQEGHILKMFPSTWYV";
+[[noreturn]] void refuse_letter(char letter, std::size_t position, Node const& source,
+                                ResidueTable const& table) {
+    std::string what = fmt::format("`{}` at position {} of the sequence is not a residue of {}",
+                                   shown(std::string(1, letter)), position, table.name());
+    std::string remedy = "use the one-letter codes " + table.letters();
+    if (letter == 'B' || letter == 'J' || letter == 'O' || letter == 'Z')
+        remedy += ", or name a table with this code: `model: {residues: FILE.csv}`";
     if (letter == '*') what += ": a stop within the sequence", remedy = "end the sequence there";
     if (letter == '-' || letter == '.')
         what += ": a gap of an alignment", remedy = "give the sequence without gaps";
@@ -189,15 +190,17 @@ std::string read_fasta(std::string const& path, Node const& at, RecordChoice con
     return sequence;
 }
 
-std::string one_letter_codes(std::string const& text, Node const& source, Scene& scene) {
+std::string one_letter_codes(std::string const& text, Node const& source, ResidueTable const& table,
+                             Scene& scene) {
     std::string letters;
     std::size_t small = 0;
     for (char const c : text) {
         if (is_blank(c)) continue;
-        char const letter = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        char const capital = static_cast<char>(std::toupper(static_cast<unsigned char>(c))),
+                   letter = table.find(c) ? c : capital;
         small += letter != c;
         letters += letter;
-        if (!find_calvados2(letter)) refuse_letter(c, letters.size(), source);
+        if (!table.find(letter)) refuse_letter(c, letters.size(), source, table);
     }
     if (letters.empty()) fail(source, "the sequence is empty", "give one-letter codes");
     if (small > 0)

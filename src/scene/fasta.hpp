@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/node.hpp"
+#include "scene/residue_table.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::scene {
@@ -20,9 +21,10 @@ struct RecordChoice {
 /// Throws InputError if no record or several records match; the message names the first few.
 std::string read_fasta(std::string const& path, Node const& at, RecordChoice const& choice);
 
-/// Returns one-letter codes in capitals, without blanks. Lower-case letters, three-letter codes and
-/// nucleotides get a note. Throws InputError with the position for any other letter than the codes
-/// of the twenty amino acids.
-std::string one_letter_codes(std::string const& text, Node const& source, Scene& scene);
+/// Returns one-letter codes of the table, without blanks. A lower-case letter that is no code of
+/// the table is read as a capital. Such letters, three-letter codes and nucleotides get a note.
+/// Throws InputError with the position for any letter that is no code of the table.
+std::string one_letter_codes(std::string const& text, Node const& source, ResidueTable const& table,
+                             Scene& scene);
 
 }  // namespace catena::scene

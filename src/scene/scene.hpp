@@ -215,7 +215,7 @@ struct ChainSpec {
 struct OpenMmSpec {
     std::string builder;   // "calvados2", or empty if `system` is given
     std::string system;    // serialised System XML, path resolved against the scene's folder
-    std::string topology;  // PDB file
+    std::string topology;  // PDB file; with a builder the chains' own residue table, or empty
     /// First and last particle of each named chain; an empty map assigns the topology's chains in
     /// order. With a builder the pair holds flags (0 or 1) for the charged first and last ends.
     std::vector<std::pair<std::string, std::pair<std::int64_t, std::int64_t>>> map;

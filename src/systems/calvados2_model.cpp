@@ -1,5 +1,5 @@
-// Implements the CALVADOS 2 force field as an OpenMM System of two CustomNonbondedForces. The
-// model's harmonic bonds are absent, because rigid links replace them.
+// Implements the force field of CALVADOS 2 and 3 as an OpenMM System of two CustomNonbondedForces.
+// The models' harmonic bonds are absent, because rigid links replace them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,35 +14,26 @@ namespace catena {
 
 namespace {
 
-/// The chain of a bead and the bead's position k in it (from 0).
-struct Place {
-    std::string chain;
-    std::int64_t k, length;
-    calvados2::ChargedTermini termini;
-};
-
-/// Calls visit(bead, place) for every bead of every chain.
-template <class Visit>
-void for_each_bead(OpenMmSpec const& spec, BeadSystem const& beads, Visit visit) {
-    calvados2::ChainEnds const ends(spec);
-    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
-        std::int64_t const first = beads.chain_offset[c],
-                           length = beads.chain_offset[c + 1] - first;
-        Place place{beads.chain_name[c], 0, length, ends.of(beads.chain_name[c])};
-        for (; place.k < length; ++place.k) visit(first + place.k, place);
-    }
+/// Names a bead's place in the scene for messages.
+std::string chain_key(BeadSystem const& beads, std::int64_t bead) {
+    auto const next = std::upper_bound(beads.chain_offset.begin(), beads.chain_offset.end(), bead);
+    auto const chain = static_cast<std::size_t>(next - beads.chain_offset.begin()) - 1;
+    return fmt::format("{}: chain {}, body {}", beads.scene_file, beads.chain_name[chain],
+                       bead - beads.chain_offset[chain] + 1);
 }
 
-/// Names a bead's place in the scene for messages.
-std::string chain_key(BeadSystem const& beads, Place const& at) {
-    return fmt::format("{}: chain {}, body {}", beads.scene_file, at.chain, at.k + 1);
+/// The builder's model as publications write it, e.g. "CALVADOS 2".
+std::string model_name(OpenMmSpec const& spec) {
+    return fmt::format("CALVADOS {}", spec.builder.back());
 }
 
 /// Parameters of a bead's residue; throws InputError for unknown names.
-Calvados2Residue const& residue_of(BeadSystem const& beads, std::int64_t bead, Place const& at) {
-    std::string const& name = beads.residue[bead];
-    if (auto const* residue = find_calvados2(std::string_view(name))) return *residue;
-    throw InputError(fmt::format("CALVADOS 2 has no residue {}", name), chain_key(beads, at),
+ResidueType const& residue_of(OpenMmSpec const& spec, ForceResidues const& residues,
+                              BeadSystem const& beads, std::int64_t bead) {
+    std::string const& name = beads.residue[static_cast<std::size_t>(bead)];
+    if (auto const* residue = residues.find(name)) return *residue;
+    throw InputError(fmt::format("{} has no residue {}", model_name(spec), name),
+                     chain_key(beads, bead),
                      "use the twenty amino acids (sequence and model: calvados2), or give the "
                      "forces as a System (forces.openmm.system)");
 }
@@ -133,23 +124,37 @@ std::string rigid_note(BeadSystem const& beads) {
                        beads.rigid.size() == 1 ? "body" : "bodies");
 }
 
+/// Lengths of the model's bonds along the links, e.g. "0.38 nm" or "0.33 to 0.38 nm".
+std::string bond_text(OpenMmSpec const& spec, ForceResidues const& residues,
+                      BeadSystem const& beads) {
+    double least = built_in_table(spec.builder)->types().front().bond, most = least;
+    // The tables of the program have one length for all residues.
+    for (std::size_t i = 0; residues.own() && i < beads.links.size(); ++i) {
+        auto const bond = [&](std::int64_t bead) {
+            return residues.find(beads.residue[static_cast<std::size_t>(bead)])->bond;
+        };
+        double const length = (bond(beads.links[i].inboard) + bond(beads.links[i].outboard)) / 2;
+        least = i == 0 ? length : std::min(least, length);
+        most = i == 0 ? length : std::max(most, length);
+    }
+    return least == most ? fmt::format("{:.6g} nm", most)
+                         : fmt::format("{:.6g} to {:.6g} nm", least, most);
+}
+
 /// Sentences on parameters, cutoffs and links, for the user.
-std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& beads,
-                                  calvados2::Yukawa const& y) {
-    std::string const histidine = spec.ph
-                                      ? fmt::format("histidine {:.3g} e (pH {})",
-                                                    calvados2::histidine_charge(spec.ph), *spec.ph)
-                                      : "histidine neutral (no ph given)";
-    auto const histidines = std::count(beads.residue.begin(), beads.residue.end(), "HIS");
-    std::string const number = histidines > 0 ? fmt::format(", {} of them", histidines) : "";
+std::vector<std::string> notes_on(OpenMmSpec const& spec, ForceResidues const& residues,
+                                  BeadSystem const& beads, calvados2::Yukawa const& y) {
+    std::string const own =
+        residues.own() ? fmt::format(", parameters of `{}`", residues.own()->name()) : "";
     std::string const edge =
         spec.switch_width > 0 ? fmt::format("switched off over {} nm", spec.switch_width) : "cut";
-    return {fmt::format("CALVADOS 2 at {} K, {} mol/l: Debye length {:.4g} nm, {}{}",
-                        spec.temperature, spec.ionic_strength, 1 / y.kappa, histidine, number),
+    return {fmt::format("{} at {} K, {} mol/l: Debye length {:.4g} nm, {}{}", model_name(spec),
+                        spec.temperature, spec.ionic_strength, 1 / y.kappa,
+                        histidine_text(spec, residues, beads.residue), own),
             fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
                         calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
-            fmt::format("{}{} links replace the model's harmonic bonds of {} nm", rigid_note(beads),
-                        beads.links.size(), calvados2::bond_length)};
+            fmt::format("{}{} links replace the model's harmonic bonds of {}", rigid_note(beads),
+                        beads.links.size(), bond_text(spec, residues, beads))};
 }
 
 }  // namespace
@@ -163,27 +168,25 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     auto charges = yukawa_force(y);
 
     OpenMmModel model;
-    std::vector<double> charge_of;  // e, per bead
     model.system = std::make_shared<OpenMM::System>();
     if (beads.box)
         model.system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0},
                                                    {0, 0, (*beads.box)[2]});
-    for_each_bead(spec, beads, [&](std::int64_t bead, Place const& at) {
-        auto const& residue = residue_of(beads, bead, at);
+    ForceResidues const residues(spec);
+    std::vector<double> const charge_of = bead_charges(spec, residues, beads);  // e
+    for (std::int64_t bead = 0; bead < beads.size(); ++bead) {
+        ResidueType const& residue = residue_of(spec, residues, beads, bead);
         model.system->addParticle(beads.mass[bead]);
         contact->addParticle({residue.sigma / 2, residue.lambda / 2});
-        double const charge =
-            calvados2::bead_charge(residue, {at.k, at.length, at.termini}, spec.ph);
-        charges->addParticle({unit * charge});
-        charge_of.push_back(charge);
+        charges->addParticle({unit * charge_of[bead]});
         model.bead_of_particle.push_back(bead);
-    });
+    }
     finish(*contact, spec, beads, 0);
     finish(*charges, spec, beads, 1);
     model.terms = {contact->getName(), charges->getName()};
     model.system->addForce(contact.release());
     model.system->addForce(charges.release());
-    model.notes = notes_on(spec, beads, y);
+    model.notes = notes_on(spec, residues, beads, y);
     model.notes.push_back(charge_text(charge_of, beads));
     return model;
 }

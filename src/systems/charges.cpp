@@ -1,4 +1,4 @@
-// Implements the text on net charges.
+// Implements the charges of beads and the texts on them.
 #include "systems/charges.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "scene/calvados2.hpp"
 #include "scene/node.hpp"
 
 namespace catena {
@@ -29,7 +30,66 @@ struct Group {
     double charge;
 };
 
+/// The parts of a BeadSystem that charges depend on.
+BeadSystem charged_beads(Scene const& scene) {
+    BeadSystem beads;
+    beads.chain_offset.push_back(0);
+    for (ChainSpec const& chain : scene.chains) {
+        auto const& names = chain.is_beads() ? chain.beads.residue : chain.carried().residue;
+        beads.residue.insert(beads.residue.end(), names.begin(), names.end());
+        beads.chain_name.push_back(chain.name);
+        beads.chain_offset.push_back(std::ssize(beads.residue));
+    }
+    return beads;
+}
+
+/// Begins each text of charge_text().
+constexpr std::string_view charge_heading = "net charge: ";
+
 }  // namespace
+
+std::vector<double> bead_charges(OpenMmSpec const& spec, ForceResidues const& residues,
+                                 BeadSystem const& beads) {
+    calvados2::ChainEnds const ends(spec);
+    std::vector<double> charges;
+    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
+        std::int64_t const first = beads.chain_offset[c],
+                           length = beads.chain_offset[c + 1] - first;
+        calvados2::ChargedTermini const termini = ends.of(beads.chain_name[c]);
+        for (std::int64_t k = 0; k < length; ++k) {
+            ResidueType const* const type =
+                residues.find(beads.residue[static_cast<std::size_t>(first + k)]);
+            charges.push_back(type ? calvados2::bead_charge(*type, {k, length, termini}, spec.ph)
+                                   : 0);
+        }
+    }
+    return charges;
+}
+
+std::string histidine_text(OpenMmSpec const& spec, ForceResidues const& table,
+                           std::span<std::string const> residues) {
+    auto const number = std::count(residues.begin(), residues.end(), "HIS");
+    ResidueType const* const type = table.find("HIS");
+    double const charge = spec.ph ? calvados2::histidine_charge(spec.ph) : type ? type->charge : 0;
+    std::string const state = spec.ph ? fmt::format("{:.3g} e (pH {})", charge, *spec.ph)
+                              : charge == 0
+                                  ? "neutral (no ph given)"
+                                  : fmt::format("{:.3g} e (of the table, no ph given)", charge);
+    return fmt::format("histidine {}{}", state,
+                       number > 0 ? fmt::format(", {} of them", number) : "");
+}
+
+std::string assumed_charges(Scene const& scene) {
+    if (!scene.forces.openmm || scene.forces.openmm->builder.empty()) return {};
+    OpenMmSpec const& spec = *scene.forces.openmm;
+    ForceResidues const residues(spec);
+    BeadSystem const beads = charged_beads(scene);
+    std::string text =
+        charge_text(bead_charges(spec, residues, beads), beads).substr(charge_heading.size());
+    if (std::find(beads.residue.begin(), beads.residue.end(), "HIS") != beads.residue.end())
+        text += "; " + histidine_text(spec, residues, beads.residue);
+    return text;
+}
 
 std::string charge_text(std::span<double const> of_bead, BeadSystem const& beads) {
     std::vector<Group> groups;
@@ -44,10 +104,10 @@ std::string charge_text(std::span<double const> of_bead, BeadSystem const& beads
         else
             groups.back().last = c;
     }
-    std::string text = "net charge:";
+    std::string text(charge_heading);
     for (std::size_t i = 0; i < std::min(groups.size(), most_groups); ++i) {
         Group const& g = groups[i];
-        text += i == 0 ? " " : ", ";
+        text += i == 0 ? "" : ", ";
         text += scene::shown(beads.chain_name[g.first]);
         if (g.last > g.first)
             text +=

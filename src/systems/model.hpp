@@ -31,8 +31,8 @@ inline std::vector<int> particles_of_beads(std::vector<std::int64_t> const& bead
     return particle;
 }
 
-/// Builds the CALVADOS 2 model on every chain of beads. It has two forces: ashbaugh-hatch and
-/// yukawa.
+/// Builds the CALVADOS model that the spec names on every chain of beads. It has two forces:
+/// ashbaugh-hatch and yukawa.
 OpenMmModel calvados2_model(OpenMmSpec const&, BeadSystem const&);
 
 /// Builds the model from a serialised System whose particles are the beads.

@@ -238,8 +238,16 @@ TEST(Slips, FrozenWaterIsNoted) {
         "water is frozen at 200 K"));
 }
 
-TEST(Residues, OfAFileAreRefusedByName) {
-    expect_refused(check("16-residue-table/scene.yaml"), 2, "residues");
+TEST(Residues, OfAFileGiveTheChainsCharge) {
+    Ended const e = check("16-residue-table/scene.yaml");
+    expect_good(e);
+    EXPECT_EQ(count(e.out, "net charge           p -1.969 e\n"), 1U) << e.out;
+    EXPECT_EQ(count(e.out, "residues.csv`\n"), 1U) << e.out;
+}
+
+TEST(Residues, OfAFileBelongToTheChains) {
+    expect_refused(check("16-residue-table/of-the-forces.yaml"), 2,
+                   "residue tables belong to the chains (");
 }
 
 // A line was lost, `</Force>` of the first of five forces; OpenMM's reader then takes the others

@@ -31,8 +31,7 @@ BeadSystem proteins(std::vector<std::string> const& sequences, int ranks,
         std::int64_t const n = std::ssize(sequence);
         for (std::int64_t k = 0; k < n; ++k) {
             auto const* residue = find_calvados2(sequence[k]);
-            if (k > 0)
-                beads.links.push_back({beads.size() - 1, beads.size(), calvados2::bond_length});
+            if (k > 0) beads.links.push_back({beads.size() - 1, beads.size(), residue->bond});
             beads.mass.push_back(calvados2::bead_mass(*residue, {k, n}));
             beads.residue.push_back(residue->name);
         }

@@ -27,8 +27,8 @@ if [ -z "$compiler" ] || ! "$compiler" -fsanitize=fuzzer,address "$made/probe.cp
     exit 77
 fi
 
-# The table of residues that the build embeds.
-parameters=$(find build -name calvados2_parameters.inc -print -quit)
+# The tables of residues that the build embeds.
+parameters=$(find build -name residue_tables.inc -print -quit)
 [ -n "$parameters" ] || { echo "SKIPPED: configure a build first"; exit 77; }
 hdf5=/usr/include/hdf5/serial
 openmm=$(find -L build/venv/lib -maxdepth 4 -name OpenMM.libs -print -quit 2>/dev/null || true)
@@ -75,7 +75,8 @@ read_hdf5=(src/io/hdf5_handle.cpp src/io/output_file.cpp)
 target scene -lyaml-cpp "${tree[@]}"
 target table -lyaml-cpp "${files[@]}"
 target pdb -lyaml-cpp "${files[@]}" src/scene/pdb_file.cpp src/scene/pdb_sites.cpp src/scene/residue_names.cpp
-target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/scene/calvados2.cpp
+target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/scene/residue_table.cpp
+target residues -lyaml-cpp "${files[@]}" src/scene/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/scene/freedom.cpp \

@@ -11,8 +11,8 @@ Refusal const beads_cases[] = {
      "line 1): use the one-letter codes ARNDCQEGHILKMFPSTWYV"},
     {"no_model", "chains: [{sequence: GAS}]",
      "key `model` is missing (s.yaml: chains[0], line 1): add `model: calvados2`"},
-    {"unknown_model", "chains: [{sequence: GAS, model: calvados3}]",
-     "`calvados3` is not a value of `model` (s.yaml: chains[0].model, line 1): did you mean "
+    {"unknown_model", "chains: [{sequence: GAS, model: calvado2}]",
+     "`calvado2` is not a value of `model` (s.yaml: chains[0].model, line 1): did you mean "
      "`calvados2`?"},
     {"sequence_list", "chains: [{sequence: [G], model: calvados2}]",
      "a list is not a text (s.yaml: chains[0].sequence, line 1): give a text"},
@@ -233,7 +233,7 @@ forces: {openmm: {system: nowhere.xml}})y",
     {"unknown_builder", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: martini}})y",
      "`martini` is not a value of `builder` (s.yaml: forces.openmm.builder, line 2): use one of "
-     "`calvados2`"},
+     "`calvados2`, `calvados3`"},
     {"map_of_builder", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, map: {a: [0, 2]}}})y",
      "key `map` does not apply to a builder (s.yaml: forces.openmm.map, line 2): leave it out or "

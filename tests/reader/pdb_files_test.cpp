@@ -41,7 +41,8 @@ TEST_F(SceneFiles, bad_pdb_files) {
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "SEP", 'A', 2, 1),
             "`SEP 2` has another charge than SER, and calvados2 has no parameters for it (s.yaml: "
             "chains[0].pdb, bead 2, line 1): write SER "
-            "in the file if that charge may be lost, or give the forces as a System");
+            "in the file if that charge may be lost, or name a table that has it: `model: "
+            "{residues: FILE.csv}`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "N", "ALA", 'A', 2, 1),
             "residue ALA 2 of chain A of `a.pdb` has no CA atom (line 2)" + where +
                 "add it, or take the residue out of the file");

@@ -1,0 +1,154 @@
+// Implements the model of a chain of residues.
+#include "reader/models.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "keys/maps.hpp"
+#include "scene/files.hpp"
+#include "scene/residue_names.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+/// A phosphate's second dissociation, as in the example single_pIDR of the CALVADOS package.
+struct Phosphate {
+    char const* name;
+    double pka;
+};
+constexpr std::array<Phosphate, 2> phosphates = {{{"SEP", 6.01}, {"TPO", 6.3}}};
+/// Difference of a phosphate's charges, e, that is noted.
+double constexpr noted_charge = 5e-3;
+
+/// The file that `model: {residues: FILE}` names.
+Node const& own_file(Node const& model) {
+    return Fields(model, keys::model).need("residues", "residues: residues.csv");
+}
+
+/// Reads the table that `model` names.
+ResidueTable read_model(Node const& model, std::string const& scene_file) {
+    if (model.kind == Node::Kind::map) {
+        Node const& file = own_file(model);
+        return read_residue_table(resolved(text(file), scene_file), file);
+    }
+    if (model.text.ends_with(".csv"))
+        fail(model, fmt::format("`{}` is not a model", shown(model.text)),
+             "name a table as `model: {residues: FILE.csv}`");
+    return *built_in_table(
+        choice<std::string_view>(model, {{"calvados2", "calvados2"}, {"calvados3", "calvados3"}}));
+}
+
+/// True if forces do not tell the two types apart.
+bool act_alike(ResidueType const& a, ResidueType const& b) {
+    return a.lambda == b.lambda && a.sigma == b.sigma && a.charge == b.charge &&
+           (a.letter == 'H') == (b.letter == 'H');
+}
+
+/// Notes a phosphate whose charge in the table differs from that at the scene's pH.
+void note_phosphate(ChainRequest const& request, ResidueType const& type, double ph) {
+    auto const known = std::find_if(phosphates.begin(), phosphates.end(),
+                                    [&](Phosphate const& p) { return type.name == p.name; });
+    if (known == phosphates.end()) return;
+    double const charge = -1 - 1 / (1 + std::pow(10, known->pka - ph));
+    if (std::abs(charge - type.charge) > noted_charge)
+        request.scene.note(fmt::format(
+            "`{}` gives {} the charge {:.3f} e, at `ph` {:.6g} it has {:.3f} e (pKa {}): correct "
+            "the table unless its charge is meant",
+            request.table->name(), type.name, type.charge, ph, charge, known->pka));
+}
+
+/// True if the residue is an amino acid, also a modified one.
+bool is_amino_acid(ResidueType const& type) {
+    ResidueKind const kind = meaning_of(type.name).kind;
+    return kind == ResidueKind::amino_acid || kind == ResidueKind::charged;
+}
+
+}  // namespace
+
+ResidueTable const& table_of(ChainRequest& request) {
+    if (!request.table)
+        request.table = std::make_shared<ResidueTable const>(
+            read_model(request.fields.need("model", "model: calvados2"), request.scene.file));
+    return *request.table;
+}
+
+void hand_to_forces(ChainRequest const& request, Residues const& residues) {
+    std::optional<OpenMmSpec>& openmm = request.scene.forces.openmm;
+    if (!openmm || openmm->builder.empty()) return;
+    Node const& model = *request.fields.find("model");
+    bool const own = model.kind == Node::Kind::map;
+    if (!own && model.text != openmm->builder)
+        fail(model,
+             fmt::format("the chain has model {}, the forces have builder {}", model.text,
+                         openmm->builder),
+             "write the same model in both");
+    if (!own) return;
+    ResidueTable const& builders = *built_in_table(openmm->builder);
+    for (ResidueType const* const type :
+         std::set<ResidueType const*>(residues.begin(), residues.end())) {
+        ResidueType const* const known = builders.find(type->name);
+        bool const same = known && act_alike(*known, *type) && known->bond == type->bond;
+        if (!same && openmm->topology.empty())
+            openmm->topology = resolved(text(own_file(model)), request.scene.file);
+        if (openmm->ph) note_phosphate(request, *type, *openmm->ph);
+    }
+}
+
+void find_ends(ChainRequest& request, Residues const& residues) {
+    request.protein_ends = {is_amino_acid(*residues.front()), is_amino_acid(*residues.back())};
+    std::optional<OpenMmSpec> const& openmm = request.scene.forces.openmm;
+    if (request.fields.find("charge_termini") || !openmm || openmm->builder.empty() ||
+        request.protein_ends == calvados2::ChargedTermini{})
+        return;
+    auto const& [n, c] = request.protein_ends;
+    request.scene.note(
+        fmt::format("chain `{}`: {} not an amino acid and carries no charge of a terminus: write "
+                    "`charge_termini: none` or `both`",
+                    shown(request.name()),
+                    n ? residues.back()->name + " at its last end is"
+                      : residues.front()->name + (c ? " at its first end is" : " at its ends is")));
+}
+
+std::vector<double> link_lengths(Residues const& residues) {
+    std::vector<double> lengths;
+    ResidueType const* before = residues.front();
+    for (ResidueType const* const residue : residues) {
+        lengths.push_back((before->bond + residue->bond) / 2);
+        before = residue;
+    }
+    return lengths;
+}
+
+void check_residues(Node const& chain, std::vector<std::string> const& residues, Scene const& scene,
+                    ForceResidues const& forces) {
+    Node const* const model = chain.find("model");
+    std::string const& builder = scene.forces.openmm->builder;
+    ResidueTable const table = model ? read_model(*model, scene.file) : *built_in_table(builder);
+    for (std::size_t k = 0; k < residues.size(); ++k) {
+        auto const bead = static_cast<std::int64_t>(k) + 1;
+        ResidueType const* const used = forces.find(residues[k]);
+        ResidueType const* const meant = table.find(std::string_view(residues[k]));
+        if (meant && (!used || !act_alike(*used, *meant)))
+            fail_at(chain, "bead", bead,
+                    fmt::format("residue {} of {} has other parameters in {}, the table of another "
+                                "chain, or is not in it",
+                                residues[k], table.name(),
+                                forces.own() ? forces.own()->name() : builder),
+                    "take one table for both chains");
+        if (!used)
+            fail_at(
+                chain, "bead", bead,
+                fmt::format("residue `{}` has no parameters in {}", shown(residues[k]), builder),
+                "give the chain as `sequence`, or its beads a `residue` among the twenty "
+                "amino acids");
+    }
+}
+
+}  // namespace catena::scene

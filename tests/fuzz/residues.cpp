@@ -1,0 +1,6 @@
+#include "scene/residue_table.hpp"
+#include "tests/fuzz/target.hpp"
+
+void catena::fuzz::read(std::string_view bytes) {
+    parse_residue_table(std::string(bytes), "residues.csv");
+}
