@@ -39,7 +39,7 @@ installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = i
 
 # What the build needs (Debian 12 and Ubuntu 24.04).
 build_packages=(cmake ninja-build g++ python3 python3-venv ca-certificates libeigen3-dev libyaml-cpp-dev libfmt-dev libspdlog-dev libcli11-dev
-                nlohmann-json3-dev libopenmpi-dev openmpi-bin libhdf5-openmpi-dev)
+                nlohmann-json3-dev libopenmpi-dev openmpi-bin libhdf5-openmpi-dev gemmi-dev tao-pegtl-dev zlib1g-dev)
 
 # need_packages NAME PACKAGE...: installs those that are missing, and touches nothing if none is.
 need_packages() {

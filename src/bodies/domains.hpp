@@ -1,5 +1,9 @@
-// Rigid domains of a chain of residues: `rigid: [[first, last], ...]`.
+// Rigid domains of a chain of residues: `rigid: [[first, last], "A:1-95", ...]`.
 #pragma once
+
+#include <array>
+#include <string>
+#include <vector>
 
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
@@ -13,11 +17,20 @@ struct Domain {
     std::string name = {};  // "residues 5 to 30", in the scene's numbering
 };
 
-/// Returns the domains in ascending order. `labels` holds the scene's number of each residue, such
-/// as a file's "52A". Without labels the residues are numbered from 1 to `residues`. Throws
-/// InputError for domains outside the chain, with fewer than three residues, or that overlap.
-std::vector<Domain> read_domains(Node const& rigid, std::size_t residues,
-                                 std::vector<std::string> const& labels = {});
+/// Names of the residues that `rigid` may use.
+struct ResidueNumbers {
+    /// Number of residues; without labels they are numbered from 1.
+    std::size_t residues = 0;
+    /// Number of each residue, such as a file's "52A"; empty without a file.
+    std::vector<std::string> labels = {};
+    /// Chain of each residue: the authors' name and the label; empty without a file.
+    std::vector<std::array<std::string, 2>> chains = {};
+};
+
+/// Returns the domains in ascending order. Each is a pair [first, last] or a text
+/// "CHAIN:FIRST-LAST", where "CHAIN:" may be left out. Throws InputError for domains outside the
+/// chain, with fewer than three residues, or that overlap.
+std::vector<Domain> read_domains(Node const& rigid, ResidueNumbers const& numbers);
 
 /// Merges the beads of each domain into one rigid body with their mass, centre of mass and inertia.
 /// The body's axes are the principal axes. It carries the beads and is linked at its first and last

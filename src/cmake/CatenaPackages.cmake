@@ -1,6 +1,8 @@
 # Packages. Eigen, yaml-cpp, fmt and nlohmann-json are needed; every other one may be absent. Each optional one has a switch
 # CATENA_WITH_<NAME> (AUTO: taken if found, ON: an error if missing, OFF: not looked for) and sets CATENA_HAVE_<NAME>.
 
+include(CheckCXXSourceCompiles)
+
 set(CATENA_SUMMARY "")
 
 function(catena_summary_row name state note)
@@ -105,6 +107,28 @@ if(CATENA_HAVE_HDF5)
 endif()
 catena_settle(HDF5 IN "${HDF5_VERSION}, ${flavour}" DEBIAN "libhdf5-openmpi-dev, without MPI libhdf5-dev"
               LEFT_OUT "no trajectories, checkpoints and HDF5 input" BECAUSE "${because}")
+
+catena_switch(GEMMI "Structures in mmCIF, and compressed ones")
+if(catena_wanted)
+    find_path(GEMMI_INCLUDE_DIR gemmi/cif.hpp)
+    find_package(ZLIB QUIET)
+    mark_as_advanced(GEMMI_INCLUDE_DIR)
+    if(GEMMI_INCLUDE_DIR AND ZLIB_FOUND)
+        # Debian's gemmi-dev needs a second package, tao-pegtl-dev, and does not say so.
+        set(CMAKE_REQUIRED_INCLUDES ${GEMMI_INCLUDE_DIR})
+        check_cxx_source_compiles("#include <gemmi/cif.hpp>\nint main() { return 0; }" GEMMI_COMPILES)
+        unset(CMAKE_REQUIRED_INCLUDES)
+        set(CATENA_HAVE_GEMMI ${GEMMI_COMPILES})
+    endif()
+endif()
+if(CATENA_HAVE_GEMMI)
+    file(STRINGS "${GEMMI_INCLUDE_DIR}/gemmi/version.hpp" version REGEX "define GEMMI_VERSION ")
+    string(REGEX REPLACE ".*\"(.*)\".*" "\\1" version "${version}")
+    add_library(catena_gemmi INTERFACE)
+    target_include_directories(catena_gemmi SYSTEM INTERFACE ${GEMMI_INCLUDE_DIR})
+endif()
+catena_settle(GEMMI IN "${version}, zlib ${ZLIB_VERSION_STRING}" DEBIAN "gemmi-dev tao-pegtl-dev zlib1g-dev"
+              LEFT_OUT "no mmCIF, no compressed structures")
 
 catena_switch(OPENMM "Forces of OpenMM")
 if(catena_wanted)

@@ -3,70 +3,13 @@
 
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
+#include "generate/cell_stack.hpp"
 #include "generate/random.hpp"
 
 namespace catena::scene {
 
 namespace {
-
-/// Stack of points in cubic cells of the excluded distance. Only the point pushed last can be
-/// popped.
-class CellStack {
-  public:
-    explicit CellStack(double width) : width_(width) {}
-
-    std::int64_t size() const { return static_cast<std::int64_t>(points_.size()); }
-    Vec3 const& top() const { return points_.back(); }
-
-    /// Adds a point on top of the stack.
-    void push(Vec3 const& point) {
-        auto [head, fresh] = heads_.try_emplace(key(point, 0, 0, 0), -1);
-        next_.push_back(head->second);
-        head->second = size();
-        points_.push_back(point);
-    }
-    void pop() {
-        heads_[key(points_.back(), 0, 0, 0)] = next_.back();
-        next_.pop_back();
-        points_.pop_back();
-    }
-    /// True if a point other than the last one is nearer than the width.
-    bool crowded(Vec3 const& point) const {
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) {
-                    auto const head = heads_.find(key(point, x, y, z));
-                    if (head != heads_.end() && crowded_by(point, head->second)) return true;
-                }
-        return false;
-    }
-    std::vector<Vec3> take() { return std::move(points_); }
-
-  private:
-    bool crowded_by(Vec3 const& point, std::int64_t k) const {
-        for (; k >= 0; k = next_[static_cast<std::size_t>(k)])
-            if (k + 1 != size() && norm(points_[static_cast<std::size_t>(k)] - point) < width_)
-                return true;
-        return false;
-    }
-    /// Key of the cell shifted by (x, y, z) cells from the point's cell: 21 bits per axis. Distant
-    /// cells may share a key, which only costs time.
-    std::uint64_t key(Vec3 const& p, int x, int y, int z) const {
-        auto const cell = [&](double coordinate, int shift) {
-            return static_cast<std::uint64_t>(
-                       static_cast<std::int64_t>(std::floor(coordinate / width_)) + shift) &
-                   0x1FFFFF;
-        };
-        return cell(p[0], x) << 42 | cell(p[1], y) << 21 | cell(p[2], z);
-    }
-
-    double width_;
-    std::vector<Vec3> points_;
-    std::vector<std::int64_t> next_;
-    std::unordered_map<std::uint64_t, std::int64_t> heads_;
-};
 
 /// Inboard end of link k (from 0): the preceding bead, or the anchor.
 Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {

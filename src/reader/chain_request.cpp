@@ -12,6 +12,7 @@
 #include "generate/random.hpp"
 #include "generate/start_fit.hpp"
 #include "reader/sections.hpp"
+#include "reader/structure_entry.hpp"
 #include "reader/system_links.hpp"
 #include "scene/files.hpp"
 #include "scene/pdb_sites.hpp"
@@ -21,11 +22,12 @@ namespace catena::scene {
 
 namespace {
 
-/// True for the extensions of PDB files and of formats that the PDB reader refuses by name.
-bool is_structure(std::string const& path) {
-    std::string kind = std::filesystem::path(path).extension().string();
-    std::transform(kind.begin(), kind.end(), kind.begin(),
+/// True for the extensions of structure files, compressed or not.
+bool is_structure(std::string path) {
+    std::transform(path.begin(), path.end(), path.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (path.ends_with(".gz")) path.resize(path.size() - 3);
+    std::string const kind = std::filesystem::path(path).extension().string();
     return kind == ".pdb" || kind == ".ent" || kind == ".cif" || kind == ".mmcif";
 }
 
@@ -40,6 +42,19 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
     return others;
 }
 
+/// The termini that the chain's entry or the whole scene charges.
+calvados2::ChargedTermini written_termini(ChainRequest const& request) {
+    if (Node const* const here = request.fields.find("charge_termini"))
+        return read_charged_termini(*here);
+    // The entry for all chains is the first one. Entries of preceding chains need no search.
+    auto const& openmm = request.scene.forces.openmm;
+    bool const said = openmm && !openmm->map.empty() && openmm->map.front().first.empty();
+    calvados2::ChargedTermini const& protein = request.protein_ends;
+    if (!said) return protein;
+    auto const& ends = openmm->map.front().second;
+    return {ends.first != 0 && protein.n, ends.second != 0 && protein.c};
+}
+
 /// True if the file numbers its residues from 1 on, or not at all.
 bool counts_from_one(PdbSites const& from) {
     for (std::size_t k = 0; k < from.sites.size(); ++k)
@@ -50,8 +65,9 @@ bool counts_from_one(PdbSites const& from) {
 }  // namespace
 
 void ChainRequest::allow(char const* kind, Names keys) const {
-    for (char const* const key : {"record", "model", "positions", "links", "anchor", "conformation",
-                                  "rigid", "charge_termini"}) {
+    for (char const* const key :
+         {"record", "model", "positions", "links", "anchor", "conformation", "rigid",
+          "charge_termini", "chain", "conformer", "gaps", "sites"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` does not apply to {}", key, kind), "leave it out");
@@ -73,14 +89,15 @@ bool ChainRequest::links_as_given() const {
     return links && choice<bool>(*links, {{"model", false}, {"as_given", true}});
 }
 
+bool ChainRequest::is_cut() const { return part != nullptr && (part->cut_front || part->cut_back); }
+
 calvados2::ChargedTermini ChainRequest::termini() const {
-    if (Node const* const here = fields.find("charge_termini")) return read_charged_termini(*here);
-    // The entry for all chains is the first one. Entries of preceding chains need no search.
-    bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() &&
-                      scene.forces.openmm->map.front().first.empty();
-    if (!said) return protein_ends;
-    auto const& ends = scene.forces.openmm->map.front().second;
-    return {ends.first != 0 && protein_ends.n, ends.second != 0 && protein_ends.c};
+    calvados2::ChargedTermini ends = written_termini(*this);
+    if (part != nullptr) {
+        ends.n = ends.n && !part->cut_front;
+        ends.c = ends.c && !part->cut_back;
+    }
+    return ends;
 }
 
 void ChainRequest::set_lengths(BeadArrays& beads, std::vector<double> lengths) const {
@@ -116,7 +133,7 @@ std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t bea
     std::string const path = resolved(text(file), scene.file);
     bool const pdb = is_structure(path) || file.key == "pdb";
     if (pdb && scene.si)
-        fail(file, "positions in a PDB file are in angstrom, the scene is in SI units",
+        fail(file, "positions in a structure file are in angstrom, the scene is in SI units",
              "give a table x,y,z in metres");
     std::vector<Vec3> positions =
         pdb ? from_structure(path, file) : read_position_table(path, file);
@@ -129,7 +146,7 @@ std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t bea
 }
 
 std::vector<Vec3> ChainRequest::from_structure(std::string const& path, Node const& file) const {
-    PdbSites const sites = read_pdb(path, file, false);
+    PdbSites const sites = read_pdb(path, file);
     for (std::string const& note : sites.notes) scene.note(note);
     if (std::size_t const others = other_residues(sites, residues); others > 0)
         scene.note(
@@ -154,8 +171,10 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
     beads.position = positions;
     double const spread =
         system ? system->largest_spread(particle, static_cast<std::int64_t>(beads.size())) : 0;
-    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`",
-                 largest_change_of(spread), system ? largest_relaxed_change : 0);
+    double const most =
+        part != nullptr && part->mass_centres ? largest_soft_change : largest_change_of(spread);
+    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`", most,
+                 system ? largest_relaxed_change : 0);
     StartFit::Chain const chain{name(), beads, base, rigid};
     // The chain is made whole first, so that distances of neighbours are those along its links.
     fit.make_whole(chain, links_as_given());

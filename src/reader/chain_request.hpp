@@ -16,6 +16,8 @@ namespace catena::scene {
 
 /// The scene's System, see system_links.hpp.
 class WrittenSystem;
+/// A chain of a structure, see structure_entry.hpp.
+struct StructurePart;
 
 /// One entry of `chains` with its context; the readers of each kind of chain share it.
 struct ChainRequest {
@@ -38,19 +40,23 @@ struct ChainRequest {
     WrittenSystem const* system = nullptr;
     /// Number of the chain's first bead in that System.
     std::int64_t particle = 0;
+    /// Chain of the entry's structure that is read now, or nullptr.
+    StructurePart const* part = nullptr;
 
     /// Throws InputError for keys without meaning for this kind of chain: those of `record, model,
-    /// positions, links, anchor, conformation, rigid, charge_termini` that are not in `keys`.
-    /// Refuses an anchor without a fixed base, too.
+    /// positions, links, anchor, conformation, rigid, charge_termini, chain, conformer, gaps,
+    /// sites` that are not in `keys`. Refuses an anchor without a fixed base, too.
     void allow(char const* kind, Names keys) const;
     /// Ground point of a fixed base; the origin by default.
     Vec3 anchor() const;
+    /// True if the chain was cut at a gap.
+    bool is_cut() const;
     /// Name as written, or "chain-N" with the entry's number N from 1.
     std::string name() const;
     /// True for `links: as_given`: links take their lengths from the positions.
     bool links_as_given() const;
     /// Value of the chain's `charge_termini`, by default that of the whole scene for the ends that
-    /// are amino acids.
+    /// are amino acids. Ends that were cut at a gap are no termini.
     calvados2::ChargedTermini termini() const;
     /// Sets the lengths of links, entry k that to bead k, and moves the beads accordingly. Where
     /// the System joins the two beads its length counts, unless the chain has `links: as_given`.
@@ -58,7 +64,7 @@ struct ChainRequest {
     /// Seed of one copy of this chain; each chain and copy has its own stream of the scene's seed.
     std::uint64_t seed(std::int64_t copy) const;
 
-    /// Reads positions, nm, from the table or PDB file that `file` names. Throws InputError unless
+    /// Reads positions, nm, from the table or structure that `file` names. Throws InputError unless
     /// there is one position per bead.
     std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
     /// Places the beads at `positions`, read from `from`, whole across the periodic box. Then fits
@@ -67,7 +73,7 @@ struct ChainRequest {
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
     /// Throws InputError if two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;
-    /// Returns the positions of the sites of a PDB file. Notes residues that differ from the
+    /// Returns the positions of the sites of a structure. Notes residues that differ from the
     /// chain's.
     std::vector<Vec3> from_structure(std::string const& path, Node const& file) const;
 };

@@ -22,6 +22,7 @@
 #include "reader/linked.hpp"
 #include "reader/sections.hpp"
 #include "reader/sequences.hpp"
+#include "reader/structure_entry.hpp"
 #include "reader/system_links.hpp"
 #include "reader/tip.hpp"
 #include "scene/fields.hpp"
@@ -129,22 +130,39 @@ class ChainReader {
         if (source_.key == "generator") generator_.emplace(request_, source_);
     }
 
-    /// Makes all copies and appends them. Copies that do not differ are copied from the first, not
-    /// read again.
+    /// Makes all chains of the entry and appends them: the copies, or the chains of a structure.
     void append_to(std::vector<Draft>& drafts) {
         std::string const name = request_.name();
         if (printable(name) != name)
             fail(*request_.fields.find("name"),
                  "the name has control characters or bytes that are not UTF-8",
                  "give printable UTF-8");
+        if (source_.key != "pdb") return append_copies(name, drafts);
+        check_residue_keys(request_);
+        request_.particle = particle_of(count_ == 1 ? name : name + "-1", next_particle(drafts));
+        std::vector<StructurePart> const parts = read_structure(request_, source_);
+        for (StructurePart const& part : parts) {
+            request_.part = &part;
+            append_copies(part.name, drafts);
+        }
+    }
+
+  private:
+    /// Number of the System's particle that follows those of the drafts.
+    static std::int64_t next_particle(std::vector<Draft> const& drafts) {
+        return drafts.empty() ? 0
+                              : drafts.back().particle +
+                                    static_cast<std::int64_t>(drafts.back().chain.bead_count());
+    }
+
+    /// Makes all copies and appends them. Copies that do not differ are copied from the first, not
+    /// read again.
+    void append_copies(std::string const& name, std::vector<Draft>& drafts) {
         // The memory of generated chains is checked before they are made, that of others after the
         // first copy.
         double const before = drafts.empty() ? 0 : drafts.back().bytes;
         if (generator_) with_copies(before, generator_->size(), generator_->is_beads());
-        std::int64_t const next =
-            drafts.empty() ? 0
-                           : drafts.back().particle +
-                                 static_cast<std::int64_t>(drafts.back().chain.bead_count());
+        std::int64_t const next = next_particle(drafts);
         prepare(count_ == 1 ? name : name + "-1", next);
         std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
@@ -174,17 +192,20 @@ class ChainReader {
         drafts.back().bytes = bytes;
     }
 
-  private:
+    /// The System's first particle of the chain of that name; `next` without a System.
+    std::int64_t particle_of(std::string const& name, std::int64_t next) const {
+        return request_.system ? request_.system->first_particle(name, next) : next;
+    }
     /// Sets the next chain's first particle in the System.
     void prepare(std::string const& name, std::int64_t next) {
-        request_.particle = request_.system ? request_.system->first_particle(name, next) : next;
+        request_.particle = particle_of(name, next);
     }
     /// Tells the forces the charged ends of a chain that differ from those of the whole scene. They
     /// are known as soon as the first copy is made.
     void say_ends(std::string const& name) {
         OpenMmSpec* const openmm =
             request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
-        bool const differ = request_.fields.find("charge_termini") ||
+        bool const differ = request_.fields.find("charge_termini") || request_.is_cut() ||
                             request_.protein_ends != calvados2::ChargedTermini{};
         if (openmm && !openmm->builder.empty() && differ)
             openmm->map.push_back({name, as_numbers(request_.termini())});

@@ -41,22 +41,23 @@ double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const&
 class Neighbours {
   public:
     /// Checks for the residues of one file; `at` is the key in messages.
-    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at)
-        : from_(from), request_(request), at_(at) {
+    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at, GapRule rule)
+        : from_(from), request_(request), at_(at), rule_(rule) {
         if (request.system)
             most_ = largest_change_of(
                 request.system->largest_spread(request.particle, std::ssize(from.sites)));
     }
 
-    /// Checks two neighbours in the chain; `b` is its bead k (from 0).
-    void check(PdbSite const& a, PdbSite const& b, std::size_t k) {
+    /// Checks two neighbours in the chain; `b` is its bead k (from 0). Returns true if residues are
+    /// missing between them and the rule accepts that.
+    bool check(PdbSite const& a, PdbSite const& b, std::size_t k) {
         // Numbers may restart after 9999 in files without a fifth digit.
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped =
             a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
         bool const falls = step < 0 && !wrapped,
                    skips = falls || (step > 1 && !follows_in_hex(a.label, b.label));
-        double const apart = distance(a.position, b.position);
+        double const apart = distance(a.alpha, b.alpha);
         double const peptide = a.carbonyl && b.nitrogen ? distance(*a.carbonyl, *b.nitrogen) : 0;
         bool const bonded = peptide <= largest_peptide_bond,
                    seen = bonded && a.carbonyl && b.nitrogen;
@@ -64,10 +65,16 @@ class Neighbours {
         // Fusion proteins keep the numbers of their parts. There the peptide bond proves that the
         // residues are neighbours.
         if (falls && !(seen && near)) refuse_order(a, b);
-        if ((near && bonded && apart >= least_distance) || fits_system(k, apart))
-            return count(a, b, skips);
-        if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
+        if ((near && bonded && apart >= least_distance) || fits_system(k, apart)) {
+            count(a, b, skips);
+            return false;
+        }
+        bool const gap = apart >= least_distance && !is_wrapped(a, b);
+        if (rule_ != GapRule::refuse && gap) return true;
+        if (rule_ != GapRule::refuse || !request_.links_as_given())
+            refuse(a, b, apart, near && !bonded ? peptide : 0);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
+        return false;
     }
     /// Notes the skips and gaps that were accepted.
     void note() const {
@@ -122,7 +129,7 @@ class Neighbours {
     /// True if the gap vanishes in the file's own cell, which the scene does not give as its box.
     bool is_wrapped(PdbSite const& a, PdbSite const& b) const {
         return from_.cell && !request_.scene.box &&
-               nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
+               nearest_distance(a.alpha, b.alpha, from_.cell) <= largest_distance;
     }
     /// Throws InputError for residues whose numbers decrease.
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
@@ -155,12 +162,14 @@ class Neighbours {
         fail(
             at_,
             fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
-            "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
+            "write `gaps: split` for two chains, `gaps: model` to grow what is missing, or `links: "
+            "as_given` to keep the distance");
     }
 
     PdbSites const& from_;
     ChainRequest const& request_;
     Node const& at_;
+    GapRule rule_;
     /// Largest relative change of a link of the System.
     double most_ = 0;
     /// Numbers of accepted skips and gaps, and the first of each.
@@ -170,11 +179,14 @@ class Neighbours {
 
 }  // namespace
 
-void refuse_gaps(PdbSites const& from, ChainRequest const& request, Node const& at) {
-    Neighbours neighbours(from, request, at);
+std::vector<std::size_t> find_gaps(PdbSites const& from, ChainRequest const& request,
+                                   Node const& at, GapRule rule) {
+    Neighbours neighbours(from, request, at, rule);
+    std::vector<std::size_t> gaps;
     for (std::size_t k = 1; k < from.sites.size(); ++k)
-        neighbours.check(from.sites[k - 1], from.sites[k], k);
+        if (neighbours.check(from.sites[k - 1], from.sites[k], k)) gaps.push_back(k);
     neighbours.note();
+    return gaps;
 }
 
 }  // namespace catena::scene

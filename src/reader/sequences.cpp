@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 #include "generate/conformation.hpp"
 #include "generate/generators.hpp"
 #include "keys/maps.hpp"
-#include "reader/gaps.hpp"
 #include "reader/models.hpp"
+#include "reader/structure_entry.hpp"
 #include "scene/calvados2.hpp"
 #include "scene/fasta.hpp"
 #include "scene/files.hpp"
@@ -73,46 +72,6 @@ Residues residues_named(PdbSites const& from, Node const& source, ResidueTable c
     return residues;
 }
 
-/// Returns the file's residue numbers; empty if it does not number all residues.
-std::vector<std::string> labels_of(PdbSites const& from) {
-    std::vector<std::string> labels;
-    for (PdbSite const& site : from.sites) {
-        if (!site.number) return {};
-        labels.push_back(site.label);
-    }
-    return labels;
-}
-
-/// Notes which beads `rigid` means if the file's numbers differ from those of the beads.
-void note_numbering(ChainRequest const& request, std::vector<std::string> const& labels,
-                    std::string const& file) {
-    bool from_one = true;
-    for (std::size_t k = 0; k < labels.size(); ++k)
-        from_one = from_one && labels[k] == std::to_string(k + 1);
-    if (from_one) return;
-    std::string list;
-    for (Domain const& domain : request.rigid)
-        list += fmt::format("{}{} are beads {} to {}", list.empty() ? "" : ", ", domain.name,
-                            domain.first + 1, domain.last + 1);
-    request.scene.note(fmt::format("`rigid` means the residue numbers of `{}`: {}", file, list));
-}
-
-/// Reads the rigid domains by the file's residue numbers, or by bead numbers if the file has none.
-void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues,
-               PdbSites const& from) {
-    std::vector<std::string> const labels = labels_of(from);
-    request.rigid = read_domains(rigid, residues, labels);
-    if (!labels.empty()) return note_numbering(request, labels, from.file);
-    auto const bare = std::find_if(from.sites.begin(), from.sites.end(),
-                                   [](PdbSite const& site) { return !site.number; });
-    if (bare == from.sites.end()) return;
-    request.scene.note(
-        fmt::format("`rigid` means beads, numbered from 1: `{}` has no residue number that can be "
-                    "read for bead {}, {}{}",
-                    from.file, bare - from.sites.begin() + 1, shown(bare->residue),
-                    bare->label.empty() ? "" : " `" + bare->label + "`"));
-}
-
 /// Largest excluded distance of a self-avoiding walk, relative to its links.
 double constexpr widest_exclusion = 1.5;
 
@@ -153,23 +112,16 @@ BeadArrays at_start(ChainRequest const& request, std::vector<double> const& leng
     return made;
 }
 
-/// Reads the residues of a PDB file and checks them for gaps.
-Residues residues_of_pdb(ChainRequest& request, Node const& file, PdbSites& from) {
-    from = read_pdb(resolved(text(file), request.scene.file), file, true);
-    for (std::string const& note : from.notes) request.scene.note(note);
-    Residues residues = residues_named(from, file, table_of(request), request.scene);
-    refuse_gaps(from, request, file);
-    return residues;
-}
-
-/// Reads the residues from `pdb`, `fasta` or `sequence`. `from` receives the sites of a PDB file.
-Residues read_residues(ChainRequest& request, PdbSites& from) {
+/// Reads the residues from `fasta` or `sequence`, or names those of the structure.
+Residues read_residues(ChainRequest& request) {
     Fields const& fields = request.fields;
     Node const* const fasta = fields.find("fasta");
     Node const* const record = fields.find("record");
     if (record && !fasta)
         fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
-    if (Node const* const file = fields.find("pdb")) return residues_of_pdb(request, *file, from);
+    if (request.part != nullptr)
+        return residues_named(request.part->from, *fields.find("pdb"), table_of(request),
+                              request.scene);
     if (fasta) {
         std::string const path = resolved(text(*fasta), request.scene.file);
         return residues_of(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta,
@@ -179,43 +131,50 @@ Residues read_residues(ChainRequest& request, PdbSites& from) {
     return residues_of(text(sequence), sequence, request);
 }
 
-/// Reads `rigid`, which requires positions.
-void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& from) {
+/// Reads `rigid`, which requires positions. Those of a structure are read with it.
+void read_rigid(ChainRequest& request, std::size_t residues) {
     Fields const& fields = request.fields;
+    if (request.part != nullptr) {
+        request.rigid = request.part->rigid;
+        return;
+    }
     Node const* const rigid = fields.find("rigid");
     if (!rigid) return;
     Node const* const conformation = fields.find("conformation");
-    if (!fields.find("pdb") && !fields.find("positions") &&
-        !(conformation && conformation->kind == Node::Kind::map))
+    if (!fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
         fail(*rigid, "rigid domains in a chain without positions",
              "give `pdb` or `positions`: they define the shape of the domains");
-    set_rigid(request, *rigid, residues, from);
+    request.rigid = read_domains(*rigid, {residues});
 }
 
 }  // namespace
 
-// The residues come first, because rigid domains and start positions depend on their number.
-BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
-    Fields const& fields = request.fields;
-    bool const pdb = fields.find("pdb");
+void check_residue_keys(ChainRequest const& request) {
+    bool const pdb = request.fields.find("pdb");
     request.allow(pdb ? "a chain from a PDB file" : "a sequence",
-                  pdb ? Names{"record", "model", "links", "anchor", "rigid", "charge_termini"}
+                  pdb ? Names{"record", "model", "links", "anchor", "rigid", "charge_termini",
+                              "chain", "conformer", "gaps", "sites"}
                       : Names{"record", "model", "positions", "links", "anchor", "conformation",
                               "rigid", "charge_termini"});
     if (request.scene.si)
         fail(request.node, "model calvados2 in SI units",
              "write `units: md`: its parameters are in nm, amu and kJ/mol");
     table_of(request);
-    PdbSites from;
-    Residues const residues = read_residues(request, from);
-    read_rigid(request, residues.size(), from);
+}
+
+// The residues come first, because rigid domains and start positions depend on their number.
+BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
+    check_residue_keys(request);
+    Residues const residues = read_residues(request);
+    read_rigid(request, residues.size());
     request.residues.clear();
     for (ResidueType const* const residue : residues) request.residues.push_back(residue->name);
     hand_to_forces(request, residues);
     find_ends(request, residues);
     BeadArrays beads = at_start(request, link_lengths(residues), copy);
     set_residues(beads, residues, request.termini());
-    if (pdb) request.place(beads, from.positions(), *fields.find("pdb"));
+    if (request.part != nullptr)
+        request.place(beads, request.part->from.positions(), *request.fields.find("pdb"));
     return beads;
 }
 

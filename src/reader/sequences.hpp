@@ -9,6 +9,9 @@ namespace catena::scene {
 /// several kT (mean diameters are 0.45 to 0.68 nm).
 inline constexpr double excluded_distance = 0.56;  // nm
 
+/// Throws InputError for keys and units that do not fit a chain of residues.
+void check_residue_keys(ChainRequest const& request);
+
 /// Returns beads on links with the model's masses, link lengths and residue names, at their start
 /// positions, at rest. `copy` selects the random conformation among a chain's copies. Sets the
 /// request's rigid domains and residues.

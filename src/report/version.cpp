@@ -13,6 +13,7 @@
 #include "math/simd_level.hpp"
 #include "measure/hardware.hpp"
 #include "mpi/communicator.hpp"
+#include "scene/mmcif_file.hpp"
 
 namespace catena::command {
 
@@ -34,7 +35,8 @@ nlohmann::ordered_json version_json() {
             {"flags", CATENA_FLAGS},   {"instruction_set", instruction_set()},
             {"simd", simd_names()},    {"mpi", message_passing_library()},
             {"openmp", CATENA_OPENMP}, {"openmm", openmm_version()},
-            {"hdf5", hdf5_version()},  {"cuda", cuda::version()}};
+            {"hdf5", hdf5_version()},  {"gemmi", scene::gemmi_version()},
+            {"cuda", cuda::version()}};
 }
 
 nlohmann::ordered_json hardware_json() {
@@ -59,6 +61,7 @@ std::string version_text() {
                                      {"OpenMP", "openmp"},
                                      {"OpenMM", "openmm"},
                                      {"HDF5", "hdf5"},
+                                     {"gemmi", "gemmi"},
                                      {"CUDA", "cuda"}})
         text += fmt::format("  {:<8}{}\n", label, all.at(key).get<std::string>());
     return text;

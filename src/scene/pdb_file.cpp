@@ -55,17 +55,15 @@ void refuse_other_formats(std::string_view text, std::string const& path) {
     auto const refuse = [&](char const* what, char const* remedy) {
         throw InputError(what, path, remedy);
     };
-    if (text.starts_with("\x1F\x8B")) refuse("the file is compressed", "unpack it: gunzip");
     if (text.substr(0, 4096).find('\0') != std::string_view::npos)
-        refuse("the file is not a text file", "write a PDB file");
+        refuse("the file is not a text file", "write a PDB or mmCIF file");
     std::string_view const begin = trimmed(text.substr(0, 4096));
-    if (begin.empty() && trimmed(text).empty()) refuse("the file is empty", "write a PDB file");
-    if (begin.starts_with("data_") || begin.starts_with("loop_") ||
-        begin.starts_with("_atom_site") || text.find("\n_atom_site.") != std::string_view::npos)
-        refuse("mmCIF is not read yet", "write a PDB file (gemmi convert in.cif out.pdb)");
-    if (begin.starts_with("<")) refuse("the file holds HTML or XML", "write a PDB file");
+    if (begin.empty() && trimmed(text).empty())
+        refuse("the file is empty", "write a PDB or mmCIF file");
+    if (begin.starts_with("<")) refuse("the file holds HTML or XML", "write a PDB or mmCIF file");
     if (begin.starts_with(">"))
-        refuse("the file holds sequences (FASTA)", "write a PDB file, or give it as `fasta`");
+        refuse("the file holds sequences (FASTA)",
+               "write a PDB or mmCIF file, or give it as `fasta`");
 }
 
 [[noreturn]] void refuse_line(std::string const& what, std::string const& path, int line) {
@@ -113,6 +111,7 @@ void read_names(std::string_view line, PdbAtom& atom) {
     atom.segment = columns(line, 73, 4);
     if (atom.segment.find('.') != std::string_view::npos) atom.segment = {};  // a charge (PDBQT)
     atom.element = columns(line, 77, 2);
+    atom.label = atom.chain;
 }
 
 PdbAtom read_atom(std::string_view line, std::string const& path, int n) {
@@ -139,41 +138,64 @@ bool is_record(std::string_view line, std::string_view name) {
     return trimmed(line.substr(0, 6)) == name;
 }
 
-/// Reads SEQRES: column 12 (chain) and columns 14 to 17 (number of residues).
+/// Reads SEQRES: column 12 (chain), columns 14 to 17 (number of residues), and names from column 20
+/// on.
 void read_sequence_record(std::string_view line, PdbSummary& summary) {
     double residues = 0;
-    if (parse_number(columns(line, 14, 4), residues) == NumberFault::none && residues > 0 &&
-        residues < 1e4)
-        summary.sequence[std::string(columns(line, 12, 1))] = static_cast<std::int64_t>(residues);
+    if (parse_number(columns(line, 14, 4), residues) != NumberFault::none || residues <= 0 ||
+        residues >= 1e4)
+        return;
+    ListedSequence& listed = summary.sequence[std::string(columns(line, 12, 1))];
+    listed.residues = static_cast<std::int64_t>(residues);
+    for (std::size_t at = 20; at <= 68; at += 4)
+        if (std::string_view const name = columns(line, at, 3); !name.empty())
+            listed.names.emplace_back(name);
 }
 
-/// Reads CRYST1: edges in columns 7 to 33, angles up to column 54. A cube of 1 angstrom means no
-/// cell.
+/// Reads CRYST1: edges in columns 7 to 33, angles up to column 54.
 void read_cell(std::string_view line, PdbSummary& summary) {
-    Vec3 edges{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        double edge = 0, angle = 0;
-        bool const read = parse_number(columns(line, 7 + 9 * i, 9), edge) == NumberFault::none &&
-                          parse_number(columns(line, 34 + 7 * i, 7), angle) == NumberFault::none;
-        if (!read || edge <= 1 || angle != 90) return;
-        edges[static_cast<int>(i)] = edge;
-    }
-    summary.cell = edges;
+    Vec3 edges{}, angles{};
+    for (std::size_t i = 0; i < 3; ++i)
+        if (parse_number(columns(line, 7 + 9 * i, 9), edges[static_cast<int>(i)]) !=
+                NumberFault::none ||
+            parse_number(columns(line, 34 + 7 * i, 7), angles[static_cast<int>(i)]) !=
+                NumberFault::none)
+            return;
+    if (auto const cell = rectangular_cell(edges, angles)) summary.cell = cell;
+}
+
+/// Number of a MODEL record, in columns 11 to 14 or, of other programs, anywhere behind the name.
+std::optional<std::int64_t> model_number(std::string_view line) {
+    double number = 0;
+    bool const read = line.size() > 5 &&
+                      parse_number(trimmed(line.substr(5)), number) == NumberFault::none &&
+                      number == std::floor(number) && std::abs(number) < 1e9;
+    return read ? std::optional(static_cast<std::int64_t>(number)) : std::nullopt;
 }
 
 }  // namespace
 
+bool ModelChoice::begin(std::int64_t number, PdbSummary& summary) {
+    summary.models.push_back(number);
+    bool const chosen = !found_ && number == wanted_.value_or(summary.models.front());
+    found_ = found_ || chosen;
+    return chosen;
+}
+
 PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
-                             std::function<void(PdbAtom const&)> const& take) {
+                             std::optional<std::int64_t> model, TakeAtom const& take) {
     text = without_mark(text);
     refuse_other_formats(text, path);
     PdbSummary summary;
+    ModelChoice choice(model);
     int part = 0, number = 0;
-    bool open = true, begun = false;  // inside the first model; atoms of a model have been read
+    bool open = true, begun = false;   // inside the chosen model; atoms of a model have been read
+    std::optional<std::int64_t> next;  // number of the next model
     for (std::string_view line; next_line(text, line);) {
         ++number;
         if (is_record(line, "MODEL") || is_record(line, "ENDMDL") || is_record(line, "END")) {
-            if (std::exchange(begun, false)) open = false;
+            begun = false;
+            if (is_record(line, "MODEL")) next = model_number(line);
         } else if (line.starts_with("TER") &&
                    blanks.find(column(line, 4)) != std::string_view::npos) {
             ++part;
@@ -182,7 +204,9 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
         } else if (is_record(line, "SEQRES")) {
             read_sequence_record(line, summary);
         } else if (is_atom(line)) {
-            if (!std::exchange(begun, true)) ++summary.models;
+            if (!std::exchange(begun, true))
+                open = choice.begin(
+                    std::exchange(next, {}).value_or(std::ssize(summary.models) + 1), summary);
             if (!open) continue;
             PdbAtom atom = read_atom(line, path, number);
             atom.part = part;
@@ -191,6 +215,12 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
         }
     }
     return summary;
+}
+
+std::optional<Vec3> rectangular_cell(Vec3 const& edges, Vec3 const& angles) {
+    for (int i = 0; i < 3; ++i)
+        if (!(edges[i] > 1) || angles[i] != 90) return {};
+    return edges;
 }
 
 std::optional<std::int64_t> residue_number(std::string_view number) {

@@ -1,116 +1,27 @@
-// Implements the selection of sites: gathers atoms into residues, then selects one atom each.
+// Implements the selection of sites: the atoms of the chosen chains become residues, and each
+// residue one site.
 #include "scene/pdb_sites.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
-#include <tuple>
 
+#include "scene/atom_masses.hpp"
 #include "scene/files.hpp"
-#include "scene/pdb_file.hpp"
 #include "scene/residue_names.hpp"
+#include "scene/structure_file.hpp"
+#include "scene/structure_residues.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-/// Atoms of one residue, in the file's order.
-struct Residue {
-    std::vector<PdbAtom> atoms;
-    ResidueMeaning meaning;
-
-    PdbAtom const& front() const { return atoms.front(); }
-    bool is_protein() const {
-        return meaning.kind == ResidueKind::amino_acid || meaning.kind == ResidueKind::charged;
-    }
-};
+using Residue = StructureResidue;
 
 Vec3 in_nm(Vec3 const& angstrom) {
     return {{0.1 * angstrom[0], 0.1 * angstrom[1], 0.1 * angstrom[2]}};
 }
-
-std::string label_of(PdbAtom const& atom) {
-    auto const number = residue_number(atom.number);
-    std::string label = number && *number < 10000
-                            ? std::to_string(*number)
-                            : shown(atom.number);  // larger numbers stay as written
-    if (atom.insertion != ' ') label += shown(std::string_view(&atom.insertion, 1));
-    return label;
-}
-
-/// Returns "ALA 7 of chain A", or the parts of it that the file gives.
-std::string name_of(Residue const& residue) {
-    PdbAtom const& atom = residue.front();
-    std::string text = shown(atom.residue);
-    if (!atom.number.empty()) text += " " + label_of(atom);
-    if (!chain_of(atom).empty()) text += " of chain " + shown(chain_of(atom));
-    return text;
-}
-
-/// Gathers atoms into residues. Atoms of a residue need not be consecutive, because alternate
-/// locations may form blocks of their own.
-class Gathering {
-  public:
-    Gathering(std::string const& path, Node const& at) : path_(path), at_(at) {}
-
-    void add(PdbAtom const& atom) {
-        if (!residues.empty() && continues(atom)) return residues.back().atoms.push_back(atom);
-        auto const number = residue_number(atom.number);
-        if (number) {
-            if (!residues.empty() && !atom.same_chain(residues.back().front())) lap_ = 0;
-            if (last_ == 9999 && *number <= 1)
-                ++lap_;  // writers without a fifth digit restart at 0 or 1
-            auto const key = std::tuple(atom.part, atom.chain, atom.segment, lap_ + realm(atom),
-                                        *number, atom.insertion);
-            auto const [known, fresh] = known_.try_emplace(key, residues.size());
-            if (!fresh) return add_to(residues[known->second], atom);
-            last_ = *number;
-        }
-        residues.push_back({{atom}, meaning_of(atom.residue)});
-    }
-
-    std::vector<Residue> residues;
-
-  private:
-    /// Separates water and ions from other residues, because their numbers often restart at 1.
-    static int realm(PdbAtom const& atom) {
-        ResidueKind const kind = meaning_of(atom.residue).kind;
-        return kind == ResidueKind::water ? 1 << 20 : kind == ResidueKind::ion ? 2 << 20 : 0;
-    }
-    /// True if the atom belongs to the residue that was read last.
-    bool continues(PdbAtom const& atom) const {
-        Residue const& residue = residues.back();
-        PdbAtom const& first = residue.front();
-        if (!atom.same_chain(first) || atom.number != first.number ||
-            atom.insertion != first.insertion)
-            return false;
-        if (atom.residue != first.residue) return atom.alternate != ' ' && first.alternate != ' ';
-        if (residue_number(atom.number)) return true;
-        return std::none_of(residue.atoms.begin(), residue.atoms.end(), [&](PdbAtom const& other) {
-            return other.name == atom.name && other.alternate == atom.alternate;
-        });
-    }
-    void add_to(Residue& residue, PdbAtom const& atom) {
-        if (atom.residue != residue.front().residue &&
-            (atom.alternate == ' ' || residue.front().alternate == ' '))
-            fail(at_,
-                 fmt::format("residue {} of `{}` comes again as {} (line {})", name_of(residue),
-                             shown_path(path_), shown(atom.residue), atom.line),
-                 "give each residue its own number or insertion code");
-        residue.atoms.push_back(atom);
-    }
-
-    std::string const& path_;
-    Node const& at_;
-    std::map<std::tuple<int, std::string_view, std::string_view, int, std::int64_t, char>,
-             std::size_t>
-        known_;
-    std::int64_t last_ = 0;
-    /// Number of restarts of the residue numbers within the chain.
-    int lap_ = 0;
-};
 
 /// Counts the residues that are left out, by kind and name.
 class Savings {
@@ -139,9 +50,11 @@ class Savings {
 /// Selects one site per residue and records notes on the choices.
 class Selection {
   public:
-    Selection(std::vector<Residue> const& residues, std::string const& path, Node const& at)
+    Selection(std::vector<Residue> const& residues, std::string const& path, Node const& at,
+              bool mass_centres)
         : residues_(residues),
           at_(at),
+          mass_centres_(mass_centres),
           alpha_carbons_(any_alpha_carbon()),
           protein_(any_protein()) {
         made.file = shown_path(path);
@@ -161,33 +74,23 @@ class Selection {
                 fmt::format("`{}`: alternate locations in {} residue{}: the one of largest "
                             "occupancy is taken{}",
                             made.file, alternates_, alternates_ == 1 ? "" : "s", mixed_));
+        if (lone_atoms_ > 0)
+            made.notes.push_back(fmt::format(
+                "`{}`: `sites: com` finds a single atom in {} residue{}, which is taken "
+                "for the centre of mass",
+                made.file, lone_atoms_, lone_atoms_ == 1 ? "" : "s"));
     }
 
-    void refuse_several_chains() const {
-        std::string list;
-        int chains = 0;
-        for (std::size_t k = 0, begin = 0; k < from_.size(); ++k) {
-            if (k + 1 < from_.size() && from_[k]->same_chain(*from_[k + 1])) continue;
-            if (++chains <= 4)
-                list += fmt::format("{}{}", chains == 1 ? "" : ", ", range(begin, k));
-            begin = k + 1;
+    /// Lists the chains, with their sequences in the file.
+    void list_chains(PdbSummary const& summary) {
+        for (std::size_t k = 0; k < from_.size(); ++k) {
+            if (k == 0 || !from_[k]->same_chain(*from_[k - 1])) {
+                made.chains.push_back({shown(chain_of(*from_[k])), shown(from_[k]->label), k});
+                auto const listed = summary.sequence.find(std::string(from_[k]->label));
+                if (listed != summary.sequence.end()) made.chains.back().sequence = listed->second;
+            }
+            made.chains.back().last = k + 1;
         }
-        if (chains > 1)
-            fail(at_,
-                 fmt::format("`{}` holds {} chains: {}{}", made.file, chains, list,
-                             chains > 4 ? ", ..." : ""),
-                 "keep one chain per file, each with its own entry in `chains`");
-    }
-
-    /// Notes missing residues. SEQRES lists the residues of the whole chain.
-    void note_unresolved(PdbSummary const& summary) {
-        if (from_.empty()) return;
-        auto const listed = summary.sequence.find(std::string(from_[0]->chain));
-        if (listed == summary.sequence.end() || listed->second <= std::ssize(made.sites)) return;
-        made.notes.push_back(
-            fmt::format("`{}`: SEQRES lists {} residues of the chain, but only {} have positions "
-                        "and become beads",
-                        made.file, listed->second, made.sites.size()));
     }
 
     PdbSites made;
@@ -249,8 +152,8 @@ class Selection {
             if (!alpha_carbons_ || is_alpha_carbon(residue, atom)) found.push_back(&atom);
         if (found.empty())
             fail(at_,
-                 fmt::format("residue {} of `{}` has no CA atom (line {})", name_of(residue),
-                             made.file, residue.front().line),
+                 fmt::format("residue {} of `{}` has no CA atom ({})", name_of(residue), made.file,
+                             place_of(residue.front())),
                  "add it, or take the residue out of the file");
         for (PdbAtom const* const atom : found)
             if (atom->name != found.front()->name)
@@ -262,9 +165,9 @@ class Selection {
             for (auto b = found.begin(); b != a; ++b)
                 if ((*a)->alternate == (*b)->alternate)
                     fail(at_,
-                         fmt::format("residue {} of `{}` has atom {} twice (lines {} and {})",
-                                     name_of(residue), made.file, shown((*a)->name), (*b)->line,
-                                     (*a)->line),
+                         fmt::format("residue {} of `{}` has atom {} twice ({}s {} and {})",
+                                     name_of(residue), made.file, shown((*a)->name),
+                                     (*a)->row ? "row" : "line", (*b)->line, (*a)->line),
                          "keep one of them");
         return found;
     }
@@ -284,7 +187,30 @@ class Selection {
         made.sites.push_back({in_nm(atom.position), shown(atom.residue), label_of(atom),
                               residue_number(atom.number), beside(residue, atom, "C"),
                               beside(residue, atom, "N")});
+        made.sites.back().sequence_index = atom.sequence_index;
+        if (mass_centres_) made.sites.back().position = mass_centre(residue, atom);
         from_.push_back(&atom);
+    }
+    /// Centre of mass, nm, of the residue's atoms in the site's alternate location and in none.
+    Vec3 mass_centre(Residue const& residue, PdbAtom const& site) {
+        double sum = 0;
+        Vec3 centre = Vec3::zero();
+        int atoms = 0;
+        for (PdbAtom const& atom : residue.atoms) {
+            if (atom.alternate != ' ' && site.alternate != ' ' && atom.alternate != site.alternate)
+                continue;
+            auto const mass = atom_mass(atom);
+            if (!mass)
+                fail(at_,
+                     fmt::format("atom {} of residue {} of `{}` has no known mass ({})",
+                                 shown(atom.name), name_of(residue), made.file, place_of(atom)),
+                     "give its element, or write `sites: ca`");
+            sum += *mass;
+            centre = plus_scaled(centre, *mass, atom.position - site.position);
+            ++atoms;
+        }
+        if (atoms == 1) ++lone_atoms_;
+        return in_nm(site.position + (1 / sum) * centre);
     }
     /// Throws InputError if a preferred alternate location lacks the site's atom.
     void refuse_lost_alternate(Residue const& residue, std::vector<PdbAtom const*> const& all,
@@ -297,9 +223,9 @@ class Selection {
                                    (atom.occupancy == taken.occupancy && atom.line < taken.line);
             if (taken.alternate == ' ' || atom.alternate == ' ' || has_site || !preferred) continue;
             fail(at_,
-                 fmt::format("residue {} of `{}` has no {} atom in alternate location {} (line {})",
+                 fmt::format("residue {} of `{}` has no {} atom in alternate location {} ({})",
                              name_of(residue), made.file, shown(taken.name),
-                             shown(std::string_view(&atom.alternate, 1)), atom.line),
+                             shown(std::string_view(&atom.alternate, 1)), place_of(atom)),
                  "add it, or take the location out of the file");
         }
     }
@@ -316,22 +242,112 @@ class Selection {
         return {};
     }
 
-    std::string range(std::size_t begin, std::size_t end) const {
-        std::string const name =
-            chain_of(*from_[begin]).empty() ? "no name" : shown(chain_of(*from_[begin]));
-        std::string const first = made.sites[begin].label, last = made.sites[end].label;
-        return begin == end ? fmt::format("{} (residue {})", name, first)
-                            : fmt::format("{} (residues {} to {})", name, first, last);
-    }
-
     std::vector<Residue> const& residues_;
     Node const& at_;
-    bool alpha_carbons_, protein_;
+    bool mass_centres_, alpha_carbons_, protein_;
     std::vector<PdbAtom const*> from_;  // one per site
     Savings left_out_;
-    int alternates_ = 0;
+    int alternates_ = 0, lone_atoms_ = 0;
     std::string mixed_;
 };
+
+/// The chains that are read, by their names.
+class ChainFilter {
+  public:
+    /// Finds the chosen names among the file's atoms: a name that the authors gave precedes a
+    /// label. Throws InputError for a name that is neither.
+    ChainFilter(StructureChoice const& choice, StructureFile const& file, std::string const& path,
+                Node const& at) {
+        all_ = choice.chains.empty();
+        if (all_) return;
+        std::vector<Known> known;
+        PdbSummary const summary = file.for_each_atom(choice.model, [&](PdbAtom const& atom) {
+            auto const same = [&](Known const& chain) {
+                return chain.name == chain_of(atom) && chain.label == atom.label;
+            };
+            auto found = std::find_if(known.begin(), known.end(), same);
+            if (found == known.end())
+                found = known.insert(found, {std::string(chain_of(atom)), std::string(atom.label)});
+            found->polymer = found->polymer || !atom.het;
+        });
+        if (summary.atoms == 0) return;  // refused with a better reason
+        for (std::string const& name : choice.chains) choose(name, known, path, at);
+    }
+
+    bool takes(PdbAtom const& atom) const {
+        auto const in = [](std::vector<std::string> const& list, std::string_view name) {
+            return std::find(list.begin(), list.end(), name) != list.end();
+        };
+        return all_ || in(names_, chain_of(atom)) || in(labels_, atom.label);
+    }
+
+    /// Sentences on names that mean another chain by their label.
+    std::vector<std::string> notes;
+
+  private:
+    /// A chain of the file.
+    struct Known {
+        std::string name, label;
+        bool polymer = false;  // it has ATOM records
+    };
+
+    void choose(std::string const& name, std::vector<Known> const& known, std::string const& path,
+                Node const& at) {
+        auto const named = [&](Known const& chain) { return chain.name == name; };
+        auto const labelled = [&](Known const& chain) { return chain.label == name; };
+        auto const other = std::find_if(known.begin(), known.end(), [&](Known const& chain) {
+            return labelled(chain) && !named(chain) && chain.polymer;
+        });
+        if (std::any_of(known.begin(), known.end(), named)) {
+            names_.push_back(name);
+            if (other != known.end())
+                notes.push_back(fmt::format(
+                    "`{}`: {} means the chain that the authors call so, not {}, whose label is {}",
+                    path, shown(name), shown(other->name), shown(name)));
+        } else if (std::any_of(known.begin(), known.end(), labelled)) {
+            labels_.push_back(name);
+        } else {
+            fail(at, fmt::format("`{}` holds no chain {}", path, shown(name)),
+                 "take one of " + listed(known));
+        }
+    }
+    /// The first few names, each once.
+    static std::string listed(std::vector<Known> const& known) {
+        std::vector<std::string> names;
+        for (Known const& chain : known)
+            if (std::find(names.begin(), names.end(), chain.name) == names.end())
+                names.push_back(chain.name);
+        std::string text;
+        for (std::size_t k = 0; k < std::min<std::size_t>(names.size(), 8); ++k)
+            text += (k == 0 ? "" : ", ") + (names[k].empty() ? "(no name)" : shown(names[k]));
+        return names.size() > 8 ? text + ", ..." : text;
+    }
+
+    bool all_ = false;
+    std::vector<std::string> names_, labels_;
+};
+
+/// Notes further models and data blocks that are not read.
+void note_models(PdbSummary const& summary, StructureChoice const& choice, PdbSites& made) {
+    if (summary.models.size() > 1 && !choice.model)
+        made.notes.push_back(
+            fmt::format("`{}`: {} models, the first is taken", made.file, summary.models.size()));
+    if (summary.blocks > 1)
+        made.notes.push_back(fmt::format("`{}`: {} data blocks with atoms, the first is taken",
+                                         made.file, summary.blocks));
+}
+
+/// Throws InputError if the file has no atoms, or none in the chosen model.
+void refuse_no_atoms(PdbSummary const& summary, StructureChoice const& choice,
+                     std::string const& path, Node const& at) {
+    if (summary.atoms > 0) return;
+    if (summary.models.empty()) fail(at, "no atoms in `" + path + "`", "give ATOM records");
+    fail(at, fmt::format("`{}` holds no model {}", path, choice.model.value_or(1)),
+         summary.models.size() == 1
+             ? fmt::format("leave `conformer` out: its only model is {}", summary.models[0])
+             : fmt::format("its {} models are {} to {}", summary.models.size(),
+                           summary.models.front(), summary.models.back()));
+}
 
 }  // namespace
 
@@ -342,25 +358,24 @@ std::vector<Vec3> PdbSites::positions() const {
     return all;
 }
 
-PdbSites read_pdb(std::string const& path, Node const& at, bool single_chain) {
-    std::string const text = read_text_file(path, at);
-    Gathering gathering(path, at);
-    PdbSummary const summary = for_each_pdb_atom(text, shown_path(path),
-                                                 [&](PdbAtom const& atom) { gathering.add(atom); });
-    if (summary.atoms == 0) fail(at, "no atoms in `" + shown_path(path) + "`", "give ATOM records");
-    Selection selection(gathering.residues, path, at);
+PdbSites read_pdb(std::string const& path, Node const& at, StructureChoice const& choice) {
+    std::string const name = shown_path(path);
+    StructureFile const file(read_text_file(path, at), name);
+    ChainFilter const filter(choice, file, name, at);
+    ResidueGathering gathering(path, at);
+    PdbSummary const summary = file.for_each_atom(choice.model, [&](PdbAtom const& atom) {
+        if (filter.takes(atom)) gathering.add(atom);
+    });
+    refuse_no_atoms(summary, choice, name, at);
+    Selection selection(gathering.residues, path, at, choice.mass_centres);
     selection.take_sites();
     if (summary.cell) selection.made.cell = in_nm(*summary.cell);
     if (selection.made.sites.empty())
-        fail(at, "no residues of a chain in `" + shown_path(path) + "`",
-             "give ATOM records of a chain");
-    if (summary.models > 1)
-        selection.made.notes.push_back(fmt::format("`{}`: {} models, the first is taken",
-                                                   selection.made.file, summary.models));
-    if (single_chain) {
-        selection.refuse_several_chains();
-        selection.note_unresolved(summary);
-    }
+        fail(at, "no residues of a chain in `" + name + "`", "give ATOM records of a chain");
+    note_models(summary, choice, selection.made);
+    selection.made.notes.insert(selection.made.notes.end(), filter.notes.begin(),
+                                filter.notes.end());
+    selection.list_chains(summary);
     return std::move(selection.made);
 }
 

@@ -1,4 +1,4 @@
-// Chains of a PDB topology. This header does not need OpenMM.
+// Chains of a topology in a PDB or mmCIF file. This header does not need OpenMM.
 #pragma once
 
 #include <string>

@@ -2,6 +2,6 @@
 #include "tests/fuzz/target.hpp"
 
 void catena::fuzz::read(std::string_view bytes) {
-    for (bool const single : {false, true})
-        scene::read_pdb(MemoryFile(bytes).path(), scene::Node(), single);
+    for (bool const mass_centres : {false, true})
+        scene::read_pdb(MemoryFile(bytes).path(), scene::Node(), {{}, {}, mass_centres});
 }

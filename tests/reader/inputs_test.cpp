@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "reader/load_scene.hpp"
+#include "scene/mmcif_file.hpp"
 #include "tests/reader/refusal.hpp"
 
 namespace catena::test {
@@ -13,6 +14,8 @@ TEST(Inputs, every_scene_loads) {
     int scenes = 0;
     for (auto const& entry : fs::directory_iterator(CATENA_SOURCE_DIR "/inputs")) {
         if (entry.path().extension() != ".yaml") continue;
+        // Its structure is an mmCIF file.
+        if (scene::gemmi_version() == "none" && entry.path().stem() == "multi-domain") continue;
         ++scenes;
         EXPECT_NO_THROW({
             Scene const scene = load_scene(entry.path().string());

@@ -13,6 +13,7 @@
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "tests/reader/refusal.hpp"
+#include "tests/reader/scene_files.hpp"
 
 namespace catena::test {
 namespace {
@@ -66,6 +67,14 @@ std::string fasta_file() {
     return path;
 }
 
+/// Writes a PDB file of three residues and returns its path.
+std::string pdb_file() {
+    std::string const path = testing::TempDir() + "keys_test.pdb";
+    std::ofstream(path) << atom(1, "CA", "GLY", 'A', 1, 0) << atom(2, "CA", "GLY", 'A', 2, 3.8)
+                        << atom(3, "CA", "GLY", 'A', 3, 7.6);
+    return path;
+}
+
 /// Types of joints that differ in their keys.
 std::vector<std::string> const joints{
     "{type: revolute, axis: [0, 0, 1]}", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]]}",
@@ -93,6 +102,7 @@ std::map<std::string, std::vector<Place>> places_of_chains() {
         {sequence, "chains[0]."},
         {"chains: [{model: calvados2}]\n", "chains[0]."},
         {start + "fasta: " + fasta_file() + "}]\n", "chains[0]."},
+        {start + "pdb: " + pdb_file() + "}]\n", "chains[0]."},
         {start + "sequence: GGG, base: fixed}]\n", "chains[0]."},
         {start + "sequence: GGG, positions: lost.csv}]\n", "chains[0]."}};
     std::map<std::string, std::vector<Place>> places{

@@ -19,7 +19,7 @@ TEST_F(SceneFiles, alpha_carbons_of_a_pdb_file) {
 
 TEST_F(SceneFiles, bad_pdb_files) {
     std::string const where = " (s.yaml: chains[0].pdb, line 1): ",
-                      own = " (a.pdb): write a PDB file";
+                      own = " (a.pdb): write a PDB or mmCIF file";
     auto const refused = [&](std::string const& text, std::string const& message) {
         write("a.pdb", text);
         EXPECT_EQ(refusal(with_pdb_), message);
@@ -30,11 +30,11 @@ TEST_F(SceneFiles, bad_pdb_files) {
                 where + "keep one atom per residue");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
             "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where +
-                "keep one chain per file, each with its own entry in `chains`");
+                "choose one, such as `chain: A`, or write `chain: all`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + "TER\n" + atom(2, "CA", "GLY", 'A', 2, 3.8) +
                 atom(3, "CA", "GLY", 'A', 3, 7.6),
             "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where +
-                "keep one chain per file, each with its own entry in `chains`");
+                "choose one, such as `chain: A`, or write `chain: all`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "XYZ", 'A', 2, 1),
             "`XYZ 2` is not a residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename "
             "or remove it in the file");
@@ -59,10 +59,7 @@ TEST_F(SceneFiles, bad_pdb_files) {
     refused(" \n", "the file is empty" + own);
     refused("<!DOCTYPE html>\n", "the file holds HTML or XML" + own);
     refused(std::string("ATOM\0", 5), "the file is not a text file" + own);
-    refused("\x1F\x8B", "the file is compressed (a.pdb): unpack it: gunzip");
     refused(">p\nGAS\n", "the file holds sequences (FASTA)" + own + ", or give it as `fasta`");
-    for (char const* const head : {"data_x\n", "# made by x\nloop_\n_atom_site.id\n"})
-        refused(head, "mmCIF is not read yet" + own + " (gemmi convert in.cif out.pdb)");
 }
 
 TEST_F(SceneFiles, pdb_files_with_wrong_columns) {
@@ -299,7 +296,7 @@ TEST_F(SceneFiles, residues_that_seqres_lists_and_the_file_lacks) {
     write("a.pdb", "SEQRES   1 A    4  GLY ALA SER GLY\n" + atom(1, "CA", "GLY", 'A', 1, 0) +
                        atom(2, "CA", "ALA", 'A', 2, 3.8));
     EXPECT_EQ(notes_of(read(with_pdb_)),
-              std::vector<std::string>{"`a.pdb`: SEQRES lists 4 residues of the chain, but only 2 "
+              std::vector<std::string>{"`a.pdb`: the chain's sequence has 4 residues, but only 2 "
                                        "have positions and become beads"});
 }
 
@@ -307,7 +304,8 @@ TEST_F(SceneFiles, gaps_of_a_pdb_file) {
     std::string const
         where = " (s.yaml: chains[0].pdb, line 1): ",
         ways =
-            "fill the gap, make two chains of it, or write `links: as_given` to keep the distance";
+            "write `gaps: split` for two chains, `gaps: model` to grow what is missing, or `links: "
+            "as_given` to keep the distance";
     auto const pair = [&](int number, double x) {
         write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "ALA", 'A', number, x));
     };

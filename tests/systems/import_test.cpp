@@ -94,8 +94,8 @@ TEST_F(Import, Messages) {
               "the topology has 2 atoms and the System 7 particles (scene.yaml: "
               "forces.openmm.topology): give one atom per particle, in the System's order");
     EXPECT_EQ(complaint([&] { import_openmm_system(spec("/nowhere/a.pdb"), "scene.yaml"); }),
-              "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB file "
-              "that can be read");
+              "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB or "
+              "mmCIF file that can be read");
 }
 
 TEST_F(Import, AMotionRemoverIsLeftOutWithANote) {

@@ -1,4 +1,5 @@
 #include "systems/pdb_topology.hpp"
+#include "scene/mmcif_file.hpp"
 
 #include <set>
 
@@ -82,17 +83,28 @@ TEST(PdbTopology, ModelsAreNoted) {
     EXPECT_EQ(notes, std::vector<std::string>{"`" + file + "`: 3 models, the first is taken"});
 }
 
-TEST(PdbTopology, MmcifIsNamed) {
-    EXPECT_NE(complaint([] {
-                  read("data_x\n#\nloop_\n_atom_site.id\n1\n");
-              }).find("mmCIF is not read yet ("),
-              std::string::npos);
+/// OpenMM's mmCIF names chains A to Z and then A again. A build without gemmi says so.
+TEST(PdbTopology, MmcifIsRead) {
+    std::string text =
+        "data_x\n#\nloop_\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.Cartn_x\n"
+        "_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
+    for (int chain = 0; chain < 27; ++chain)
+        text += std::string("GLY ") + static_cast<char>('A' + chain % 26) + " 10 20 30\n";
+    if (scene::gemmi_version() == "none") {
+        EXPECT_NE(complaint([&] { read(text); }).find("built without gemmi"), std::string::npos);
+        return;
+    }
+    auto const chains = read(text);
+    ASSERT_EQ(chains.size(), 27u);
+    EXPECT_EQ(chains[26].name, "A-2");
+    EXPECT_EQ(chains[0].residue, std::vector<std::string>{"GLY"});
+    EXPECT_DOUBLE_EQ(chains[0].position[0][2], 3);
 }
 
 TEST(PdbTopology, Messages) {
-    EXPECT_EQ(
-        complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml: topology"); }),
-        "cannot open /nowhere/a.pdb (scene.yaml: topology): name a PDB file that can be read");
+    EXPECT_EQ(complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml: topology"); }),
+              "cannot open /nowhere/a.pdb (scene.yaml: topology): name a PDB or mmCIF file that "
+              "can be read");
     EXPECT_NE(
         complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml: topology): "),
         std::string::npos);
