@@ -124,7 +124,7 @@ TEST(Accuracy, ARunSaysThatItsFirstAccelerationsAreOff) {
     EXPECT_EQ(projected.status, 0) << projected.err;
     EXPECT_NE(projected.err.find("the first accelerations may have errors of"), std::string::npos)
         << projected.err;
-    EXPECT_NE(projected.err.find("take solver.refine: 2 or solver.handles: articulated"),
+    EXPECT_NE(projected.err.find("use solver.refine: 2 or solver.handles: articulated"),
               std::string::npos)
         << projected.err;
     Ended const articulated = run("articulated", "articulated");

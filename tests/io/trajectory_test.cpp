@@ -173,7 +173,8 @@ TEST(Trajectory, UnitsAreTheScenes) {
 
 TEST(Trajectory, RestartCutsLaterFramesAndGoesOn) {
     TemporaryFolder const folder;
-    std::string const file = folder / "trajectory.h5md", uninterrupted = folder / "uninterrupted.h5md";
+    std::string const file = folder / "trajectory.h5md",
+                      uninterrupted = folder / "uninterrupted.h5md";
     write_frames(uninterrupted, {0, 10, 20, 30, 40, 50});
     write_frames(file, {0, 10, 20, 30, 35});
     write_frames(file, {30, 40, 50}, 29);
@@ -247,7 +248,7 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
     EXPECT_NE(restart(topology).find("was not written by Catena"), std::string::npos)
         << restart(topology);
     write_frames(file, {0, 10});
-    EXPECT_NE(restart(topology, false).find("holds velocities that this run does not write"),
+    EXPECT_NE(restart(topology, false).find("contains velocities that this run does not write"),
               std::string::npos)
         << restart(topology, false);
     Topology larger = topology;
@@ -257,7 +258,8 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
         << restart(larger);
     Topology open = topology;
     open.box.reset();
-    EXPECT_NE(restart(open).find("holds box edges that this run does not write"), std::string::npos)
+    EXPECT_NE(restart(open).find("contains box edges that this run does not write"),
+              std::string::npos)
         << restart(open);
     Topology si = topology;
     si.si = true;
