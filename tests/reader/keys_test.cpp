@@ -107,6 +107,7 @@ std::map<std::string, std::vector<Place>> places_of_chains() {
         {start + "sequence: GGG, positions: lost.csv}]\n", "chains[0]."}};
     std::map<std::string, std::vector<Place>> places{
         {"chains", kinds},
+        {"chains.model", {{"chains: [{sequence: GGG, model: {}}]\n", "chains[0].model."}}},
         {"chains.conformation", {{sequence, "chains[0].conformation."}}},
         {"tip", {{arm(joints[0]), "chains[0].tip."}}}};
     for (std::string const& joint : joints) {
