@@ -20,6 +20,10 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+/// Length of a linker's links, nm: the distance of neighbouring alpha carbons. The start is fitted
+/// to the model's own lengths afterwards.
+constexpr double grown_link = 0.38;
+
 /// True if both names mean one residue; force fields rename some.
 bool same_residue(std::string const& a, std::string const& b) {
     return a == b ||
@@ -159,8 +163,7 @@ std::vector<PdbSite> grown_sites(PdbSites const& from, Gap const& gap,
                                  SequenceSearch const& search) {
     PdbSite const &before = from.sites[gap.site - 1], &after = from.sites[gap.site];
     auto const beads = static_cast<std::int64_t>(gap.missing.size());
-    Linker const linker{before.position, after.position, beads, calvados2::bond_length,
-                        excluded_distance};
+    Linker const linker{before.position, after.position, beads, grown_link, excluded_distance};
     double const apart = norm(linker.to - linker.from),
                  most = linker.length * static_cast<double>(beads + 1);
     if (apart > most)
