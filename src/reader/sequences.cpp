@@ -149,7 +149,7 @@ void read_rigid(ChainRequest& request, std::size_t residues) {
 
 }  // namespace
 
-void check_residue_keys(ChainRequest const& request) {
+void check_residue_keys(ChainRequest& request) {
     bool const pdb = request.fields.find("pdb");
     request.allow(pdb ? "a chain from a PDB file" : "a sequence",
                   pdb ? Names{"record", "model", "links", "anchor", "rigid", "charge_termini",

@@ -10,7 +10,7 @@ namespace catena::scene {
 inline constexpr double excluded_distance = 0.56;  // nm
 
 /// Throws InputError for keys and units that do not fit a chain of residues.
-void check_residue_keys(ChainRequest const& request);
+void check_residue_keys(ChainRequest& request);
 
 /// Returns beads on links with the model's masses, link lengths and residue names, at their start
 /// positions, at rest. `copy` selects the random conformation among a chain's copies. Sets the
