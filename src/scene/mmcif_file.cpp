@@ -40,7 +40,8 @@ class Category {
     Category(cif::Block const& block, std::string const& prefix,
              std::array<char const*, Columns> const& names) {
         for (std::size_t c = 0; c < Columns; ++c) {
-            std::string const tag = prefix + names[c];
+            // gemmi 0.5.7 finds loops by tags in lower case only.
+            std::string const tag = gemmi::to_lower(prefix + names[c]);
             if (cif::Item const* const item = block.find_loop_item(tag)) {
                 loop_ = &item->loop;
                 column_[c] = item->loop.find_tag(tag);

@@ -202,8 +202,8 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
     data_["drag"] = {{3, 2}, {1, 1, 1, 1, 1, 1}};
     EXPECT_EQ(with("drag", 5, -1),
               "drag 1, -1 is negative" + at("drag", 3) + "give 0 or positive numbers");
-    types_[1] = "revolute joint";
-    EXPECT_EQ(refusal(), "`revolute joint` is not a joint type" + at("joint_type", 2) +
+    types_[1] = "revolut";
+    EXPECT_EQ(refusal(), "`revolut` is not a joint type" + at("joint_type", 2) +
                              "use the names of `joint.type`");
     types_[1] = "link";
     EXPECT_EQ(refusal(), "a link in a file of rigid bodies on joints" + at("joint_type", 2) +

@@ -125,7 +125,7 @@ Refusal const joints_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherial}})y",
      "`spherial` is not a value of `type` (s.yaml: chains[0].bodies[1].joint.type, body 2, line "
      "5): did you mean `spherical`?"},
-    {"revolute joint", R"y(chains:
+    {"revolute", R"y(chains:
   - base: fixed
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}

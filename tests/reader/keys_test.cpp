@@ -101,6 +101,7 @@ std::map<std::string, std::vector<Place>> places_of_chains() {
     std::vector<Place> const kinds{
         {sequence, "chains[0]."},
         {"chains: [{model: calvados2}]\n", "chains[0]."},
+        {"chains: [{base: fixed}]\n", "chains[0]."},
         {start + "fasta: " + fasta_file() + "}]\n", "chains[0]."},
         {start + "pdb: " + pdb_file() + "}]\n", "chains[0]."},
         {start + "sequence: GGG, base: fixed}]\n", "chains[0]."},
@@ -302,7 +303,9 @@ TEST(Keys, the_declared_default_changes_nothing) {
         for (Place const& place : places) {
             auto const values = values_with_default(place, std::string(key.name), *value);
             accepted = accepted || values;
-            if (values) EXPECT_EQ(values->first, values->second) << map.name << " " << key.name;
+            if (values) {
+                EXPECT_EQ(values->first, values->second) << map.name << " " << key.name;
+            }
         }
         EXPECT_TRUE(accepted) << map.name << " " << key.name << ": "
                               << refusal_with(places[0], key, *value);

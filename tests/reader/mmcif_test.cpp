@@ -3,6 +3,7 @@
 
 #include "tests/reader/scene_files.hpp"
 #include "tests/reader/structure_text.hpp"
+#include "tests/support/same_bits.hpp"
 
 namespace catena::test {
 namespace {
@@ -31,7 +32,8 @@ class Mmcif : public SceneFiles {
         EXPECT_EQ(pdb.chains.size(), cif.chains.size());
         for (std::size_t c = 0; c < pdb.chains.size(); ++c) {
             EXPECT_EQ(pdb.chains[c].name, cif.chains[c].name);
-            EXPECT_EQ(pdb.chains[c].beads.position, cif.chains[c].beads.position);
+            EXPECT_TRUE(
+                test::same_bits(pdb.chains[c].beads.position, cif.chains[c].beads.position));
             EXPECT_EQ(pdb.chains[c].beads.residue, cif.chains[c].beads.residue);
         }
         Words notes = notes_of(cif);
