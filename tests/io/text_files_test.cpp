@@ -51,7 +51,8 @@ TEST(Observables, EveryRecordIsThereBeforeTheFileIsClosed) {
 
 TEST(Observables, RestartCutsLaterRecordsAndGoesOn) {
     TemporaryFolder const folder;
-    std::string const file = folder / "observables.csv", uninterrupted = folder / "uninterrupted.csv";
+    std::string const file = folder / "observables.csv",
+                      uninterrupted = folder / "uninterrupted.csv";
     write_records(uninterrupted, {0, 100, 200, 300, 400});
     write_records(file, {0, 100, 200, 250, 300});
     write_records(file, {300, 400}, 200);

@@ -21,9 +21,12 @@ std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor 
         return dca::make_articulated_solver(group, executor, communicator);
     if (group.beads) return dca::make_bead_solver(group, executor, communicator);
     if (group.axes == Axes::world) return dca::make_absolute_solver(group, executor, communicator);
-    if (group.directions == 2) return dca::make_joint_solver<2, false>(group, executor, communicator);
-    if (group.directions == 3) return dca::make_joint_solver<3, false>(group, executor, communicator);
-    if (group.directions == 4) return dca::make_joint_solver<4, false>(group, executor, communicator);
+    if (group.directions == 2)
+        return dca::make_joint_solver<2, false>(group, executor, communicator);
+    if (group.directions == 3)
+        return dca::make_joint_solver<3, false>(group, executor, communicator);
+    if (group.directions == 4)
+        return dca::make_joint_solver<4, false>(group, executor, communicator);
     if (group.directions == 5)
         return group.has_screws ? dca::make_joint_solver<5, true>(group, executor, communicator)
                                 : dca::make_joint_solver<5, false>(group, executor, communicator);

@@ -15,6 +15,6 @@ std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor
 
 }  // namespace catena::dca
 
-#define CATENA_JOINT_SOLVER(K, sliding)                       \
+#define CATENA_JOINT_SOLVER(K, sliding)                                  \
     template std::unique_ptr<ChainSolver> make_joint_solver<K, sliding>( \
         ChainGroup const&, Executor const&, Communicator const&);
