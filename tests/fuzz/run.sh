@@ -80,7 +80,7 @@ target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_name
 target residues -lyaml-cpp "${files[@]}" src/scene/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
 if [ -d "$hdf5" ]; then
-    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/scene/freedom.cpp \
+    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/freedom.cpp \
         src/io/{memory_limit,trial}.cpp
     target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,file_seal,hdf5_data,trial}.cpp
 else
