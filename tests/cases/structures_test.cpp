@@ -89,7 +89,7 @@ TEST(Structures, TheRecordThatBearsTheChainsName) {
     EXPECT_EQ(checked("05-fasta-library", "scene").at("bodies"), 20);
     Words const check = {"check", "scene.yaml", "--set", "chains[0].name=p"};
     expect_refused(catena(check, folder_of("05-fasta-library")), 2,
-                   "holds 3 records: `first`, `second`, `third`");
+                   "contains 3 records: `first`, `second`, `third`");
     Json const lower = checked("05-fasta-library", "lower");
     EXPECT_EQ(lower.at("bodies"), 10);
     expect_note(lower, "10 of 10 letters are lower case");

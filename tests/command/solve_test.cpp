@@ -98,7 +98,7 @@ TEST(Solve, RefinementKeepsTheAnswerAndSaysWhatItTook) {
     EXPECT_EQ(overridden["joint_accelerations"], plain["joint_accelerations"]);
     expect_refused(catena({"solve", input("arm.yaml"), "--refine", "11"}), 2, "--refine");
     expect_refused(catena({"solve", input("random-link.yaml"), "--refine", "1"}), 2,
-                   "are not refined (solver.refine): leave it out");
+                   "cannot be refined (solver.refine): leave it out");
 }
 
 TEST(Solve, AFreeBaseHasTwoAccelerations) {

@@ -151,7 +151,7 @@ TEST(RunReport, IsOneSelfContainedPage) {
     EXPECT_EQ(page.find("<script"), std::string::npos);
     EXPECT_NE(page.find("<h1>a &lt;b&gt; &amp; &quot;c&quot;</h1>"), std::string::npos);
     EXPECT_EQ(count(page, "<polyline"), 3U) << "one curve an observable";
-    EXPECT_NE(page.find("The same all the time: Still: 1 nm.<"), std::string::npos);
+    EXPECT_NE(page.find("Constant: Still: 1 nm.<"), std::string::npos);
     EXPECT_NE(page.find("<h3>Total energy</h3>"), std::string::npos);
     EXPECT_NE(page.find(">time / ps<"), std::string::npos);
     EXPECT_NE(page.find("<tr><th>Steps per second</th><td>1234.57</td></tr>"), std::string::npos);

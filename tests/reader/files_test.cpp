@@ -74,7 +74,7 @@ TEST_F(SceneFiles, records_of_a_fasta_file_are_chosen_by_name_or_number) {
     EXPECT_EQ(first(", name: TWO_X"), "TRP");
     EXPECT_EQ(first(", name: one, record: 4"), "ALA");
     EXPECT_EQ(refusal(with_fasta_),
-              "`a.fasta` holds 4 records: `one`, `sp|P1|TWO_X`, `2`, `one`" + where +
+              "`a.fasta` contains 4 records: `one`, `sp|P1|TWO_X`, `2`, `one`" + where +
                   "name the chain after one of them, or add `record: NAME` or its number");
     EXPECT_EQ(refusal("chains: [{name: one, fasta: a.fasta, model: calvados2}]"),
               "2 records have the name `one` (s.yaml: chains[0].name, line 1): choose one by its "

@@ -158,7 +158,7 @@ TEST_F(SceneFiles, rigid_domains_of_a_pdb_file_bear_its_residue_numbers) {
         "one line" +
             where +
             "give [first, last] with the file's residue numbers, here 10 to 12A, both included");
-    EXPECT_EQ(refusal(with("[[10, 12], [12, 12A]]")).substr(0, 25), "residues 12 to 12A are no");
+    EXPECT_EQ(refusal(with("[[10, 12], [12, 12A]]")).substr(0, 25), "residues 12 to 12A do not");
 }
 
 TEST_F(SceneFiles, rigid_domains_of_a_sequence_are_counted_from_one) {
@@ -188,7 +188,7 @@ TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
     }
     EXPECT_EQ(refusal("units: si\nchains: [{generator: {freely_jointed: {beads: 2, length: 1}}, "
                       "positions: a.pdb}]"),
-              "positions in a PDB file are in angstrom, the scene is in SI units (s.yaml: "
+              "positions in a structure file are in angstrom, the scene is in SI units (s.yaml: "
               "chains[0].positions, line 2): give a table x,y,z "
               "in metres");
 }

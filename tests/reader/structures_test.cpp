@@ -80,7 +80,8 @@ TEST_F(Structures, a_chain_is_split_at_its_gaps) {
                   "write `gaps: split` for two chains, `gaps: model` to grow what is missing, or "
                   "`links: as_given` to keep the distance");
     Scene const s = with("gaps: split, name: p",
-                         "\nforces: {openmm: {builder: calvados2}}\ndynamics: {temperature: 300}");
+                         "\nforces: {openmm: {builder: calvados2}}\ndynamics: {integrator: "
+                         "g-baoab, step: 0.01, temperature: 300}");
     EXPECT_EQ(names_of(s), (Words{"p-1", "p-2"}));
     EXPECT_EQ(sizes_of(s), (std::vector<std::size_t>{3, 3}));
     Words const notes = notes_of(s);
@@ -207,7 +208,7 @@ TEST_F(Structures, domains_by_chain_and_residue_number) {
         refusal_with("chain: all, rigid: [[1, 3]]"),
         "2 residues of the file have the number 1" + at + "name the chain, such as \"A:1-...\"");
     EXPECT_EQ(refusal_with("chain: A, rigid: [\"A:\"]"),
-              "`A:` is not a range of residues" + at +
+              "`A:` in quotes is not a range of residues" + at +
                   "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
 }
 
