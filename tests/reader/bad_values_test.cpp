@@ -104,7 +104,7 @@ forces: {openmm: {bilder: calvados2}})y",
      "key `chains` has no value (s.yaml: chains, line 1): give one or leave the key out"},
     {"chain_is_text", "chains: [GGG]",
      "`GGG` is not a map (s.yaml: chains[0], line 1): give a map with keys among `name`, `count`, "
-     "`sequence`, `fasta`, `record`, `pdb`, "
+     "`sequence`, `fasta`, `record`, `pdb`, `chain`, `conformer`, `gaps`, `sites`, "
      "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, "
      "`conformation`, `rigid`, `charge_termini`, "
      "`velocities`"},
