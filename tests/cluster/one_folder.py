@@ -7,7 +7,7 @@ from cluster import Runs, arguments, verdict
 
 SCENE = """\
 chains: [{name: beads, velocities: thermal, generator: {freely_jointed: {beads: 50, length: 0.38}}}]
-dynamics: {integrator: g-baoab, step: 0.002, steps: 400, friction: 1, seed: 5}
+dynamics: {integrator: g-baoab, step: 0.002, steps: 8000, friction: 1, seed: 5}
 output: {every: 5, checkpoint_every: 50, velocities: true}
 """
 REFUSED = "catena: another run is writing to this folder"
