@@ -5,6 +5,10 @@
 
 #include "force/openmm_force.hpp"
 
+namespace OpenMM {
+class System;
+}
+
 namespace catena {
 
 /// Makes the forces of make_openmm_force() with shortened pair forces. Pair forces whose cutoff
@@ -13,5 +17,8 @@ namespace catena {
 /// Collective.
 std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const&, BeadSystem const&,
                                                   Communicator const&, double reach);
+
+/// Shortens the cutoff of pair forces to at most `reach` (nm), switched off from 0.8 `reach` on.
+void shorten_pair_forces(OpenMM::System&, double reach);
 
 }  // namespace catena

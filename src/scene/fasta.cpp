@@ -10,6 +10,7 @@
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/residue_names.hpp"
+#include "scene/text_lines.hpp"
 
 namespace catena::scene {
 
@@ -33,13 +34,6 @@ struct Record {
     }
 };
 
-std::string trimmed(std::string const& text) {
-    std::size_t const first = text.find_first_not_of(" \t\r");
-    return first == std::string::npos
-               ? ""
-               : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 /// Converts line ends (LF, CR LF or CR) to line feeds and removes a byte order mark.
 std::string with_line_feeds(std::string text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
@@ -55,9 +49,9 @@ std::vector<Record> records_of(std::string const& path, Node const& at) {
     std::istringstream stream(with_line_feeds(bytes));
     std::vector<Record> records;
     for (std::string line; std::getline(stream, line);) {
-        if (line = trimmed(line); line.empty()) continue;
+        if (line = std::string(trimmed(line)); line.empty()) continue;
         if (line[0] == '>') {
-            records.push_back({trimmed(line.substr(1)), ""});
+            records.push_back({std::string(trimmed(line.substr(1))), ""});
         } else if (records.empty()) {
             auto const n =
                 1 + std::count(bytes.begin(),

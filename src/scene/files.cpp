@@ -10,40 +10,11 @@
 #include <system_error>
 
 #include "scene/fields.hpp"
+#include "scene/text_lines.hpp"
 
 namespace catena::scene {
 
 namespace {
-
-std::string trimmed(std::string const& text) {
-    char const* const blanks = " \t\r\n";
-    std::size_t const first = text.find_first_not_of(blanks);
-    return first == std::string::npos
-               ? ""
-               : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// Splits the text into lines with their numbers from 1. Text from `comment` on is dropped, blank
-/// lines are left out.
-std::vector<std::pair<int, std::string>> lines_of(std::string const& text, char comment) {
-    std::vector<std::pair<int, std::string>> lines;
-    std::istringstream stream(text);
-    std::string line;
-    for (int n = 1; std::getline(stream, line); ++n) {
-        if (comment) line = line.substr(0, line.find(comment));
-        if (line = trimmed(line); !line.empty()) lines.emplace_back(n, line);
-    }
-    return lines;
-}
-
-/// Splits a line at its commas and trims the cells.
-std::vector<std::string> cells_of(std::string const& line) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(trimmed(cell));
-    if (line.back() == ',') cells.emplace_back();
-    return cells;
-}
 
 /// True if no cell is a number or starts with a digit.
 bool is_header(std::vector<std::string> const& cells) {

@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "scene/fields.hpp"
+#include "scene/text_lines.hpp"
 
 namespace catena::scene {
 
@@ -25,12 +26,7 @@ std::string_view plain(std::string_view value) {
     if (value.size() >= 2 && (value[0] == '\'' || value[0] == '"') && value.back() == value[0])
         return value.substr(1, value.size() - 2);
     bool const block = value.size() > 3 && value[0] == ';' && value.ends_with("\n;");
-    if (!block) return value;
-    value = value.substr(1, value.size() - 3);
-    std::size_t const first = value.find_first_not_of(" \t\r\n");
-    return first == std::string_view::npos
-               ? std::string_view()
-               : value.substr(first, value.find_last_not_of(" \t\r\n") - first + 1);
+    return block ? trimmed(value.substr(1, value.size() - 3)) : value;
 }
 
 /// A category of a block, as a loop or as single items, with columns in a fixed order.

@@ -10,19 +10,11 @@
 
 #include "scene/fields.hpp"
 #include "scene/residue_names.hpp"
+#include "scene/text_lines.hpp"
 
 namespace catena::scene {
 
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n";
-
-std::string_view trimmed(std::string_view text) {
-    std::size_t const first = text.find_first_not_of(blanks);
-    return first == std::string_view::npos
-               ? std::string_view()
-               : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 /// Returns `count` columns from `first` (from 1) on, trimmed; empty if the line is shorter.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t count) {

@@ -16,6 +16,7 @@
 
 // Generated: embedded_calvados2 and embedded_calvados3, the texts of the tables.
 #include "residue_tables.inc"
+#include "scene/text_lines.hpp"
 
 namespace catena {
 
@@ -39,21 +40,6 @@ double constexpr largest_lambda = 3;
 /// Largest charge of a bead, e.
 double constexpr largest_charge = 10;
 
-std::string trimmed(std::string const& text) {
-    char const* const blanks = " \t\r";
-    std::size_t const first = text.find_first_not_of(blanks);
-    return first == std::string::npos
-               ? ""
-               : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-Cells cells_of(std::string const& line) {
-    Cells cells;
-    std::istringstream stream(line + ",");
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(trimmed(cell));
-    return cells;
-}
-
 /// Reads one table and knows the line for messages.
 class Reader {
   public:
@@ -61,15 +47,13 @@ class Reader {
 
     /// Reads the lines of the table. Throws InputError.
     std::vector<ResidueType> read(std::string const& text) {
-        std::istringstream stream(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text);
-        for (std::string line; std::getline(stream, line);) {
-            ++line_;
-            line = trimmed(line.substr(0, line.find('#')));
-            if (line.empty()) continue;
+        bool const marked = text.starts_with("\xEF\xBB\xBF");
+        for (auto const& [n, line] : scene::lines_of(marked ? text.substr(3) : text, '#')) {
+            line_ = n;
             if (place_.empty())
-                read_header(cells_of(line));
+                read_header(scene::cells_of(line));
             else
-                types_.push_back(read_type(cells_of(line)));
+                types_.push_back(read_type(scene::cells_of(line)));
         }
         if (types_.empty())
             throw InputError(

@@ -12,8 +12,4 @@ namespace catena {
 /// error in its own threads, where it cannot be caught. `where` is the place in the message.
 void refuse_box_beyond_cutoffs(OpenMM::System const& system, std::string const& where);
 
-/// Shortens the cutoff of pair forces to at most `reach` (nm), switched off from 0.8 `reach` on.
-/// Implemented in force/contacts.cpp.
-void shorten_pair_forces(OpenMM::System&, double reach);
-
 }  // namespace catena
