@@ -102,7 +102,8 @@ TEST_F(Trajectories, OneFrameHasValuesWithoutErrors) {
     write("run", {0});
     Ended const e = in_folder({"analyse", "run", "--json", "-"});
     expect_good(e);
-    for (auto const& quantity : e.json().at("quantities")) {
+    auto const answer = e.json();
+    for (auto const& quantity : answer.at("quantities")) {
         if (quantity.at("name") != "radius_of_gyration") continue;
         EXPECT_GT(quantity.at("value").get<double>(), 0);
         EXPECT_TRUE(quantity.at("error_by_blocking").is_null());
