@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "measure/blocking.hpp"
+#include "math/blocking.hpp"
 
 namespace catena::analysis {
 

@@ -7,7 +7,7 @@
 
 #include "bench/sampling_copies.hpp"
 #include "console/outcome.hpp"
-#include "measure/blocking.hpp"
+#include "math/blocking.hpp"
 #include "measure/timing.hpp"
 
 namespace catena::command {

@@ -1,4 +1,4 @@
-#include "measure/blocking.hpp"
+#include "math/blocking.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Means and standard errors by blocking.
-#include "measure/blocking.hpp"
+#include "math/blocking.hpp"
 
 #include <algorithm>
 #include <cmath>
