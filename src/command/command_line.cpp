@@ -184,12 +184,12 @@ void add_commands(CLI::App& app, Words& words) {
     command
         ->add_option("--accelerations", words.accelerations,
                      "write accelerations and the forces of joints and tips, for any number of "
-                     "bodies (HDF5)")
+                     "bodies: .csv, .json or .h5 (HDF5)")
         ->type_name("FILE");
     command->footer(
         "Examples:\n  catena solve inputs/arm.yaml --json arm.json\n"
         "  catena solve inputs/random-revolute.yaml --set chains[0].generator.random.bodies=100000 "
-        "--backend openmp --accelerations a.h5");
+        "--backend openmp --accelerations a.csv");
 
     command = app.add_subcommand("run", "simulate and write a folder of results");
     add_scene(*command, words);

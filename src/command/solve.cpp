@@ -7,11 +7,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "command/acceleration_table.hpp"
 #include "command/commands.hpp"
 #include "console/terminal.hpp"
 #include "integrate/chain_system.hpp"
+#include "measure/accelerations_file.hpp"
 #include "measure/forward_error.hpp"
-#include "measure/solution.hpp"
 #include "measure/timing.hpp"
 #include "mpi/first_rank.hpp"
 #include "observe/observables.hpp"
@@ -28,19 +29,29 @@ namespace {
 /// Largest number of bodies whose accelerations are part of the JSON.
 constexpr std::int64_t most_bodies_in_json = 10000;
 
+/// Returns why the oracle cannot compute the recursive Newton-Euler residual; empty if it can. It
+/// needs all bodies on this rank, not too many, no links and no forces unknown to it. Loops of
+/// bodies are excluded: the moments that their residuals are relative to may vanish where forces
+/// pass through the joints.
+std::string why_no_inverse_dynamics(ChainSystem const& system) {
+    Scene const& scene = system.scene();
+    auto const any_chain = [&](auto const& is) {
+        return std::any_of(scene.chains.begin(), scene.chains.end(), is);
+    };
+    if (system.communicator().size() > 1) return "there are several ranks";
+    if (scene.bodies() > most_bodies_in_json)
+        return fmt::format("there are more than {} bodies", most_bodies_in_json);
+    if (any_chain([](ChainSpec const& c) { return c.is_linked(); })) return "bodies are on links";
+    if (any_chain([](ChainSpec const& c) { return !c.is_beads() && c.tip == Tip::jointed; }))
+        return "bodies form a loop";
+    return scene.dynamics.fixman ? "inverse dynamics has no Fixman potential" : "";
+}
+
 /// Returns the recursive Newton-Euler residual of the worst chain, or null where the oracle cannot
-/// compute it. It needs all bodies on this rank, not too many, no links and no forces unknown to
-/// it. Loops of bodies are excluded: the moments that their residuals are relative to may vanish
-/// where forces pass through the joints.
+/// compute it.
 Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     Scene const& scene = system.scene();
-    bool const left_out =
-        std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) {
-            return c.is_linked() || (!c.is_beads() && c.tip == Tip::jointed);
-        });
-    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || left_out ||
-        scene.dynamics.fixman)
-        return nullptr;
+    if (!why_no_inverse_dynamics(system).empty()) return nullptr;
     double worst = 0;
     std::size_t body = 0, bead = 0;
     for (ChainSpec const& chain : scene.chains) {
@@ -65,57 +76,6 @@ Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
         worst = larger(worst, oracle::rnea_residual(chain, loads, accelerations, base));
     }
     return worst;
-}
-
-/// Converts vectors to JSON.
-Json vectors_json(std::vector<Vec3> const& vectors) {
-    Json list = Json::array();
-    for (Vec3 const& v : vectors) list.push_back({v[0], v[1], v[2]});
-    return list;
-}
-
-/// Adds the arrays of all bodies: accelerations, forces of joints and tips, forces on beads.
-void add_arrays(Json& json, Scene const& scene, Solution const& s) {
-    Json accelerations = Json::array(), forces = Json::array();
-    std::size_t body = 0;
-    for (ChainSpec const& chain : scene.chains)
-        for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
-            double const* const a = s.acceleration.data() + s.acceleration_offset[body];
-            double const* const f = s.joint_force.data() + s.force_offset[body];
-            switch (s.acceleration_offset[body + 1] - s.acceleration_offset[body]) {
-                case 0:
-                    accelerations.push_back(Json::array());
-                    break;
-                case 2:
-                    accelerations.push_back({a[0], a[1]});
-                    break;
-                case 1:
-                    accelerations.push_back(a[0]);
-                    break;
-                case 3:
-                    accelerations.push_back({a[0], a[1], a[2]});
-                    break;
-                default:
-                    accelerations.push_back(
-                        {{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
-            }
-            if (chain.is_beads() || chain.is_linked())
-                forces.push_back(f[0]);
-            else
-                forces.push_back({f[0], f[1], f[2], f[3], f[4], f[5]});
-        }
-    json["joint_accelerations"] = std::move(accelerations);
-    json["bead_accelerations"] = vectors_json(s.bead_acceleration);
-    json["bead_forces"] = vectors_json(s.bead_force);
-    json["joint_forces"] = std::move(forces);
-    json["tip_forces"] = Json::array();
-    for (TipForce const& tip : s.tip_force) {
-        Vector<double, 6> const& w = tip.wrench;
-        json["tip_forces"].push_back(
-            {{"chain", scene.chains[static_cast<std::size_t>(tip.chain)].name},
-             {"torque", {w[0], w[1], w[2]}},
-             {"force", {w[3], w[4], w[5]}}});
-    }
 }
 
 /// True if all values are finite.
@@ -155,15 +115,24 @@ bool starts_thermal(Scene const& scene) {
                        [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
 }
 
+/// Returns why the error of the accelerations is not estimated, where it is not.
+char const* why_no_estimate(Scene const& scene) {
+    bool const refinable =
+        std::any_of(scene.chains.begin(), scene.chains.end(),
+                    [](ChainSpec const& c) { return !c.is_beads() && !c.is_linked(); });
+    return refinable ? "there are very many bodies" : "beads and bodies on links are not refined";
+}
+
 /// Returns the text that `catena solve` prints.
 std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing,
-                    std::string const& complaint) {
+                    Solution const& solution) {
     Scene const& scene = system.scene();
     Text text;
     text.heading(title_of(scene));
     text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(),
                                      counted(std::ssize(scene.chains), "chain", "chains"),
                                      degrees_of_freedom(scene)));
+    add_accelerations(text, scene, solution);
     text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()),
                                      name_of(scene.solver.handles),
                                      counted(system.communicator().size(), "rank", "ranks"),
@@ -198,8 +167,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry(
         "inverse dynamics",
         inverse.is_null()
-            ? "residual not computed (several ranks, many bodies, bodies on links or in loops, or "
-              "a Fixman potential)"
+            ? fmt::format("residual not computed ({})", why_no_inverse_dynamics(system))
             : fmt::format(
                   "residual {:.2e}, {}", inverse.get<double>(),
                   error.is_null()
@@ -208,7 +176,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry(
         "estimated error",
         error.is_null()
-            ? "not estimated (beads and linked bodies, or very many bodies)"
+            ? fmt::format("not estimated ({})", why_no_estimate(scene))
             : fmt::format(
                   "{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
                   error.get<double>(), json["estimated_error_bound"].get<double>()));
@@ -221,7 +189,6 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                            json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
     for (std::string const& note : scene.notes) text.note(note);
-    text.heading(complaint.empty() ? "VALID" : "INVALID: " + complaint);
     return text.str();
 }
 
@@ -236,7 +203,7 @@ std::vector<double> refine(ChainSystem& system, int steps) {
     return seconds;
 }
 
-/// Checks that the HDF5 file of --accelerations can be written. Throws InputError. Collective.
+/// Checks that the file of --accelerations can be written. Throws InputError. Collective.
 void prepare_file(Communicator const& communicator, std::string const& file) {
     on_first_rank(communicator, [&] {
         if (file.empty()) return;
@@ -319,11 +286,12 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator,
         json["velocities"] = thermal ? "thermal" : "given";
         json["relaxation"] = relaxed ? Json(relaxed->relaxation.text()) : Json(nullptr);
         json["notes"] = scene.notes;
-        if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
+        if (scene.bodies() <= most_bodies_in_json) add_solution(json, scene, solution);
         if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
-        outcome.text = text_of(system, json, timing, outcome.complaint);
+        outcome.text = text_of(system, json, timing, solution) +
+                       (outcome.valid ? "VALID" : "INVALID: " + outcome.complaint) + "\n";
         if (request.accelerations.empty()) return;
-        write_accelerations(request.accelerations, solution);
+        write_accelerations(request.accelerations, scene, solution);
         spdlog::info("wrote {}", request.accelerations);
     });
     return outcome;

@@ -1,13 +1,10 @@
-// `catena solve --accelerations FILE`: writes the numbers of the JSON output to HDF5, for any
-// number of bodies.
+// Implements accelerations as HDF5.
 #include <array>
 #include <cstdio>
-#include <filesystem>
 
-#include "error.hpp"
 #include "io/hdf5_data.hpp"
 #include "io/output_file.hpp"
-#include "measure/solution.hpp"
+#include "measure/accelerations_file.hpp"
 
 namespace catena {
 namespace {
@@ -46,16 +43,9 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
 
 }  // namespace
 
-void require_accelerations_writer(std::string const& file) {
-    auto const kind = std::filesystem::status(file).type();
-    if (kind != std::filesystem::file_type::not_found &&
-        kind != std::filesystem::file_type::regular)
-        throw InputError("not a regular file", "--accelerations " + file,
-                         "name a file that HDF5 can write to");
-}
+void require_accelerations_hdf5(std::string const&) {}
 
-void write_accelerations(std::string const& file, Solution const& solution) {
-    require_accelerations_writer(file);
+void write_accelerations_hdf5(std::string const& file, Solution const& solution) {
     Quiet const quiet;
     std::string const draft = file + ".part";
     try {

@@ -42,14 +42,6 @@ char const* kind_of(ChainSpec const&);
 /// inboard joint, 3 for a bead, and 6 for a free or linked rigid body.
 int accelerations_of(ChainSpec const&, std::size_t k);
 
-/// Throws InputError if `file` exists and is not a regular file, or "built without HDF5" in a build
-/// without it.
-void require_accelerations_writer(std::string const& file);
-/// Writes /accelerations and /joint_forces (both flat), /offsets ([bodies + 1][2], first entry of
-/// each body in either array), /tip_forces ([tips][6]) and /tip_chains ([tips], from 0). Throws as
-/// require_accelerations_writer() does, and ComputationError that names file and cause.
-void write_accelerations(std::string const& file, Solution const&);
-
 /// Returns the largest difference of the joint accelerations from the reference, relative to the
 /// reference's largest. Angular accelerations of joints, those of prismatic joints, linear
 /// accelerations of free bases and accelerations of beads are compared class by class. The result

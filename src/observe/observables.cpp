@@ -76,6 +76,10 @@ bool asks_for(Scene const& scene, std::string const& name) {
 
 }  // namespace
 
+bool has_thermostat(DynamicsSpec const& dynamics) {
+    return dynamics.given && is_langevin(dynamics.integrator) && dynamics.friction > 0;
+}
+
 bool has_energies(Scene const& scene) { return asks_for(scene, "energy"); }
 
 Observables::Observables(Scene const& scene, Topology const& topology,
@@ -107,8 +111,13 @@ Observables::Observables(Scene const& scene, Topology const& topology,
     }
 }
 
+/// A mechanism in SI units moves far beyond thermal motion. Its temperature tells nothing unless a
+/// thermostat sets it, and is a column by name alone.
 bool Observables::wants(std::string const& name) const {
-    if (name == "temperature" && !has_temperature_) return false;
+    bool const is_default = scene_.output.observables.empty();
+    if (name == "temperature" &&
+        (!has_temperature_ || (is_default && scene_.si && !has_thermostat(scene_.dynamics))))
+        return false;
     return asks_for(scene_, name);
 }
 

@@ -47,6 +47,8 @@ class Shape {
          unweighted_mean_ = Vec3::zero();  // mean positions relative to the first site
 };
 
+/// True if a Langevin integrator holds the temperature.
+bool has_thermostat(DynamicsSpec const&);
 /// True if rows contain energies. Potential energies may cost as much as several steps.
 bool has_energies(Scene const&);
 
@@ -55,7 +57,7 @@ class Observables {
   public:
     /// `terms`: names of the potential energy terms. output.observables of the scene selects the
     /// groups of columns. An empty selection means all groups, except the unweighted radius of
-    /// gyration.
+    /// gyration, and the temperature with `units: si` without a thermostat.
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
     /// Returns names with units, e.g. "total_energy [kJ/mol]".
     std::vector<std::string> const& columns() const { return columns_; }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "io/printable.hpp"
 
 namespace catena {
@@ -35,6 +37,9 @@ td { padding: 3px 0; text-align: right; font-variant-numeric: tabular-nums; over
 td.text { text-align: left; } td.text span { color: var(--soft); display: block; }
 td + td { padding-left: 14px; }
 tr + tr > *, tbody tr > * { border-top: 1px solid var(--grid); }
+.facts { max-width: 860px; } .facts td, .facts th { text-align: left; }
+.verdict { font-weight: 600; color: var(--ink); }
+details > summary { font-size: 19px; font-weight: 600; margin: 36px 0 12px; cursor: pointer; }
 .files { max-width: 640px; } .files td { text-align: left; }
 table > tbody:first-child > tr:first-child > * { border-top: 0; }
 svg { display: block; width: 100%; height: auto; }
@@ -42,6 +47,7 @@ svg text { fill: var(--soft); font: 12px system-ui, "Segoe UI", Roboto, Arial, s
 svg .end { text-anchor: end; } svg .middle { text-anchor: middle; } svg .strong { fill: var(--ink); font-weight: 600; }
 svg .grid { stroke: var(--grid); } svg .axis { stroke: var(--rule); }
 svg .curve { fill: none; stroke: var(--line); stroke-width: 1.6; stroke-linejoin: round; }
+svg .shade { fill: var(--grid); }
 svg .mean { stroke: var(--soft); stroke-dasharray: 2 4; }
 .legend { display: flex; flex-wrap: wrap; gap: 4px 18px; margin-top: 10px; font-size: 13px; color: var(--soft); }
 .legend i { display: inline-block; width: 11px; height: 11px; border-radius: 3px; margin-right: 6px; vertical-align: -1px; }
@@ -76,11 +82,15 @@ std::string escaped(std::string_view text) {
     return safe;
 }
 
-/// Replaces underscores by blanks and capitalises the first letter.
+std::string readable_words(std::string_view key) {
+    std::string words(key);
+    std::replace(words.begin(), words.end(), '_', ' ');
+    return words;
+}
+
+/// Capitalises the first letter of the words.
 std::string readable_name(std::string_view key) {
-    std::string name(key);
-    for (char& c : name)
-        if (c == '_') c = ' ';
+    std::string name = readable_words(key);
     if (!name.empty() && name[0] >= 'a' && name[0] <= 'z')
         name[0] = static_cast<char>(name[0] - 'a' + 'A');
     return name;

@@ -12,6 +12,9 @@ std::string escaped(std::string_view text);
 /// Returns a key as a name: "total_energy" -> "Total energy".
 std::string readable_name(std::string_view key);
 
+/// Returns a key as words within a sentence: "total_energy" -> "total energy".
+std::string readable_words(std::string_view key);
+
 /// Returns a number of six significant digits without trailing zeros.
 std::string readable_number(double value);
 

@@ -75,11 +75,20 @@ std::string axes(Drawing const& drawing, Curve const& curve) {
     return svg;
 }
 
-/// Arithmetic mean of the y values.
-double mean_of(Points const& points) {
-    double sum = 0;
-    for (auto const& point : points) sum += point.second;
-    return sum / static_cast<double>(points.size());
+/// Arithmetic mean of the y values from `from` on; NaN if there are none.
+double mean_of(Points const& points, double from) {
+    double sum = 0, count = 0;
+    for (auto const& [x, y] : points)
+        if (x >= from) sum += y, ++count;
+    return sum / count;
+}
+
+/// Shaded range of the points that do not count; empty if all count.
+std::string shade(Drawing const& drawing, double counts_from) {
+    if (!(counts_from > drawing.x.low)) return "";
+    double const end = drawing.at_x(std::min(counts_from, drawing.x.high));
+    return fmt::format("<rect class=\"shade\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\"/>\n",
+                       left, top, end - left, inner_height);
 }
 
 }  // namespace
@@ -113,10 +122,11 @@ std::string line_chart(Curve const& curve) {
     std::string svg =
         fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} against {}\">\n",
                     width, height, escaped(curve.y_label), escaped(curve.x_label));
-    svg += axes(drawing, curve);
+    svg += shade(drawing, curve.counts_from) + axes(drawing, curve);
     // A dotted line marks the mean on linear axes.
-    if (!drawing.y.logarithmic) {
-        double const y = drawing.at_y(mean_of(points));
+    double const mean = mean_of(points, curve.counts_from);
+    if (!drawing.y.logarithmic && std::isfinite(mean)) {
+        double const y = drawing.at_y(mean);
         svg +=
             fmt::format("<line class=\"mean\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>\n",
                         left, width - right, y, y);

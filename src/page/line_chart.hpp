@@ -1,6 +1,7 @@
 // Line chart of one curve as inline SVG.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@ namespace catena {
 struct Curve {
     std::string x_label, y_label;
     std::vector<double> x, y;  // equal lengths, x ascending; points that are not finite are omitted
+    double counts_from = -INFINITY;  // the mean is that of the points from this x on; the range
+                                     // before it is shaded
 };
 
 /// Returns the chart. Ticks are round numbers; a common power of ten or a large offset is written

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scene/alike_chains.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena::command {
@@ -15,30 +16,8 @@ bool any(double const* values, int count) {
     return std::any_of(values, values + count, [](double v) { return v != 0; });
 }
 
-/// Returns what a chain consists of, as in the column "of" of the chain table.
-char const* contents_of(ChainSpec const& chain) {
-    if (chain.is_beads()) return "beads";
-    if (!chain.is_linked()) return "bodies";
-    std::size_t beads = 0;
-    for (std::size_t k = 0; k < chain.linked.size(); ++k) beads += chain.linked.is_bead(k) ? 1 : 0;
-    return beads == 0 ? "bodies" : "bodies and beads";
-}
-
-/// Returns "free", or the kind of the tip's joint, with "ring, " if it closes a ring.
-std::string tip_name(ChainSpec const& chain) {
-    if (chain.tip == Tip::free) return "free";
-    return std::string(chain.is_ring() ? "ring, " : "") + name_of(chain.tip_joint.type);
-}
-
 /// Returns the name of the chain's kind of handles.
 char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
-
-/// True if two chains share a row of the chain table.
-bool alike(ChainSpec const& a, ChainSpec const& b) {
-    return a.size() == b.size() && a.base == b.base &&
-           std::string(contents_of(a)) == contents_of(b) && tip_name(a) == tip_name(b) &&
-           scene::handle_kind(a) == scene::handle_kind(b);
-}
 
 char const* base_name(ChainSpec const& chain) {
     return chain.base == Base::free ? "free" : "fixed";
@@ -57,19 +36,17 @@ Table chain_table(Scene const& scene) {
     Table table({"chain", "copies", "bodies", "of", "base", "tip", "handles"}, {0, 3, 4, 5, 6});
     std::size_t constexpr most_rows = 20;
     std::size_t rows = 0;
-    for (std::size_t i = 0; i < scene.chains.size();) {
+    for (auto const& [i, count] : scene::alike_chains(scene)) {
         ChainSpec const& first = scene.chains[i];
-        std::size_t end = i + 1;
-        while (end < scene.chains.size() && alike(first, scene.chains[end])) ++end;
         if (++rows > most_rows) {
             table.add({"others", std::to_string(scene.chains.size() - i), "", "", "", "", ""});
             break;
         }
         std::string const name =
-            end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
-        table.add({name, std::to_string(end - i), std::to_string(first.size()), contents_of(first),
-                   base_name(first), tip_name(first), kind_name(first)});
-        i = end;
+            count == 1 ? first.name : first.name + " .. " + scene.chains[i + count - 1].name;
+        table.add({name, std::to_string(count), std::to_string(first.size()),
+                   scene::contents_of(first), base_name(first), scene::tip_name(first),
+                   kind_name(first)});
     }
     return table;
 }
@@ -81,7 +58,7 @@ Json chains_json(Scene const& scene) {
                         {"bodies", chain.size()},
                         {"kind", kind_name(chain)},
                         {"base", base_name(chain)}});
-        if (chain.tip != Tip::free) list.back()["tip"] = tip_name(chain);
+        if (chain.tip != Tip::free) list.back()["tip"] = scene::tip_name(chain);
     }
     return list;
 }

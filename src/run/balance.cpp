@@ -2,6 +2,7 @@
 #include "run/balance.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 
@@ -113,6 +114,32 @@ dca::Shares agree_on_shares(Communicator const& communicator,
     for (std::size_t r = 0; r < ranks; ++r)
         speeds.push_back(taken[r] > 0 ? expected[r] / taken[r] : 0);
     return dca::shares_of_speeds(speeds);
+}
+
+RankShares rank_shares(Communicator const& communicator, std::vector<double> const& stored,
+                       std::function<std::vector<OwnCost>()> const& measure) {
+    auto const is_share = [](double share) { return share >= 1 && share <= 1e6; };
+    if (std::ssize(stored) == communicator.size() &&
+        std::all_of(stored.begin(), stored.end(), is_share))
+        return {{stored.begin(), stored.end()}, true};
+    return {agree_on_shares(communicator, measure()), false};
+}
+
+nlohmann::json json_of(RankShares const& ranks,
+                       std::vector<std::unique_ptr<ChainGroup>> const& groups) {
+    double sum = 0;
+    for (std::int64_t const share : ranks.shares) sum += static_cast<double>(share);
+    nlohmann::json shares = nlohmann::json::array(), bodies = nlohmann::json::array();
+    for (std::size_t r = 0; r < ranks.shares.size(); ++r) {
+        std::int64_t own = 0;
+        for (auto const& group : groups)
+            own += group->first_of_rank()[r + 1] - group->first_of_rank()[r];
+        shares.push_back(static_cast<double>(ranks.shares[r]) / sum);
+        bodies.push_back(own);
+    }
+    return {{"shares", shares},
+            {"shares_from", ranks.are_stored ? "checkpoint" : "measurement"},
+            {"bodies_of_rank", bodies}};
 }
 
 }  // namespace catena

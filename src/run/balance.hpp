@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "chain/chain_group.hpp"
@@ -31,5 +33,17 @@ using MeasureOwnCosts = std::function<std::vector<OwnCost>(Scene const&, Axes, C
 /// therefore makes the shares more equal. The result is the same on every rank. Precondition: equal
 /// number of groups on every rank. Collective.
 dca::Shares agree_on_shares(Communicator const&, std::vector<OwnCost> const& of_groups);
+
+/// Shares of the bodies that the ranks of a run have.
+struct RankShares {
+    dca::Shares shares;       // empty: equal shares
+    bool are_stored = false;  // taken from a checkpoint, not from a measurement
+};
+/// Returns the stored shares if they fit the ranks, else those of agree_on_shares() for the costs
+/// that `measure` returns. A restart must equal the undisturbed run, also with OpenMM. Collective.
+RankShares rank_shares(Communicator const&, std::vector<double> const& stored,
+                       std::function<std::vector<OwnCost>()> const& measure);
+/// Returns {"shares", "shares_from", "bodies_of_rank"} for summary.json.
+nlohmann::json json_of(RankShares const&, std::vector<std::unique_ptr<ChainGroup>> const&);
 
 }  // namespace catena

@@ -233,11 +233,26 @@ void RunFolder::finish(std::string const& summary, std::string const& timeline) 
         replace_text_file(path("summary.json"), summary);
         replace_text_file(path("timeline.json"), timeline);
         write_run_report(folder_);
-        for (char const* const name : {"trajectory.h5md", "observables.csv"})
-            if (std::error_code ignored; !fs::exists(path(name), ignored))
-                throw ComputationError("a file of the run was deleted while it ran (" + path(name) +
-                                       "): run it again from the start");
+        require_files();
     });
+}
+
+ObservablesTable RunFolder::table() {
+    ObservablesTable found;
+    on_disk([&] {
+        throw_kept();
+        observables_->flush();
+        require_files();
+        found = read_observables(path("observables.csv"));
+    });
+    return found;
+}
+
+void RunFolder::require_files() const {
+    for (char const* const name : {"trajectory.h5md", "observables.csv"})
+        if (std::error_code ignored; !fs::exists(path(name), ignored))
+            throw ComputationError("a file of the run was deleted while it ran (" + path(name) +
+                                   "): run it again from the start");
 }
 
 }  // namespace catena

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "io/observables_table.hpp"
 #include "io/output.hpp"
 #include "observe/observables.hpp"
 #include "run/run_lock.hpp"
@@ -50,6 +51,9 @@ class RunFolder {
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
     /// Mode in which the last checkpoint was written.
     ParallelIoMode const& checkpoints_way() const { return checkpoints_way_; }
+    /// Returns the table of observables as it stands in its file, with the frames of preceding
+    /// runs. Empty on ranks other than 0. Collective.
+    ObservablesTable table();
     /// Closes the tables and writes summary, timeline and report. Collective.
     void finish(std::string const& summary, std::string const& timeline);
 
@@ -75,6 +79,8 @@ class RunFolder {
     /// a stored failure.
     template <class Action>
     void keeping_failure(Action const& action);
+    /// Throws ComputationError if a file of the run is gone.
+    void require_files() const;
     /// Throws the stored failure, if there is one.
     void throw_kept();
 

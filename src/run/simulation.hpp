@@ -45,6 +45,6 @@ struct RunOptions {
 /// branch has "branch": {"from": file, "step": n, "changes": [{"key", "before", "now"}]}. It runs
 /// for dynamics.steps steps unless `steps` is set. Throws InputError for a folder that exists
 /// (without restart or overwrite) or a checkpoint of another scene. Collective.
-nlohmann::json run_simulation(Scene const&, Communicator const&, RunOptions const&);
+nlohmann::ordered_json run_simulation(Scene const&, Communicator const&, RunOptions const&);
 
 }  // namespace catena

@@ -138,10 +138,7 @@ TEST(Accuracy, ARunSaysThatItsFirstAccelerationsAreOff) {
 TEST(Accuracy, InverseDynamicsSaysNothingOfLoops) {
     Ended const e = catena({"solve", scene_of_case("loop-inverse-dynamics")});
     expect_good(e);
-    EXPECT_NE(e.out.find(
-                  "residual not computed (several ranks, many bodies, bodies on links or in loops"),
-              std::string::npos)
-        << e.out;
+    EXPECT_NE(e.out.find("residual not computed (bodies form a loop)"), std::string::npos) << e.out;
     json const found = solved({scene_of_case("loop-inverse-dynamics")});
     EXPECT_TRUE(found["rnea_residual"].is_null());
     EXPECT_LT(found["estimated_error"].get<double>(), 1e-12);

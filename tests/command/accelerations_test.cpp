@@ -1,4 +1,4 @@
-// --accelerations: the numbers of the JSON, flat, with offsets.
+// --accelerations: the numbers of the JSON, in HDF5 flat and with offsets, as CSV and as JSON.
 #include <hdf5.h>
 
 #include <algorithm>
@@ -116,11 +116,64 @@ TEST(Accelerations, TheTrajectoryHoldsTheForcesOfTips) {
     }
 }
 
+/// Fields of a line.
+std::vector<std::string> fields_of(std::string const& line) {
+    std::vector<std::string> fields(1);
+    for (char const c : line)
+        if (c == ',')
+            fields.emplace_back();
+        else
+            fields.back().push_back(c);
+    return fields;
+}
+
+TEST(Accelerations, CsvHasALinePerBodyAndTip) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"solve", input("four-bar.yaml"), "--accelerations", "a.csv", "--json",
+                            "-", "--repeat", "1"},
+                           folder.path());
+    expect_good(e);
+    Json const json = e.json();
+    std::ifstream file(folder / "a.csv");
+    std::vector<std::vector<std::string>> lines;
+    for (std::string line; std::getline(file, line);) lines.push_back(fields_of(line));
+    std::size_t const bodies = json["joint_accelerations"].size();
+    ASSERT_EQ(lines.size(), 1 + bodies + 1);
+    for (auto const& line : lines) EXPECT_EQ(line.size(), 15U);
+    EXPECT_EQ(lines[0][3], "acceleration_1");
+    EXPECT_EQ(lines[0][14], "joint_force_6");
+    for (std::size_t b = 0; b < bodies; ++b) {
+        EXPECT_EQ(lines[b + 1][1], std::to_string(b + 1));
+        EXPECT_EQ(lines[b + 1][2], "revolute");
+        EXPECT_EQ(std::stod(lines[b + 1][3]), json["joint_accelerations"][b].get<double>());
+        EXPECT_EQ(lines[b + 1][4], "");
+        EXPECT_EQ(std::stod(lines[b + 1][13]), json["joint_forces"][b][4].get<double>());
+    }
+    EXPECT_EQ(lines.back()[1], "tip");
+    EXPECT_EQ(std::stod(lines.back()[13]), json["tip_forces"][0]["force"][1].get<double>());
+}
+
+TEST(Accelerations, JsonHoldsThoseOfSolve) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"solve", input("spherical-chain.yaml"), "--accelerations", "a.json",
+                            "--json", "-", "--repeat", "1"},
+                           folder.path());
+    expect_good(e);
+    Json const json = e.json(), file = Json::parse(std::ifstream(folder / "a.json"));
+    for (char const* const name : {"joint_accelerations", "joint_forces", "tip_forces"})
+        EXPECT_EQ(file.at(name), json.at(name)) << name;
+}
+
 TEST(Accelerations, FilesThatCannotBeAreRefusedBeforeAnythingIsComputed) {
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}),
                    2, "no such folder");
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2,
                    "not a regular file (--accelerations /dev/null)");
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "a.txt"}), 2,
+                   "unknown ending .txt (--accelerations a.txt): name a file with .csv, .json or "
+                   ".h5 (.hdf5) at its end");
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "a"}), 2,
+                   "the name has no ending");
 }
 
 }  // namespace

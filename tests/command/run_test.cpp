@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -96,15 +97,106 @@ TEST(Run, TellsItsInnerSteps) {
                    "1e-08 at time 0 (");
 }
 
-TEST(Run, SummaryOnTheTerminal) {
+/// Every text follows the one before it.
+void expect_in_order(std::string const& text, std::vector<std::string> const& parts) {
+    std::size_t at = 0;
+    for (std::string const& part : parts) {
+        std::size_t const found = text.find(part, at);
+        ASSERT_NE(found, std::string::npos) << part << "\n" << text;
+        at = found + part.size();
+    }
+}
+
+TEST(Run, TheTerminalBeginsWithTheScienceAndEndsWithTheVerdict) {
     TemporaryFolder const folder;
     Ended const e =
         catena({"run", input("arm.yaml"), "--steps", "20", "--output", "a/b"}, folder.path());
     EXPECT_EQ(e.status, 0) << e.err;
-    for (std::string const part :
-         {"steps/s", "constraint error", "total_energy [J]", "a/b/trajectory.h5md", "\nVALID\n"})
-        EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
+    expect_in_order(
+        e.out, {"  system               1 chain of 4 bodies (arm)", "gravity [", "rk4, step ",
+                " s, 20 steps", "Observables", "standard error", "total energy", "All 3 frames",
+                "no thermostat", "Speed", "per day", " steps/s", "Verdict", "valid ", "Solver",
+                "1 rank", "constraint error", "a/b/trajectory.h5md", "\nVALID\n"});
+    EXPECT_EQ(e.out.find("temperature"), std::string::npos) << e.out;
     EXPECT_TRUE(fs::exists(folder / "a/b/checkpoint.h5"));
+}
+
+std::vector<std::string> keys_of(nlohmann::ordered_json const& object) {
+    std::vector<std::string> keys;
+    for (auto const& [key, value] : object.items()) keys.push_back(key);
+    return keys;
+}
+
+/// 100 frames from zero velocities: the kinetic energy rises within the first ones.
+TEST(Run, TheSummaryBeginsWithSystemObservablesSpeedAndVerdict) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "chain.yaml")
+        << "title: two chains\nbox: {periodic: [20, 20, 20]}\n"
+           "chains: [{name: a, count: 2, velocities: zero, generator: {freely_jointed: {beads: 20, "
+           "length: 0.38, mass: 100}}}]\n"
+           "dynamics: {integrator: g-baoab, step: 0.01, steps: 1000, friction: 2}\n"
+           "output: {every: 10}\n";
+    expect_good(catena({"run", "chain.yaml", "--output", "out", "--quiet"}, folder.path()));
+    auto const summary = nlohmann::ordered_json::parse(std::ifstream(folder / "out/summary.json"));
+    std::vector<std::string> const keys = keys_of(summary),
+                                   first{
+                                       "title", "scene",       "units",         "system",
+                                       "run",   "observables", "equilibration", "last_observables",
+                                       "speed", "valid",       "verdict",       "notes"};
+    EXPECT_TRUE(std::equal(first.begin(), first.end(), keys.begin())) << summary.dump(1);
+    auto const& system = summary.at("system");
+    EXPECT_EQ(system.at("description"), "2 chains of 20 beads (a-1 to a-2)");
+    EXPECT_NEAR(system.at("mass_concentration"), 4000 * 1.66053907 / 8000, 1e-8);
+    EXPECT_NEAR(system.at("chain_concentration"), 2 / 0.602214076 / 8000, 1e-12);
+    EXPECT_EQ(summary.at("run").at("temperature"), 300);
+    EXPECT_EQ(summary.at("run").at("simulated_time"), 10);
+    auto const& temperature = summary.at("observables").at("temperature");
+    EXPECT_EQ(temperature.at("unit"), "K");
+    auto const left_out = summary.at("equilibration").at("frames_left_out").get<int>();
+    EXPECT_GT(left_out, 0) << "the velocities of the start are zero";
+    EXPECT_EQ(temperature.at("samples"), 101 - left_out);
+    EXPECT_NEAR(temperature.at("mean"), 300,
+                5 * temperature.at("standard_error").get<double>() + 15);
+    EXPECT_GT(summary.at("speed").at("ns_per_day"), 0);
+    EXPECT_NEAR(summary.at("speed").at("milliseconds_per_step").get<double>() *
+                    summary.at("speed").at("steps_per_second").get<double>(),
+                1000, 1e-6);
+}
+
+/// A restart's means are of all frames since the scene's start.
+TEST(Run, ARestartCountsTheFramesBeforeIt) {
+    TemporaryFolder const folder;
+    Words run{"run",      input("spherical-chain.yaml"),
+              "--set",    "output.every=1",
+              "--output", "out",
+              "--quiet",  "--steps",
+              "5"};
+    expect_good(catena(run, folder.path()));
+    run.back() = "9";
+    run.insert(run.end(), {"--restart", "out/checkpoint.h5"});
+    expect_good(catena(run, folder.path()));
+    auto const summary = nlohmann::json::parse(std::ifstream(folder / "out/summary.json"));
+    EXPECT_EQ(summary.at("observables").at("total_energy").at("samples"), 10);
+    double const step = summary.at("run").at("step");
+    EXPECT_NEAR(summary.at("run").at("simulated_time"), 4 * step, 1e-12);
+    EXPECT_NEAR(summary.at("run").at("time"), 9 * step, 1e-12);
+}
+
+/// In SI units a temperature needs a thermostat or its name in `observables`.
+TEST(Run, MechanismsWithoutAThermostatHaveNoTemperature) {
+    TemporaryFolder const folder;
+    std::string const scene =
+        "units: si\nforces: {gravity: [0, 0, -9.81]}\n"
+        "chains: [{base: fixed, generator: {pendulum: {links: 3}}}]\n"
+        "dynamics: {integrator: rk4, step: 1e-4, steps: 2}\n";
+    std::ofstream(folder / "default.yaml") << scene;
+    std::ofstream(folder / "named.yaml") << scene << "output: {observables: [temperature]}\n";
+    Ended const e = catena({"run", "default.yaml", "--output", "a"}, folder.path());
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_EQ(e.out.find("temperature"), std::string::npos) << e.out;
+    EXPECT_EQ(lines_of(folder / "a/observables.csv").at(0).find("temperature"), std::string::npos);
+    expect_good(catena({"run", "named.yaml", "--output", "b", "--quiet"}, folder.path()));
+    EXPECT_EQ(lines_of(folder / "b/observables.csv").at(0), "step,time [s],temperature [K]");
 }
 
 }  // namespace

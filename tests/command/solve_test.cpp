@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 
@@ -190,6 +192,45 @@ TEST(Solve, TextNamesTimeResidualAndVerdict) {
     for (std::string const part : {"serial, projected handles, 1 rank", "median of 3",
                                    "matrix sweep", "bound", "(32 depth eps)\nVALID\n"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
+}
+
+TEST(Solve, TextShowsTheFirstAccelerations) {
+    Ended const arm = catena({"solve", input("arm.yaml"), "--repeat", "1"});
+    expect_good(arm);
+    Json const json = solved({input("arm.yaml")});
+    EXPECT_NE(arm.out.find("arm       1  revolute "), std::string::npos) << arm.out;
+    std::string const first = fmt::format("{:.6g}", json["joint_accelerations"][0].get<double>());
+    EXPECT_NE(arm.out.find("  " + first + " "), std::string::npos) << first << "\n" << arm.out;
+    EXPECT_NE(arm.out.find("rad/s^2\n"), std::string::npos) << arm.out;
+    EXPECT_EQ(arm.out.find("other bod"), std::string::npos) << arm.out;
+    Ended const many =
+        catena({"solve", input("random-link.yaml"), "--repeat", "1", "--set", small + "100"});
+    EXPECT_NE(many.out.find("- and 94 other bodies; --accelerations FILE.csv"), std::string::npos)
+        << many.out;
+    Ended const more =
+        catena({"solve", input("random-link.yaml"), "--repeat", "1", "--set", small + "10001"});
+    EXPECT_NE(more.out.find("accelerations        of 10001 bodies; --accel"), std::string::npos)
+        << more.out;
+}
+
+TEST(Solve, TextNamesOnlyTheReasonThatApplies) {
+    std::string const loop = catena({"solve", input("four-bar.yaml"), "--repeat", "1"}).out,
+                      fixman = catena({"solve", input("freely-jointed-trimer.yaml"), "--repeat",
+                                       "1", "--set", "dynamics.fixman=true"})
+                                   .out,
+                      many = catena({"solve", input("random-revolute.yaml"), "--repeat", "1",
+                                     "--set", small + "10001"})
+                                 .out;
+    EXPECT_NE(loop.find("residual not computed (bodies form a loop)\n"), std::string::npos) << loop;
+    EXPECT_NE(fixman.find("residual not computed (inverse dynamics has no Fixman potential)\n"),
+              std::string::npos)
+        << fixman;
+    EXPECT_NE(fixman.find("not estimated (beads and bodies on links are not refined)\n"),
+              std::string::npos)
+        << fixman;
+    EXPECT_NE(many.find("residual not computed (there are more than 10000 bodies)\n"),
+              std::string::npos)
+        << many;
 }
 
 }  // namespace

@@ -153,6 +153,8 @@ TEST(RunReport, IsOneSelfContainedPage) {
     EXPECT_EQ(count(page, "<polyline"), 3U) << "one curve an observable";
     EXPECT_NE(page.find("Constant: Still: 1 nm.<"), std::string::npos);
     EXPECT_NE(page.find("<h3>Total energy</h3>"), std::string::npos);
+    EXPECT_NE(page.find("<p>All 50 frames count.</p>"), std::string::npos);
+    EXPECT_EQ(page.find("class=\"shade\""), std::string::npos) << "nothing is left out";
     EXPECT_NE(page.find(">time / ps<"), std::string::npos);
     EXPECT_NE(page.find("<tr><th>Steps per second</th><td>1234.57</td></tr>"), std::string::npos);
     EXPECT_NE(page.find("<h3>Rate</h3>"), std::string::npos);
@@ -165,6 +167,67 @@ TEST(RunReport, IsOneSelfContainedPage) {
     EXPECT_NE(page.find("href=\"observables.csv\""), std::string::npos);
     EXPECT_EQ(page.find("href=\"trajectory.h5md\""), std::string::npos)
         << "a file that is not there";
+}
+
+/// Positions of the texts in the page, in the order of their first occurrence.
+void expect_in_order(std::string const& page, std::vector<std::string> const& texts) {
+    std::size_t at = 0;
+    for (std::string const& text : texts) {
+        std::size_t const found = page.find(text, at);
+        ASSERT_NE(found, std::string::npos) << text;
+        at = found;
+    }
+}
+
+TEST(RunReport, BeginsWithTheScienceAndFoldsTheSolver) {
+    TemporaryFolder const folder;
+    write_folder(folder);
+    write_text_file(
+        folder / "summary.json",
+        R"({"title": "two chains", "units": {"length": "nm", "time": "ps"}, "system": {"description": "2 chains of 10 beads (a, b)"
+}
+, "run" : {"integrator" : "g-baoab", "step" : 0.01},
+          "observables" : {
+              "total_energy" : {
+                  "mean" : 1.25,
+                  "standard_error" : 0.125,
+                  "unit" : "kJ/mol",
+                  "samples" : 40,
+                  "converged" : true
+              }
+          },
+                          "equilibration" : {
+                              "frames" : 50,
+                              "frames_left_out" : 10,
+                              "description" : "The first 10 of 50 frames are left out."
+                          },
+                                            "speed" : {"ns_per_day" : 12},
+                                                      "valid" : false,
+                                                                "verdict" : {
+                                                                    "valid" : false,
+                                                                    "checks" : [ {
+                                                                        "name" : "joints",
+                                                                        "passed" : false,
+                                                                        "value" : 1,
+                                                                        "limit" : 0.1,
+                                                                        "step" : 7,
+                                                                        "advice" : "too <long>"
+                                                                    } ]
+                                                                },
+                                                                            "notes" : ["a note"],
+                                                                                      "solver"
+    : {"backend" : "serial"}
+})");
+    write_run_report(folder.path());
+std::string const page = read_text_file(folder / "report.html");
+expect_in_order(page, {"<h1>two chains</h1>", "What was simulated", "2 chains of 10 beads (a, b)",
+                       "g-baoab, step 0.01 ps", "<h2>Observables</h2>",
+                       "<tr><td>Total energy</td><td>1.25</td><td>0.12</td><td>kJ/mol</td></tr>",
+                       "The first 10 of 50 frames are left out.", "total energy / (kJ/mol)<",
+                       "<h2>Speed</h2>", "12 ns", ">INVALID<", "joints at step 7: too &lt;long&gt;",
+                       "<li>a note</li>", "<details>", "<td>serial</td>", "<h2>One step</h2>",
+                       "</details>", "<h2>Files</h2>"});
+EXPECT_EQ(count(page, "class=\"shade\""), 3U) << "equilibration of every curve";
 }
 
 TEST(RunReport, DrawsTheStepOfMedianLength) {

@@ -1,0 +1,109 @@
+// Implements the statistics of a run's table.
+#include "page/observable_statistics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "math/blocking.hpp"
+#include "math/equilibration.hpp"
+#include "page/html.hpp"
+
+namespace catena {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t first_observable = 2;  // step and time stand before the observables
+
+/// Latest first frame of the stationary part, and the observable that needs it.
+struct Equilibration {
+    std::size_t frame = 0;
+    std::string observable;
+};
+
+Equilibration equilibration_of(ObservablesTable const& table) {
+    Equilibration latest;
+    for (std::size_t k = first_observable; k < table.names.size(); ++k) {
+        std::string const name = name_and_unit(table.names[k]).first;
+        if (name == "constraint_error") continue;
+        std::size_t const frame = equilibrated_from(table.columns[k]);
+        if (frame > latest.frame) latest = {frame, name};
+    }
+    return latest;
+}
+
+/// Sentence on the frames that count where a thermostat lets the start be forgotten.
+std::string sentence_on(Equilibration const& start, ObservablesTable const& table) {
+    std::size_t const frames = table.columns[0].size();
+    if (frames < fewest_for_equilibration)
+        return fmt::format(
+            "All {} frames count, equilibration included: fewer than {} frames do "
+            "not show where it ends.",
+            frames, fewest_for_equilibration);
+    if (start.frame == 0)
+        return fmt::format("All {} frames count: no equilibration is recognised.", frames);
+    std::string text = fmt::format(
+        "The first {} of {} frames, before step {:.0f}, are left out as equilibration of the {}.",
+        start.frame, frames, table.columns[0][start.frame], readable_words(start.observable));
+    if (2 * start.frame + 1 >= frames)
+        text += " That is the most that is left out: the run may not have reached equilibrium.";
+    return text;
+}
+
+ObservableStatistics statistics_of_column(ObservablesTable const& table, std::size_t k,
+                                          std::size_t left_out) {
+    auto const [name, unit] = name_and_unit(table.names[k]);
+    std::vector<double> const& all = table.columns[k];
+    std::vector<double> const rest(all.begin() + static_cast<std::ptrdiff_t>(left_out), all.end());
+    Blocked const found = blocked_mean({rest});
+    return {name, unit, found.mean, found.error, found.plateau, std::ssize(rest), all.back()};
+}
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+std::pair<std::string, std::string> name_and_unit(std::string const& column) {
+    auto const open = column.rfind(" [");
+    if (open == std::string::npos || column.back() != ']') return {column, ""};
+    return {column.substr(0, open), column.substr(open + 2, column.size() - open - 3)};
+}
+
+TableStatistics statistics_of(ObservablesTable const& table, Frames which) {
+    TableStatistics found;
+    found.frames = table.columns.empty() ? 0 : table.columns[0].size();
+    if (found.frames == 0) return found;
+    found.says = fmt::format("All {} frames count", found.frames);
+    if (which == Frames::equilibrated) {
+        Equilibration const start = equilibration_of(table);
+        found.left_out = start.frame;
+        found.says = sentence_on(start, table);
+    } else {
+        found.says += which == Frames::all
+                          ? "."
+                          : ": there is no thermostat, so no equilibration is left out.";
+    }
+    for (std::size_t k = first_observable; k < table.names.size(); ++k)
+        found.observables.push_back(statistics_of_column(table, k, found.left_out));
+    return found;
+}
+
+Json json_of(TableStatistics const& statistics) {
+    Json observables = Json::object();
+    for (ObservableStatistics const& each : statistics.observables)
+        observables[each.name] = {{"mean", finite_or_null(each.mean)},
+                                  {"standard_error", finite_or_null(each.standard_error)},
+                                  {"unit", each.unit},
+                                  {"samples", each.samples},
+                                  {"converged", each.converged},
+                                  {"last", finite_or_null(each.last)}};
+    return {{"observables", observables},
+            {"equilibration",
+             {{"frames", statistics.frames},
+              {"frames_left_out", statistics.left_out},
+              {"description", statistics.says}}}};
+}
+
+}  // namespace catena

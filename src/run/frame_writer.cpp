@@ -1,0 +1,133 @@
+// Implements the writing of a run's frames.
+#include "run/frame_writer.hpp"
+
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+namespace catena {
+
+FrameWriter::FrameWriter(Source const& run, Sites sites) : run_(run), sites_(std::move(sites)) {}
+
+void FrameWriter::open(std::function<void()> const& look) {
+    bool const root = run_.communicator.rank() == 0;
+    at_start_ = observed(true);
+    look();
+    folder_ = std::make_unique<RunFolder>(run_.scene, run_.communicator, run_.options);
+    observables_ = std::make_unique<Observables>(run_.scene, topology(), at_start_->terms);
+    folder_->open(topology(), columns(), run_.origin.go_on());
+    if (folder_->frames_way().collective && !root)
+        sites_ = Sites(run_.scene, run_.system.own_runs());
+    if (!folder_->wants_topology()) return;
+    topology_is_due_ = run_.origin.is_frame(run_.origin.first_step()) && may_write_beside() &&
+                       run_.options.topology_beside.value_or(uses_gpu(run_.system.backend()));
+    if (topology_is_due_) return;
+    at_start_->bodies = own_bodies();
+    write_topology(*at_start_->bodies);
+    folder_->check();
+}
+
+bool FrameWriter::is_kept(std::int64_t n) const {
+    return n == run_.origin.first_step() && !folder_->wants_topology() &&
+           run_.origin.go_on().after_step == n;
+}
+
+void FrameWriter::write_topology(ChainSystem::OwnBodies const& at_start) {
+    run_.system.pass_bodies(at_start, [&](ChainSystem::Bodies const& bodies) {
+        folder_->put_topology(sites_.part(bodies, false, run_.system.executor()),
+                              run_.system.executor());
+    });
+    folder_->end_topology();
+}
+
+FrameWriter::Observed FrameWriter::observed(bool anyway) {
+    run_.stepper.observe({.joint_forces = run_.scene.output.joint_forces,
+                          .energies = anyway || has_energies(run_.scene)});
+    return {has_energies(run_.scene) ? run_.system.potential_energy() : std::vector<EnergyTerm>()};
+}
+
+ChainSystem::OwnBodies FrameWriter::own_bodies() {
+    return run_.system.own_bodies(
+        run_.scene.output.joint_forces,
+        run_.scene.output.coordinates && uses_joint_coordinates(run_.scene.dynamics.integrator));
+}
+
+bool FrameWriter::may_write_beside() const {
+    return run_.communicator.size() == 1 && run_.scene.bodies() >= run_.options.bodies_beside;
+}
+
+void FrameWriter::write(std::int64_t n, double constraint_error) {
+    finish();
+    pending_ = {n, constraint_error, at_start_ ? std::move(*at_start_) : observed(), {}};
+    if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
+    if (run_.scene.output.joint_forces)
+        for (TipForce const& tip : run_.system.tip_forces())
+            pending_->at_tips.push_back(tip.wrench);
+    if (may_write_beside() && write_beside()) return;
+    write(*pending_);
+    pending_.reset();
+    folder_->check();
+}
+
+bool FrameWriter::write_beside() {
+    try {
+        frame_ = std::async(std::launch::async, [this] { write(*pending_); });
+    } catch (std::system_error const&) {
+        return false;
+    }
+    ++frames_beside_;
+    return true;
+}
+
+void FrameWriter::poll() {
+    if (frame_.valid() && frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        finish();
+}
+
+void FrameWriter::finish() {
+    if (!frame_.valid()) return;
+    frame_.get();
+    pending_.reset();
+    folder_->check();
+}
+
+void FrameWriter::write(PendingFrame const& frame) {
+    if (std::exchange(topology_is_due_, false)) write_topology(*frame.now.bodies);
+    folder_->begin(frame.step, run_.origin.time(frame.step));
+    observables_->begin();
+    bool const together = folder_->frames_way().collective;
+    run_.system.pass_bodies(*frame.now.bodies, [&](ChainSystem::Bodies const& bodies) {
+        Frame const part =
+            sites_.part(bodies, run_.scene.output.velocities && !together, run_.system.executor());
+        if (!together) folder_->put(std::span(&part, 1));
+        observables_->add(bodies.motion, part.positions);
+        for (Vec3 const& x : bodies.motion.position) run_.verdict.note_coordinate(norm(x));
+    });
+    if (together) put_own(*frame.now.bodies);
+    if (run_.communicator.rank() == 0) judge(frame);
+    folder_->end(frame.at_tips, last_row_);
+}
+
+void FrameWriter::judge(PendingFrame const& frame) {
+    last_row_ = observables_->row(frame.now.terms, frame.error);
+    std::optional<double> potential;
+    if (has_energies(run_.scene)) {
+        potential = 0;
+        for (EnergyTerm const& term : frame.now.terms) *potential += term.value;
+    }
+    run_.verdict.add_frame(frame.step, observables_->kinetic(), potential);
+}
+
+void FrameWriter::put_own(ChainSystem::OwnBodies const& own) {
+    run_.system.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
+        std::vector<Frame> parts(runs.size());
+        run_.system.executor().for_each_of_many_or_few(
+            std::ssize(runs), [&](std::int64_t i, Executor const& within) {
+                auto const r = static_cast<std::size_t>(i);
+                parts[r] = sites_.part(runs[r], run_.scene.output.velocities, within);
+            });
+        folder_->put(parts);
+    });
+}
+
+}  // namespace catena

@@ -1,0 +1,93 @@
+// Implements runs of alike chains and their words.
+#include "scene/alike_chains.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+
+#include "scene/freedom.hpp"
+
+namespace catena::scene {
+namespace {
+
+constexpr std::size_t most_named = 6;  // runs of alike chains that a sentence names
+
+bool alike(ChainSpec const& a, ChainSpec const& b) {
+    return a.size() == b.size() && a.base == b.base &&
+           std::string_view(contents_of(a)) == contents_of(b) && a.tip == b.tip &&
+           (a.tip == Tip::free || tip_name(a) == tip_name(b)) && handle_kind(a) == handle_kind(b);
+}
+
+/// "beads" or "bead", as the number asks for.
+std::string contents_text(ChainSpec const& chain) {
+    if (chain.size() > 1) return contents_of(chain);
+    return chain.is_beads() ? "bead" : "body";
+}
+
+std::string text_of(Scene const& scene, AlikeChains const& run) {
+    ChainSpec const &first = scene.chains[run.first],
+                    &last = scene.chains[run.first + run.count - 1];
+    std::string text = fmt::format("{} {} of {} {}", run.count, run.count == 1 ? "chain" : "chains",
+                                   first.size(), contents_text(first));
+    if (first.is_ring()) text += " in a ring";
+    return text + (run.count == 1 ? fmt::format(" ({})", first.name)
+                                  : fmt::format(" ({} to {})", first.name, last.name));
+}
+
+std::string text_of(OpenMmSpec const& openmm) {
+    if (openmm.builder.empty())
+        return "OpenMM System " + std::filesystem::path(openmm.system).filename().string();
+    return fmt::format("{} at {} K and {} mol/l", openmm.builder, openmm.temperature,
+                       openmm.ionic_strength);
+}
+
+}  // namespace
+
+char const* contents_of(ChainSpec const& chain) {
+    if (chain.is_beads()) return "beads";
+    if (!chain.is_linked()) return "bodies";
+    std::size_t beads = 0;
+    for (std::size_t k = 0; k < chain.linked.size(); ++k) beads += chain.linked.is_bead(k) ? 1 : 0;
+    return beads == 0 ? "bodies" : "bodies and beads";
+}
+
+std::string tip_name(ChainSpec const& chain) {
+    if (chain.tip == Tip::free) return "free";
+    return std::string(chain.is_ring() ? "ring, " : "") + catena::name_of(chain.tip_joint.type);
+}
+
+std::vector<AlikeChains> alike_chains(Scene const& scene) {
+    std::vector<AlikeChains> runs;
+    for (std::size_t i = 0; i < scene.chains.size(); ++i) {
+        if (!runs.empty() && alike(scene.chains[runs.back().first], scene.chains[i]))
+            ++runs.back().count;
+        else
+            runs.push_back({i, 1});
+    }
+    return runs;
+}
+
+std::string chains_text(Scene const& scene) {
+    std::vector<AlikeChains> const runs = alike_chains(scene);
+    std::string text;
+    for (std::size_t i = 0; i < runs.size() && i < most_named; ++i)
+        text += (i == 0 ? "" : "; ") + text_of(scene, runs[i]);
+    if (runs.size() > most_named)
+        text += fmt::format("; {} other chains", scene.chains.size() - runs[most_named].first);
+    return text;
+}
+
+std::string forces_text(Scene const& scene) {
+    std::string text;
+    auto const add = [&](std::string const& part) { text += (text.empty() ? "" : ", ") + part; };
+    ForceSpec const& forces = scene.forces;
+    if (forces.openmm) add(text_of(*forces.openmm));
+    if (norm(forces.gravity) > 0)
+        add(fmt::format("gravity [{}, {}, {}]", forces.gravity[0], forces.gravity[1],
+                        forces.gravity[2]));
+    if (forces.linear_drag > 0 || forces.angular_drag > 0) add("drag");
+    return text;
+}
+
+}  // namespace catena::scene
