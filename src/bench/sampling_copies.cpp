@@ -12,7 +12,7 @@
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "reader/load_scene.hpp"
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::command {
 namespace {

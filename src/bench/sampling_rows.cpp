@@ -13,7 +13,7 @@
 #include "error.hpp"
 #include "io/output.hpp"
 #include "observe/observables.hpp"
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::command {
 namespace {

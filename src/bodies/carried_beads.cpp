@@ -2,8 +2,8 @@
 #include "bodies/carried_beads.hpp"
 
 #include "keys/maps.hpp"
-#include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::scene {
 

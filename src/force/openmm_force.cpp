@@ -18,7 +18,7 @@
 #include "force/worker.hpp"
 #include "mpi/first_rank.hpp"
 #include "scene/node.hpp"
-#include "scene/residue_table.hpp"
+#include "structure/residue_table.hpp"
 #include "systems/box.hpp"
 #include "systems/force_layers.hpp"
 #include "systems/subset.hpp"

@@ -4,7 +4,7 @@
 #include <OpenMM.h>
 
 #include "force/platform.hpp"
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 #include "systems/model.hpp"
 
 namespace catena {

@@ -15,8 +15,8 @@
 #include "reader/structure_entry.hpp"
 #include "reader/system_links.hpp"
 #include "scene/files.hpp"
-#include "scene/pdb_sites.hpp"
-#include "scene/residue_names.hpp"
+#include "structure/pdb_sites.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "bodies/domains.hpp"
-#include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::scene {
 

@@ -12,7 +12,7 @@
 
 #include "generate/linker.hpp"
 #include "reader/sequences.hpp"
-#include "scene/residue_names.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "reader/chain_request.hpp"
-#include "scene/pdb_sites.hpp"
+#include "structure/pdb_sites.hpp"
 
 namespace catena::scene {
 

@@ -12,7 +12,7 @@
 
 #include "keys/maps.hpp"
 #include "scene/files.hpp"
-#include "scene/residue_names.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 

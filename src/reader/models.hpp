@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "reader/chain_request.hpp"
-#include "scene/residue_table.hpp"
+#include "structure/residue_table.hpp"
 
 namespace catena::scene {
 

@@ -1,9 +1,9 @@
 // Readers of the sections of a scene other than its chains.
 #pragma once
 
-#include "scene/calvados2.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::scene {
 

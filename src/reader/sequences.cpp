@@ -11,11 +11,11 @@
 #include "keys/maps.hpp"
 #include "reader/models.hpp"
 #include "reader/structure_entry.hpp"
-#include "scene/calvados2.hpp"
-#include "scene/fasta.hpp"
 #include "scene/files.hpp"
-#include "scene/pdb_sites.hpp"
-#include "scene/residue_names.hpp"
+#include "structure/calvados2.hpp"
+#include "structure/fasta.hpp"
+#include "structure/pdb_sites.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 

@@ -7,7 +7,7 @@
 
 #include "bodies/domains.hpp"
 #include "reader/chain_request.hpp"
-#include "scene/pdb_sites.hpp"
+#include "structure/pdb_sites.hpp"
 
 namespace catena::scene {
 

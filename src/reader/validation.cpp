@@ -11,9 +11,9 @@
 #include <unordered_map>
 
 #include "reader/models.hpp"
-#include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 #include "scene/freedom.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::scene {
 

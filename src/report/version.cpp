@@ -13,7 +13,7 @@
 #include "math/simd_level.hpp"
 #include "measure/hardware.hpp"
 #include "mpi/communicator.hpp"
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 
 namespace catena::command {
 

@@ -59,7 +59,7 @@ class RunOrigin {
     }
     /// Returns the step from which existing files are continued. The frame of the checkpoint's step
     /// is written again, or remains as that run's, or is removed. The latter is the frame of a run
-    /// that ended there, which the undisturbed run would not have written.
+    /// that ended there, which the uninterrupted run would not have written.
     Continuation go_on() const {
         return {is_frame(first_) || !was_frame_ ? first_ - 1 : first_, records_before_};
     }

@@ -131,7 +131,7 @@ class Run {
     }
 
     /// Writes the last state. Its frame follows the checkpoint: a restart from there equals the
-    /// undisturbed run, which lacks this frame.
+    /// uninterrupted run, which lacks this frame.
     void end(std::int64_t n, double error, bool is_written) {
         if (!is_written && !frames_.is_kept(n)) frames_.write(n, error);
         frames_.finish();
@@ -224,7 +224,7 @@ class Run {
     }
 
     /// Adds a projection sweep if one is due. It does so only at steps that the scene determines,
-    /// not where a run happens to end: a restart must equal the undisturbed run.
+    /// not where a run happens to end: a restart must equal the uninterrupted run.
     void adapt(std::int64_t n, double error) {
         if (n == origin_.first_step() && origin_.is_restart()) return;  // the preceding run did it
         if (stepper_->adapt(watch_, error, scene_.dynamics.constraint_tolerance))

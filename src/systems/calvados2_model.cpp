@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "error.hpp"
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 #include "systems/charges.hpp"
 #include "systems/model.hpp"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "scene/calvados2.hpp"
 #include "scene/node.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena {
 

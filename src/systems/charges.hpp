@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/calvados2.hpp"
 #include "scene/scene.hpp"
+#include "structure/calvados2.hpp"
 #include "systems/bead_system.hpp"
 
 namespace catena {

@@ -8,8 +8,8 @@
 
 #include "error.hpp"
 #include "scene/node.hpp"
-#include "scene/structure_file.hpp"
 #include "scene/unique_names.hpp"
+#include "structure/structure_file.hpp"
 
 namespace catena {
 

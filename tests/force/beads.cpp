@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::testing {
 

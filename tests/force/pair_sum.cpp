@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::testing {
 

@@ -1,4 +1,4 @@
-#include "scene/fasta.hpp"
+#include "structure/fasta.hpp"
 #include "tests/fuzz/target.hpp"
 
 void catena::Scene::note(std::string) {}  // of sequences in scenes, which are not read here

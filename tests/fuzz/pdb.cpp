@@ -1,4 +1,4 @@
-#include "scene/pdb_sites.hpp"
+#include "structure/pdb_sites.hpp"
 #include "tests/fuzz/target.hpp"
 
 void catena::fuzz::read(std::string_view bytes) {

@@ -1,4 +1,4 @@
-#include "scene/residue_table.hpp"
+#include "structure/residue_table.hpp"
 #include "tests/fuzz/target.hpp"
 
 void catena::fuzz::read(std::string_view bytes) {

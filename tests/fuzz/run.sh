@@ -76,8 +76,8 @@ target scene -lyaml-cpp "${tree[@]}"
 target table -lyaml-cpp "${files[@]}"
 target pdb -lyaml-cpp "${files[@]}" src/scene/{pdb_file,pdb_sites,structure_file,structure_residues}.cpp \
     src/scene/{atom_masses,residue_names,no_gemmi}.cpp
-target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/scene/residue_table.cpp
-target residues -lyaml-cpp "${files[@]}" src/scene/residue_table.cpp
+target fasta -lyaml-cpp "${files[@]}" src/structure/fasta.cpp src/structure/residue_names.cpp src/structure/residue_table.cpp
+target residues -lyaml-cpp "${files[@]}" src/structure/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/freedom.cpp \

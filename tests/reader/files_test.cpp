@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "force/openmm_force.hpp"
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 #include "tests/reader/scene_files.hpp"
 
 namespace catena::test {

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "reader/load_scene.hpp"
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 #include "tests/reader/refusal.hpp"
 
 namespace catena::test {

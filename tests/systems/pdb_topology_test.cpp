@@ -1,5 +1,5 @@
 #include "systems/pdb_topology.hpp"
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 
 #include <set>
 

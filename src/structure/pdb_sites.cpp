@@ -1,17 +1,17 @@
 // Implements the selection of sites: the atoms of the chosen chains become residues, and each
 // residue one site.
-#include "scene/pdb_sites.hpp"
+#include "structure/pdb_sites.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "scene/atom_masses.hpp"
 #include "scene/files.hpp"
-#include "scene/residue_names.hpp"
-#include "scene/structure_file.hpp"
-#include "scene/structure_residues.hpp"
+#include "structure/atom_masses.hpp"
+#include "structure/residue_names.hpp"
+#include "structure/structure_file.hpp"
+#include "structure/structure_residues.hpp"
 
 namespace catena::scene {
 

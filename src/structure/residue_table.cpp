@@ -1,6 +1,6 @@
 // Implements the reader of residue tables. The tables of the program are files of inputs/, embedded
 // as text when the build is configured, and pass through the same reader.
-#include "scene/residue_table.hpp"
+#include "structure/residue_table.hpp"
 
 #include <fmt/format.h>
 

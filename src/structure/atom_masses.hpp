@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "scene/pdb_file.hpp"
+#include "structure/pdb_file.hpp"
 
 namespace catena::scene {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "scene/node.hpp"
-#include "scene/pdb_file.hpp"
-#include "scene/residue_names.hpp"
+#include "structure/pdb_file.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 

@@ -1,5 +1,5 @@
 // Implements the charges of the CALVADOS models and the choice of a residue's parameters.
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 
 #include <cmath>
 #include <numbers>

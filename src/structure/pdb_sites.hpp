@@ -8,7 +8,7 @@
 
 #include "math/linear.hpp"
 #include "scene/node.hpp"
-#include "scene/pdb_file.hpp"
+#include "structure/pdb_file.hpp"
 
 namespace catena::scene {
 

@@ -1,5 +1,5 @@
 // Implements the FASTA reader and the checks of sequences.
-#include "scene/fasta.hpp"
+#include "structure/fasta.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
-#include "scene/residue_names.hpp"
 #include "scene/text_lines.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 

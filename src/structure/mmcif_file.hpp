@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/pdb_file.hpp"
+#include "structure/pdb_file.hpp"
 
 namespace catena::scene {
 

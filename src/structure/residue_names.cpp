@@ -1,5 +1,5 @@
 // Implements the table of residue names.
-#include "scene/residue_names.hpp"
+#include "structure/residue_names.hpp"
 
 #include <cctype>
 #include <span>

@@ -1,5 +1,5 @@
 // Implements the gathering of atoms into residues.
-#include "scene/structure_residues.hpp"
+#include "structure/structure_residues.hpp"
 
 #include <fmt/format.h>
 

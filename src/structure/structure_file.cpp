@@ -1,9 +1,9 @@
 // Implements the choice between the readers of PDB and mmCIF files.
-#include "scene/structure_file.hpp"
+#include "structure/structure_file.hpp"
 
 #include <utility>
 
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 
 namespace catena::scene {
 

@@ -1,6 +1,6 @@
 // Implements the reader of mmCIF files. gemmi parses the text into tables of strings; the items of
 // `_atom_site` become the same atoms as the records of a PDB file.
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 
 #include <fmt/format.h>
 

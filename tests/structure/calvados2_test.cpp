@@ -1,4 +1,4 @@
-#include "scene/calvados2.hpp"
+#include "structure/calvados2.hpp"
 
 #include <gtest/gtest.h>
 

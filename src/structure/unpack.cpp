@@ -6,7 +6,7 @@
 #include <array>
 
 #include "error.hpp"
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 
 namespace catena::scene {
 

@@ -1,5 +1,5 @@
 // Implements the table of atomic masses: the elements of proteins and their modifications.
-#include "scene/atom_masses.hpp"
+#include "structure/atom_masses.hpp"
 
 #include <array>
 #include <cctype>

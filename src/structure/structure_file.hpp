@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "scene/pdb_file.hpp"
+#include "structure/pdb_file.hpp"
 
 namespace catena::scene {
 

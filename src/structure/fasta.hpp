@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "scene/node.hpp"
-#include "scene/residue_table.hpp"
 #include "scene/scene.hpp"
+#include "structure/residue_table.hpp"
 
 namespace catena::scene {
 

@@ -1,6 +1,6 @@
 // Replaces mmcif_file.cpp and unpack.cpp in a build without gemmi and zlib.
 #include "error.hpp"
-#include "scene/mmcif_file.hpp"
+#include "structure/mmcif_file.hpp"
 
 namespace catena::scene {
 

@@ -1,5 +1,5 @@
 // Residue tables: those of the program, and the refusals of faulty ones.
-#include "scene/residue_table.hpp"
+#include "structure/residue_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "scene/residue_table.hpp"
 #include "scene/scene.hpp"
+#include "structure/residue_table.hpp"
 
 namespace catena {
 

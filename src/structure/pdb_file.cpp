@@ -1,5 +1,5 @@
 // Implements the PDB parser: fixed columns, with the deviations of common programs.
-#include "scene/pdb_file.hpp"
+#include "structure/pdb_file.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "scene/fields.hpp"
-#include "scene/residue_names.hpp"
 #include "scene/text_lines.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 
