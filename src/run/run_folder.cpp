@@ -242,8 +242,8 @@ ObservablesTable RunFolder::table() {
     on_disk([&] {
         throw_kept();
         observables_->flush();
-        require_files();
-        found = read_observables(path("observables.csv"));
+        // A table that was deleted is named by finish(), once the summary is written.
+        if (fs::exists(path("observables.csv"))) found = read_observables(path("observables.csv"));
     });
     return found;
 }

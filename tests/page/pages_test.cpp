@@ -182,52 +182,34 @@ void expect_in_order(std::string const& page, std::vector<std::string> const& te
 TEST(RunReport, BeginsWithTheScienceAndFoldsTheSolver) {
     TemporaryFolder const folder;
     write_folder(folder);
-    write_text_file(
-        folder / "summary.json",
-        R"({"title": "two chains", "units": {"length": "nm", "time": "ps"}, "system": {"description": "2 chains of 10 beads (a, b)"
-}
-, "run" : {"integrator" : "g-baoab", "step" : 0.01},
-          "observables" : {
-              "total_energy" : {
-                  "mean" : 1.25,
-                  "standard_error" : 0.125,
-                  "unit" : "kJ/mol",
-                  "samples" : 40,
-                  "converged" : true
-              }
-          },
-                          "equilibration" : {
-                              "frames" : 50,
-                              "frames_left_out" : 10,
-                              "description" : "The first 10 of 50 frames are left out."
-                          },
-                                            "speed" : {"ns_per_day" : 12},
-                                                      "valid" : false,
-                                                                "verdict" : {
-                                                                    "valid" : false,
-                                                                    "checks" : [ {
-                                                                        "name" : "joints",
-                                                                        "passed" : false,
-                                                                        "value" : 1,
-                                                                        "limit" : 0.1,
-                                                                        "step" : 7,
-                                                                        "advice" : "too <long>"
-                                                                    } ]
-                                                                },
-                                                                            "notes" : ["a note"],
-                                                                                      "solver"
-    : {"backend" : "serial"}
-})");
+    write_text_file(folder / "summary.json", R"x({
+            "title": "two chains",
+            "units": {"length": "nm", "time": "ps"},
+            "system": {"description": "2 chains of 10 beads (a, b)"},
+            "run": {"integrator": "g-baoab", "step": 0.01},
+            "observables": {"total_energy": {"mean": 1.25, "standard_error": 0.125, "unit": "kJ/mol",
+                                             "samples": 40, "converged": true}},
+            "equilibration": {"frames": 50, "frames_left_out": 10,
+                              "description": "The first 10 of 50 frames are left out."},
+            "speed": {"ns_per_day": 12},
+            "valid": false,
+            "verdict": {"valid": false,
+                        "checks": [{"name": "joints", "passed": false, "value": 1, "limit": 0.1, "step": 7,
+                                    "advice": "too <long>"}]},
+            "notes": ["a note"],
+            "solver": {"backend": "serial"}
+        })x");
     write_run_report(folder.path());
-std::string const page = read_text_file(folder / "report.html");
-expect_in_order(page, {"<h1>two chains</h1>", "What was simulated", "2 chains of 10 beads (a, b)",
-                       "g-baoab, step 0.01 ps", "<h2>Observables</h2>",
-                       "<tr><td>Total energy</td><td>1.25</td><td>0.12</td><td>kJ/mol</td></tr>",
-                       "The first 10 of 50 frames are left out.", "total energy / (kJ/mol)<",
-                       "<h2>Speed</h2>", "12 ns", ">INVALID<", "joints at step 7: too &lt;long&gt;",
-                       "<li>a note</li>", "<details>", "<td>serial</td>", "<h2>One step</h2>",
-                       "</details>", "<h2>Files</h2>"});
-EXPECT_EQ(count(page, "class=\"shade\""), 3U) << "equilibration of every curve";
+    std::string const page = read_text_file(folder / "report.html");
+    expect_in_order(
+        page,
+        {"<h1>two chains</h1>", "What was simulated", "2 chains of 10 beads (a, b)",
+         "g-baoab, step 0.01 ps", "<h2>Observables</h2>",
+         "<tr><td>Total energy</td><td>1.25</td><td>0.12</td><td>kJ/mol</td></tr>",
+         "The first 10 of 50 frames are left out.", "total energy / (kJ/mol)<", "<h2>Speed</h2>",
+         "12 ns", ">INVALID<", "joints at step 7: too &lt;long&gt;", "<li>a note</li>", "<details>",
+         "<td>serial</td>", "<h2>One step</h2>", "</details>", "<h2>Files</h2>"});
+    EXPECT_EQ(count(page, "class=\"shade\""), 3U) << "equilibration of every curve";
 }
 
 TEST(RunReport, DrawsTheStepOfMedianLength) {

@@ -81,7 +81,7 @@ TEST(RunFacts, MeanAndErrorEndAtTheSameDecimal) {
 }
 
 Json summary_of_run() {
-    Json summary = Json::parse(R"({
+    Json summary = Json::parse(R"x({
         "units": {"length": "nm", "time": "ps", "energy": "kJ/mol"},
         "system": {"description": "2 chains of 10 beads (a-1 to a-2)", "forces": "calvados2 at 300 K and 0.15 mol/l",
                    "box": [20, 20, 30], "mass_concentration": 12.5, "chain_concentration": 2.767e-4},
@@ -89,19 +89,12 @@ Json summary_of_run() {
                 "temperature": 300, "friction": 0.01},
         "speed": {"seconds": 2, "steps_per_second": 250, "ns_per_day": 216, "milliseconds_per_step": 4},
         "valid": true,
-        "verdict": {
-    "valid" : true, "checks" : [ {
-        "name" : "joints",
-        "passed" : true,
-        "value" : 2e-12,
-        "limit" : 1e-10,
-        "step" : 3,
-        "advice" : ""
-    } ]
-}
-})");
+        "verdict": {"valid": true, "checks": [
+            {"name": "joints", "passed": true, "value": 2e-12, "limit": 1e-10, "step": 3, "advice": ""}
+        ]}
+    })x");
     summary.update(json_of(statistics_of(table_of(8, 0), Frames::equilibrated)));
-return summary;
+    return summary;
 }
 
 TEST(RunFacts, BeginWithTheSystemAndItsUnits) {
