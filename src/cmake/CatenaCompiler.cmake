@@ -89,10 +89,22 @@ endif()
 function(catena_precompile target)
     if(CATENA_PRECOMPILE)
         target_precompile_headers(${target} PRIVATE ${ARGN})
-        if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-            # ccache needs the first. Precompiled headers lose that they are the system's, so gcc warns of them: falsely (GCC bug 105651).
-            target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>)
-        endif()
+        catena_precompiled_options(${target})
+    endif()
+endfunction()
+
+# catena_reuse_precompiled(<target> <other>): the headers that `other` precompiled, for a target with the same options.
+function(catena_reuse_precompiled target other)
+    if(CATENA_PRECOMPILE)
+        target_precompile_headers(${target} REUSE_FROM ${other})
+        catena_precompiled_options(${target})
+    endif()
+endfunction()
+
+function(catena_precompiled_options target)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        # ccache needs the first. Precompiled headers lose that they are the system's, so gcc warns of them: falsely (GCC bug 105651).
+        target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds>)
     endif()
 endfunction()
 
