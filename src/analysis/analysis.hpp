@@ -11,7 +11,7 @@
 #include "analysis/estimate.hpp"
 #include "analysis/fits.hpp"
 #include "analysis/kinds.hpp"
-#include "analysis/trajectory_file.hpp"
+#include "frames/trajectory_file.hpp"
 
 namespace catena::analysis {
 

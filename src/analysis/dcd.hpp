@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "analysis/trajectory_file.hpp"
+#include "frames/trajectory_file.hpp"
 
 namespace catena::analysis {
 

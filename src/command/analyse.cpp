@@ -122,7 +122,7 @@ Json json_of(Analysis const& a) {
 Outcome analyse_run(Communicator const& communicator, AnalyseRequest const& request) {
     Outcome outcome;
     on_first_rank(communicator, [&] {
-        analysis::TrajectoryFile const trajectory(request.folder);
+        TrajectoryFile const trajectory(request.folder);
         Analysis const found = analysis::analyse(trajectory, request.options);
         std::string const folder = output_folder(request);
         make_output_folder(folder);

@@ -6,6 +6,7 @@
 #include "integrate/chain_system.hpp"
 #include "observe/observables.hpp"
 #include "plan/describe.hpp"
+#include "start/concentrations.hpp"
 #include "start/start_relaxation.hpp"
 #include "start/start_report.hpp"
 #include "systems/charges.hpp"
@@ -73,6 +74,18 @@ Json handles_json(Scene const& scene) {
     return handles;
 }
 
+/// Returns the concentrations as JSON.
+Json concentrations_json(Scene const& scene) {
+    Json list = Json::array();
+    for (ChainConcentration const& each : concentrations_of(scene))
+        list.push_back({{"chains", each.chains},
+                        {"count", each.count},
+                        {"in", each.where},
+                        {"mg_per_ml", each.mg_per_ml},
+                        {"mmol_per_l", each.mmol_per_l}});
+    return list;
+}
+
 /// Returns the text that `catena check` prints.
 Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks,
              std::optional<StepLimit> const& limit) {
@@ -86,6 +99,9 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("bodies", std::to_string(scene.bodies()));
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
     text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");
+    std::vector<ChainConcentration> const concentrations = concentrations_of(scene);
+    for (std::size_t i = 0; i < concentrations.size(); ++i)
+        text.entry(i == 0 ? "concentration" : "", concentrations[i].text());
     if (std::string const charges = assumed_charges(scene); !charges.empty())
         text.entry("net charge", charges);
     text.add(chain_table(scene));
@@ -132,6 +148,7 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator, bool j
         {"bodies", scene.bodies()},
         {"dof", degrees_of_freedom(scene)},
         {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},
+        {"concentrations", concentrations_json(scene)},
         {"net_charge", charges.empty() ? Json() : Json(charges)},
         {"backend", name_of(scene.solver.backend)},
         {"handles", handles_json(scene)},

@@ -12,7 +12,7 @@ namespace catena::command {
 namespace {
 
 /// Returns what a reader of the file must know, because the format cannot hold it.
-std::vector<std::string> notes_on(analysis::TrajectoryFile const& trajectory,
+std::vector<std::string> notes_on(TrajectoryFile const& trajectory,
                                   analysis::DcdWritten const& written, std::size_t first) {
     std::vector<std::string> notes;
     if (written.left_out > 0)
@@ -36,7 +36,7 @@ std::vector<std::string> notes_on(analysis::TrajectoryFile const& trajectory,
 Outcome convert_run(Communicator const& communicator, ConvertRequest const& request) {
     Outcome outcome;
     on_first_rank(communicator, [&] {
-        analysis::TrajectoryFile const trajectory(request.folder);
+        TrajectoryFile const trajectory(request.folder);
         analysis::DcdWritten const written = analysis::write_dcd(trajectory, request.dcd);
         Text text;
         text.heading(trajectory.topology().title);

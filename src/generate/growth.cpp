@@ -1,63 +1,14 @@
 // Implements grow(): self-avoiding growth of many chains in one periodic box.
 #include <algorithm>
+#include <limits>
 
-#include "generate/cells.hpp"
 #include "generate/crowd.hpp"
+#include "generate/occupied.hpp"
 #include "generate/random.hpp"
 
 namespace catena::scene {
 
 namespace {
-
-/// Points in the cells of a periodic box, inserted and removed by their number.
-class Occupied {
-  public:
-    Occupied(Vec3 const& box, double width, std::size_t points)
-        : images_(box),
-          cells_(box, width, points),
-          head_(cells_.size(), none),
-          next_(points, none),
-          at_(points) {}
-
-    /// Inserts point i.
-    void put(std::size_t i, Vec3 const& point) {
-        at_[i] = images_.wrapped(point);
-        std::int32_t& head = head_[cells_.of(at_[i])];
-        next_[i] = head;
-        head = static_cast<std::int32_t>(i);
-    }
-    /// Removes point i, which must have been inserted.
-    void take(std::size_t i) {
-        std::int32_t* link = &head_[cells_.of(at_[i])];
-        while (*link != static_cast<std::int32_t>(i))
-            link = &next_[static_cast<std::size_t>(*link)];
-        *link = next_[i];
-    }
-    /// Square of the distance from `point` to the nearest point, at most `most`. Point
-    /// `passed_over` is ignored (none: -1). The search may end early once the result is at most
-    /// `least`; it then returns any such value.
-    double clearance(Vec3 const& point, std::int32_t passed_over, double least, double most) const {
-        Vec3 const here = images_.wrapped(point);
-        double nearest = most;
-        cells_.any_around(here, [&](std::size_t cell) {
-            for (std::int32_t j = head_[cell]; j != none; j = next_[static_cast<std::size_t>(j)]) {
-                if (j == passed_over) continue;
-                Vec3 const apart = images_.shortest(here - at_[static_cast<std::size_t>(j)]);
-                nearest = std::min(nearest, dot(apart, apart));
-            }
-            return nearest <= least;
-        });
-        return nearest;
-    }
-
-    static std::int32_t constexpr none = -1;
-
-  private:
-    Images images_;
-    Cells cells_;
-    std::vector<std::int32_t> head_, next_;
-    std::vector<Vec3> at_;
-};
 
 /// Grows all chains of a crowd, one bead per chain in turns.
 class Growth {
@@ -113,7 +64,8 @@ class Growth {
     }
 
     /// Adds a bead at the first free place among 64 trials and returns true. Without free place it
-    /// returns false or, if the chain has no allowance left, accepts the least overlap.
+    /// returns false or, if the chain has no allowance left, accepts the least overlap. Places
+    /// beyond the chain's walls are worse than any overlap.
     bool extend(std::size_t chain) {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;
@@ -121,11 +73,14 @@ class Growth {
             tip.grown > 0 ? static_cast<std::int32_t>(i) - 1 : Occupied::none;
         double const enough = crowd_.excluded * crowd_.excluded;
         bool const choosy = tip.allowance > 0;
-        double best = -1;
+        double best = -std::numeric_limits<double>::infinity();
         for (int trial = 0; trial < 64 && best < enough; ++trial) {
             Vec3 const place = candidate(chain);
+            double const outside = crowd_.outside(chain, place);
             double const clear =
-                occupied_.clearance(place, neighbour, choosy ? 0.999999 * enough : best, enough);
+                outside > 0 ? -outside
+                            : occupied_.clearance(place, neighbour,
+                                                  choosy ? 0.999999 * enough : best, enough);
             if (clear > best) best = clear, crowd_.at[i] = place;
         }
         if (choosy && best < enough) return false;
@@ -144,7 +99,11 @@ class Growth {
         if (tip.grown > 0)
             return plus_scaled(crowd_.at[i - 1], crowd_.length[i], draws.on_sphere());
         Vec3 start;
-        for (int axis = 0; axis < 3; ++axis) start[axis] = draws.between(0, crowd_.box[axis]);
+        for (int axis = 0; axis < 3; ++axis) {
+            Range const range = crowd_.range(chain, axis);
+            start[axis] = range.is_bounded() ? draws.between(range.low, range.high)
+                                             : draws.between(0, crowd_.box[axis]);
+        }
         return start;
     }
 

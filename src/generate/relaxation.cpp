@@ -97,6 +97,7 @@ class Relaxation {
             if (!alone) push_[j] = plus_scaled(push_[j], -way, direction);
         }
         found.nearest = std::sqrt(nearest);
+        found.outside = push_inside();
         return found;
     }
 
@@ -117,6 +118,23 @@ class Relaxation {
     }
 
   private:
+    /// Adds the displacements of beads at their walls. Returns the number of beads beyond them.
+    std::int64_t push_inside() {
+        double const margin = (push_reach - 1) * crowd_.excluded;
+        std::int64_t beyond = 0;
+        for (std::size_t c = 0; c < crowd_.walls.size(); ++c)
+            for (std::size_t i = crowd_.first[c]; i < crowd_.first[c + 1]; ++i) {
+                Vec3 const& at = crowd_.at[i];
+                beyond += crowd_.outside(c, at) > 0 ? 1 : 0;
+                for (int axis = 0; axis < 3; ++axis) {
+                    Range const range = crowd_.range(c, axis);
+                    double const way = 2 * stiffness * (range.beyond(at[axis]) + margin);
+                    if (way > 0) push_[i][axis] += at[axis] - range.low < margin ? way : -way;
+                }
+            }
+        return beyond;
+    }
+
     void relist() {
         pairs_.list(crowd_);
         listed_ = crowd_.at;
@@ -145,7 +163,8 @@ Relaxed relax(Crowd& crowd, std::int64_t most_steps) {
     for (std::int64_t steps = 0;; ++steps) {
         Relaxed found = relaxation.look();
         found.steps = steps;
-        if (found.overlaps == 0 || steps == most_steps) return found;
+        bool const done = found.overlaps == 0 && found.outside == 0;
+        if (done || steps == most_steps) return found;
         relaxation.step();
     }
 }

@@ -15,6 +15,10 @@ namespace catena::scene {
 
 namespace {
 
+/// Beginning and end of the two notes.
+std::string_view constexpr moved_note =
+    "the start's positions were moved so that links have their lengths",
+                           whole_note = ": made whole by nearest images";
 /// Relative change of a link below which it is rounding.
 double constexpr rounding = 1e-9;
 /// Relative difference of distances below which pairs count as equally near.
@@ -110,9 +114,16 @@ class Units {
 
 }  // namespace
 
-void StartFit::make_whole(Chain const& chain, bool as_given) {
-    if (!scene_.box) return;
-    Images const images(*scene_.box);
+void forget_fits(Scene& scene) {
+    scene.start = {};
+    std::erase_if(scene.notes, [](std::string const& note) {
+        return note.starts_with(moved_note) || note.ends_with(whole_note);
+    });
+}
+
+void StartFit::make_whole(Chain const& chain, bool as_given, std::optional<Vec3> const& box) {
+    if (!box) return;
+    Images const images(*box);
     double const usual = as_given ? longest_uncut(chain, images.edge()) : 0;
     std::vector<Vec3>& position = chain.beads.position;
     /// Inboard end as the file has it.
@@ -270,16 +281,14 @@ void StartFit::note() const {
         std::string const chains =
             cut_chains_ == 1 ? "1 chain" : fmt::format("{} chains", cut_chains_);
         scene_.note(
-            fmt::format("{} of {} {} cut by the sides of the periodic box, the first between {}: "
-                        "made whole by nearest images",
-                        links, chains, cut_links_ == 1 ? "is" : "are", first_cut_));
+            fmt::format("{} of {} {} cut by the sides of the periodic box, the first between {}{}",
+                        links, chains, cut_links_ == 1 ? "is" : "are", first_cut_, whole_note));
     }
     if (largest_ >= noted_link_change || moved_far_)
         scene_.note(
-            fmt::format("the start's positions were moved so that links have their lengths: the "
-                        "largest change of a link is {:.2g} % "
+            fmt::format("{}: the largest change of a link is {:.2g} % "
                         "({}), the largest displacement of a bead {:.3g} {} ({})",
-                        100 * largest_, link_, most_moved_, unit(), moved_));
+                        moved_note, 100 * largest_, link_, most_moved_, unit(), moved_));
 }
 
 }  // namespace catena::scene

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,9 @@ inline constexpr double most_usual = 1.5;
 /// longest link on.
 inline constexpr double noted_link_change = 0.03;
 
+/// Removes what fits have recorded and noted so far, because other positions replace theirs.
+void forget_fits(Scene& scene);
+
 /// Fits the chains of one file and collects notes on the changes.
 class StartFit {
   public:
@@ -65,7 +69,9 @@ class StartFit {
     /// fits `beads.length` better. With `as_given`, if lengths are unknown, a link is cut if its
     /// nearest image is shorter. That image must not exceed 1.5 times the longest link within half
     /// of every edge.
-    void make_whole(Chain const& chain, bool as_given);
+    void make_whole(Chain const& chain, bool as_given) { make_whole(chain, as_given, scene_.box); }
+    /// As above, for positions that may be wrapped into another box than the scene's.
+    void make_whole(Chain const& chain, bool as_given, std::optional<Vec3> const& box);
 
     /// Gives the links `beads.length` by the least change of positions: the least sum of squared
     /// displacements, to second order in them. Records the largest change in the scene's `start`.

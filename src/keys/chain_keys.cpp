@@ -8,6 +8,12 @@ constexpr Key chain_keys[] = {
     {"name", "text", "`chain-1`, `chain-2`, ...", "",
      "The chain has this unique name; its copies have -1, -2 and so on behind it.", "name: asyn"},
     {"count", "integer >= 1", "1", "", "The entry stands for this number of copies.", "count: 20"},
+    {"concentration", "number with unit", "none", "",
+     "The number of copies is what gives this concentration in the chain's `place`, else in the "
+     "box; units as in `box.cubic`.",
+     "concentration: 0.4 mmol/l"},
+    {"place", "map", "that of the scene", "", "This chain starts in a place of its own.",
+     "place: {region: {from: [0, 0, 0], to: [20, 20, 10]}}"},
     {"sequence", "text", "none", "",
      "The chain has a bead for each of these one-letter codes; blanks are ignored.",
      "sequence: MDVFMKGLSK"},

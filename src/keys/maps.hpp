@@ -5,8 +5,10 @@
 
 namespace catena::scene::keys {
 
-/// The scene file itself, and its sections. `drag` also is a key of rigid bodies.
-extern KeyMap const top, box, forces, drag, openmm, dynamics, solver, output;
+/// The scene file itself, and its sections. `drag` also is a key of rigid bodies, `place` one of
+/// chains.
+extern KeyMap const top, box, cubic, place, slab, region, start, forces, drag, openmm, dynamics,
+    solver, output;
 
 /// An entry of `chains`, its start from a file, and its tip: a joint to the ground or to body 1.
 extern KeyMap const chain, model, conformation, tip, tip_joint, tip_ring;

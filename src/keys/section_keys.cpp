@@ -27,15 +27,54 @@ constexpr Key top_keys[] = {
      "output: {every: 50}"},
     {"relax", "true, false", "false", "",
      "Overlaps in the start positions are relaxed before the first step.", "relax: true"},
+    {"place", "map", "the whole box", "",
+     "Chains without positions start in a slab or another region of the box.",
+     "place: {slab: {axis: z, thickness: 20}}"},
+    {"start", "map", "as the chains say", "", "All chains start from a frame of another run.",
+     "start: {from: run-1, frame: last}"},
 };
 
 constexpr Key box_keys[] = {
-    {"periodic", "3 numbers > 0", "required", "length",
+    {"periodic", "3 numbers > 0", "required without `cubic`", "length",
      "The rectangular periodic box has these edges.", "periodic: [60, 60, 60]"},
+    {"cubic", "map", "none", "", "The periodic box is the cube that a concentration asks for.",
+     "cubic: {concentration: 5 mg/ml}"},
     {"fill", "3 numbers > 0", "the whole box", "length",
      "Chains start in a region with these edges in the middle of the box, such as a slab or a "
      "droplet.",
      "fill: [8, 8, 10]"},
+};
+
+constexpr Key cubic_keys[] = {
+    {"concentration", "number with unit", "required", "",
+     "All chains together have this concentration; units are mg/ml, g/l, mol/l, mmol/l, umol/l.",
+     "concentration: 5 mg/ml"},
+};
+
+constexpr Key place_keys[] = {
+    {"slab", "map", "none", "", "Chains start in a slab in the middle of the box.",
+     "slab: {axis: z, thickness: 20}"},
+    {"region", "map", "none", "", "Chains start between two corners of a part of the box.",
+     "region: {from: [0, 0, 10], to: [20, 20, 30]}"},
+};
+
+constexpr Key slab_keys[] = {
+    {"axis", "`x`, `y`, `z`", "`z`", "", "The slab's faces are normal to this axis.", "axis: x"},
+    {"thickness", "number > 0", "required", "length", "The slab is this thick.", "thickness: 20"},
+};
+
+constexpr Key region_keys[] = {
+    {"from", "3 numbers", "required", "length", "The region begins at this corner.",
+     "from: [0, 0, 10]"},
+    {"to", "3 numbers", "required", "length", "The region ends at this corner.",
+     "to: [20, 20, 30]"},
+};
+
+constexpr Key start_keys[] = {
+    {"from", "path", "required", "",
+     "Positions come from this run's folder, its `trajectory.h5md`, or a DCD file.", "from: run-1"},
+    {"frame", "`last`, or integer >= 0", "`last`", "",
+     "The start is this frame of the trajectory; frames count from 0.", "frame: 57"},
 };
 
 constexpr Key drag_keys[] = {
@@ -194,6 +233,11 @@ constexpr Key output_keys[] = {
 
 constinit KeyMap const top{"scene", "the scene file", top_keys};
 constinit KeyMap const box{"box", "box", box_keys};
+constinit KeyMap const cubic{"box.cubic", "box.cubic", cubic_keys};
+constinit KeyMap const place{"place", "place, chains[i].place", place_keys};
+constinit KeyMap const slab{"place.slab", "place.slab", slab_keys};
+constinit KeyMap const region{"place.region", "place.region", region_keys};
+constinit KeyMap const start{"start", "start", start_keys};
 constinit KeyMap const forces{"forces", "forces", forces_keys, forces_later};
 constinit KeyMap const drag{"forces.drag", "forces.drag, chains[i].bodies[k].drag", drag_keys};
 constinit KeyMap const openmm{"forces.openmm", "forces.openmm", openmm_keys};

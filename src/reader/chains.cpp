@@ -17,6 +17,7 @@
 #include "io/memory_limit.hpp"
 #include "io/printable.hpp"
 #include "keys/maps.hpp"
+#include "place/concentration.hpp"
 #include "reader/chain_request.hpp"
 #include "reader/generator_entry.hpp"
 #include "reader/linked.hpp"
@@ -127,6 +128,8 @@ class ChainReader {
         request_.system = system;
         tip_ = read_tip(request_.fields);
         if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
+        concentration_ = request_.fields.find("concentration");
+        if (concentration_) check_concentration();
         if (source_.key == "generator") generator_.emplace(request_, source_);
     }
 
@@ -163,6 +166,11 @@ class ChainReader {
         double const before = drafts.empty() ? 0 : drafts.back().bytes;
         if (generator_) with_copies(before, generator_->size(), generator_->is_beads());
         std::int64_t const next = next_particle(drafts);
+        if (concentration_) {
+            prepare(name, next);
+            Region const region = region_of(request_.node, request_.scene.box);
+            count_ = copies_for(*concentration_, make(0), region, request_.scene);
+        }
         prepare(count_ == 1 ? name : name + "-1", next);
         std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
@@ -192,6 +200,21 @@ class ChainReader {
         drafts.back().bytes = bytes;
     }
 
+    /// Throws InputError unless the number of copies can follow from a concentration.
+    void check_concentration() const {
+        Node const& at = *concentration_;
+        read_concentration(at);
+        if (request_.fields.find("count"))
+            fail(at, "the chain has both `count` and `concentration`", "keep one of them");
+        if (request_.scene.si)
+            fail(at, "a concentration in SI units", "write `units: md`, or `count`");
+        if (request_.system)
+            fail(at, "a concentration beside a System, which has a number of chains of its own",
+                 "give `count`");
+        if (!request_.scene.box)
+            fail(at, "a concentration without a periodic box whose edges are given",
+                 "add `box: {periodic: [30, 30, 30]}`, or give `count`");
+    }
     /// The System's first particle of the chain of that name; `next` without a System.
     std::int64_t particle_of(std::string const& name, std::int64_t next) const {
         return request_.system ? request_.system->first_particle(name, next) : next;
@@ -331,6 +354,8 @@ class ChainReader {
     ReadTip tip_;
     /// Number of copies.
     std::int64_t count_ = 1;
+    /// The concentration that decides the number of copies, or nullptr.
+    Node const* concentration_ = nullptr;
     /// Generator of the chain, if any. It refers to request_; a reader therefore must not be moved.
     std::optional<GeneratorEntry> generator_;
 };

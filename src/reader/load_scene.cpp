@@ -1,8 +1,10 @@
 // Implements the order in which a scene is read. Overrides are applied to the tree first. The
 // sections follow, because chains depend on units, box, forces and dynamics. The chains are then
-// read as drafts and checked together. Movable drafts receive their places last, and the
-// fingerprint covers the result.
+// read as drafts and checked together. A box may follow from them. Movable drafts receive their
+// places last, and the fingerprint covers the result.
 #include "reader/load_scene.hpp"
+
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
@@ -14,12 +16,15 @@
 #include "error.hpp"
 #include "io/printable.hpp"
 #include "keys/maps.hpp"
+#include "place/concentration.hpp"
+#include "place/filling.hpp"
+#include "place/placement.hpp"
+#include "place/regions.hpp"
+#include "place/start_frame.hpp"
 #include "reader/chains.hpp"
-#include "reader/filling.hpp"
 #include "reader/force_notes.hpp"
 #include "reader/imported.hpp"
 #include "reader/overrides.hpp"
-#include "reader/placement.hpp"
 #include "reader/sections.hpp"
 #include "reader/system_links.hpp"
 #include "reader/validation.hpp"
@@ -61,13 +66,17 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     return made;
 }
 
+/// True if chains whose velocities are not given start thermal. A temperature that is only the
+/// default does not make them so, except under g-BAOAB.
+bool is_warm(Fields const& fields, Scene const& frame) {
+    Node const* const dynamics = fields.find("dynamics");
+    return dynamics && frame.dynamics.temperature > 0 &&
+           (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
+}
+
 /// Reads the chains of the scene or, if it has none, those of the System that it names.
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
-    Node const* const dynamics = fields.find("dynamics");
-    // A temperature that is only the default does not make chains thermal, except under g-BAOAB.
-    bool const warm =
-        dynamics && frame.dynamics.temperature > 0 &&
-        (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
+    bool const warm = is_warm(fields, frame);
     if (!fields.find("chains") && frame.forces.openmm && !frame.forces.openmm->system.empty())
         return scene::import_chains(*fields.find("forces")->find("openmm"), frame, warm);
     Node const& chains =
@@ -84,10 +93,38 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     return drafts;
 }
 
-/// Gives places to movable chains, in the region of `fill` or in the whole box.
-void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene const& frame) {
+/// The box's `cubic`, or nullptr.
+Node const* cubic_of(Fields const& fields) {
     Node const* const box = fields.find("box");
-    if (std::optional<Vec3> const fill = box ? scene::read_fill(*box) : std::nullopt)
+    return box && box->kind == Node::Kind::map ? box->find("cubic") : nullptr;
+}
+
+/// Sets the edges of a cubic box from the chains' masses and numbers.
+void set_cube(Node const& cubic, std::vector<scene::Draft> const& drafts, Scene& frame) {
+    if (frame.si)
+        scene::fail(cubic, "a concentration in SI units", "write `units: md`, or `periodic`");
+    if (frame.forces.openmm && !frame.forces.openmm->system.empty())
+        scene::fail(cubic, "a box from a concentration for a System, which has its own box",
+                    "give the System's edges by `periodic`");
+    frame.box = scene::cube_for(scene::read_cubic(cubic), drafts);
+}
+
+/// Places all chains: at a frame of another run, in the regions of `place`, in that of `fill`, or
+/// in the whole box.
+void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene& frame) {
+    Node const* const box = fields.find("box");
+    std::optional<Vec3> const fill = box ? scene::read_fill(*box) : std::nullopt;
+    Node const* const start = fields.find("start");
+    Node const* const place = scene::first_place(drafts);
+    if (start && (place || fill))
+        scene::fail(*start, fmt::format("both `start` and `{}`", place ? "place" : "fill"),
+                    "keep one of them");
+    if (place && fill) scene::fail(*box->find("fill"), "both `place` and `fill`", "keep `place`");
+    if (start) return scene::start_from_frame(drafts, frame, *start, is_warm(fields, frame));
+    if (place && frame.si) scene::fail(*place, "`place` in SI units", "write `units: md`");
+    if (place)
+        scene::place_in_regions(drafts, frame.box, frame.dynamics.seed);
+    else if (fill)
         scene::fill_region(drafts, *frame.box, *fill, *box->find("fill"), frame.dynamics.seed);
     else
         scene::give_places(drafts, frame.box, frame.dynamics.seed);
@@ -109,6 +146,7 @@ Scene parse_scene(std::string const& text, std::string const& name,
     Fields const fields(*root, scene::keys::top);
     Scene made = read_frame(fields, name);
     std::vector<scene::Draft> drafts = read_chains(fields, made);
+    if (Node const* const cubic = cubic_of(fields)) set_cube(*cubic, drafts, made);
     scene::check_together(*root, made, drafts);
     give_places(fields, drafts, made);
     made.chains.reserve(drafts.size());

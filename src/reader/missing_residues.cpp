@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "generate/conformation.hpp"
 #include "generate/linker.hpp"
 #include "reader/sequences.hpp"
 #include "structure/residue_names.hpp"

@@ -145,11 +145,25 @@ double constexpr shortest_edge = 1e-30, longest_edge = 1e9;
 
 }  // namespace
 
+Concentration read_cubic(Node const& cubic) {
+    return read_concentration(
+        Fields(cubic, keys::cubic).need("concentration", "concentration: 5 mg/ml"));
+}
+
 std::optional<Vec3> read_box(Node const& box) {
     if (box.kind == Node::Kind::scalar && box.text == "none") return std::nullopt;
     if (box.kind != Node::Kind::map)
         fail(box, describe(box) + " is not a box", "give `{periodic: [60, 60, 60]}` or `none`");
-    Node const& edges = Fields(box, keys::box).need("periodic", "periodic: [60, 60, 60]");
+    Fields const fields(box, keys::box);
+    if (Node const* const cubic = fields.find("cubic")) {
+        read_cubic(*cubic);
+        for (char const* const key : {"periodic", "fill"})
+            if (Node const* const other = fields.find(key))
+                fail(*other, fmt::format("both `cubic` and `{}`", key),
+                     "keep `cubic`, or give all edges by `periodic`");
+        return std::nullopt;  // the edges follow from the chains
+    }
+    Node const& edges = fields.need("periodic", "periodic: [60, 60, 60]");
     Vec3 const lengths = vector3(edges);
     for (double const length : lengths.data) {
         if (!(length > 0))

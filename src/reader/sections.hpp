@@ -1,14 +1,17 @@
 // Readers of the sections of a scene other than its chains.
 #pragma once
 
+#include "place/concentration.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
 #include "structure/calvados2.hpp"
 
 namespace catena::scene {
 
-/// Reads `box`: edges of the periodic box, or none. Throws InputError for edges that are not
-/// positive or that a double cannot resolve.
+/// Reads `cubic` of `box`: the concentration that decides the edges.
+Concentration read_cubic(Node const& cubic);
+/// Reads `box`: edges of the periodic box, or none, also for a `cubic` one. Throws InputError for
+/// edges that are not positive or that a double cannot resolve.
 std::optional<Vec3> read_box(Node const& box);
 /// Reads `dynamics`. `si` is true for SI units, which require a friction for Langevin integrators.
 DynamicsSpec read_dynamics(Node const& dynamics, bool si);

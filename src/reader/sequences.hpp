@@ -5,10 +5,6 @@
 
 namespace catena::scene {
 
-/// Excluded distance of self-avoiding chains. Closer pairs of CALVADOS beads repel each other by
-/// several kT (mean diameters are 0.45 to 0.68 nm).
-inline constexpr double excluded_distance = 0.56;  // nm
-
 /// Throws InputError for keys and units that do not fit a chain of residues.
 void check_residue_keys(ChainRequest& request);
 

@@ -172,7 +172,7 @@ class StructureReader {
         return names_.make(request_.fields.find("name") ? request_.name() + "-" + own : own);
     }
     void refuse_keys_of_one_chain() const {
-        for (char const* const key : {"count", "base", "tip", "anchor"})
+        for (char const* const key : {"count", "concentration", "base", "tip", "anchor"})
             if (Node const* const here = request_.fields.find(key))
                 fail(*here,
                      fmt::format("key `{}` for {} chains of one structure", key, parts_.size()),

@@ -12,6 +12,7 @@
 
 #include "clock.hpp"
 #include "error.hpp"
+#include "generate/random.hpp"
 #include "integrate/scene_beads.hpp"
 #include "mpi/first_rank.hpp"
 #include "start/descent.hpp"
@@ -30,7 +31,9 @@ double constexpr bead_evaluations =
           // beads take some minutes on a core
 std::int64_t constexpr least_of_all = 200, most_of_all = 3000, window_of_all = 20;
 double constexpr large_force = 400;  // kT/nm: larger than any force on a bead in thermal motion
-double constexpr least_fall = 0.02;  // ratio to the thermal energy, per window
+int constexpr most_knocks = 8;
+double constexpr knock_length = 0.06;  // nm: of the first knock
+double constexpr least_fall = 0.02;    // ratio to the thermal energy, per window
 double constexpr seconds_between_lines = 5;
 
 /// Range of the forces between near beads, nm. Cells of OpenMM's neighbour lists are as wide as
@@ -67,42 +70,85 @@ double furthest(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     return most;
 }
 
-/// Separates overlaps by forces between near beads, which cost little, then minimises the energy of
-/// all forces. Rank 0 only.
-StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains,
-                            RelaxationSays const& say) {
-    SingleRankForces all(scene);
-    std::vector<Vec3> at = bead_positions_of(scene);
-    std::vector<Vec3> const given = at;
-    auto const look = [&] {
-        SingleRankForces::EnergyAndForces const found = all.at(at);
-        return start_forces_of(scene, all.beads(), at, found.forces, found.energy);
-    };
-    StartRelaxation found;
-    found.from = look();
-    double const kt = scene.boltzmann() * scene.forces.openmm->temperature,
-                 fall = least_fall * found.from.thermal;
-    {
-        SingleRankForces near(scene, contact_reach(scene, at.size()));
-        Descent descent(chains, near, at);
-        found.steps = descent
-                          .run({most_of_contacts, window_of_contacts, fall, large_force * kt, kt},
-                               Teller(say, "forces between near beads"))
-                          .evaluations;
+/// Relaxation of a start by one rank.
+class Relaxation {
+  public:
+    Relaxation(Scene const& scene, std::vector<MovingChain>& chains, RelaxationSays const& say)
+        : scene_(scene),
+          chains_(chains),
+          say_(say),
+          all_(scene),
+          at_(bead_positions_of(scene)),
+          large_force_(large_force * scene.boltzmann() * scene.forces.openmm->temperature) {}
+
+    /// Separates overlaps by forces between near beads, which cost little, then minimises the
+    /// energy of all forces. Beads that are caught between links, or in a balance of large forces,
+    /// are knocked out of it and relaxed again, a few times. Throws InputError if that fails.
+    StartRelaxation run() {
+        std::vector<Vec3> const given = at_;
+        StartRelaxation found;
+        found.from = found.to = look();
+        for (int knocks = 0;; ++knocks) {
+            descend(found);
+            found.to = look();
+            if (!found.to.is_absurd() || knocks == most_knocks) break;
+            knock(knocks);
+        }
+        found.moved = furthest(given, at_);
+        refuse_absurd(scene_, found.to, found.way_text());
+        return found;
     }
-    auto const affordable =
-        static_cast<std::int64_t>(bead_evaluations / static_cast<double>(at.size()));
-    Descent descent(chains, all, at);
-    Descent::Ended const ended = descent.run({std::clamp(affordable, least_of_all, most_of_all),
-                                              window_of_all, fall, large_force * kt, kt},
-                                             Teller(say, "all forces"));
-    found.steps += ended.evaluations;
-    found.at_rest = ended.at_rest;
-    found.to = look();
-    found.moved = furthest(given, at);
-    refuse_absurd(scene, found.to, found.way_text());
-    return found;
-}
+
+  private:
+    StartForces look() {
+        SingleRankForces::EnergyAndForces found = all_.at(at_);
+        forces_ = std::move(found.forces);
+        return start_forces_of(scene_, all_.beads(), at_, forces_, found.energy);
+    }
+
+    void descend(StartRelaxation& found) {
+        double const kt = scene_.boltzmann() * scene_.forces.openmm->temperature,
+                     fall = least_fall * found.from.thermal;
+        {
+            SingleRankForces near(scene_, contact_reach(scene_, at_.size()));
+            Descent descent(chains_, near, at_);
+            found.steps += descent
+                               .run({most_of_contacts, window_of_contacts, fall, large_force_, kt},
+                                    Teller(say_, "forces between near beads"))
+                               .evaluations;
+        }
+        auto const affordable =
+            static_cast<std::int64_t>(bead_evaluations / static_cast<double>(at_.size()));
+        Descent descent(chains_, all_, at_);
+        Descent::Ended const ended = descent.run({std::clamp(affordable, least_of_all, most_of_all),
+                                                  window_of_all, fall, large_force_, kt},
+                                                 Teller(say_, "all forces"));
+        found.steps += ended.evaluations;
+        found.at_rest = ended.at_rest;
+    }
+
+    /// Moves the units that feel large forces, each in a random direction. Later knocks are longer.
+    void knock(int number) {
+        double const way = knock_length * (1 + number);
+        for (std::size_t c = 0; c < chains_.size(); ++c) {
+            std::vector<UnitMotion> by(chains_[c].units());
+            scene::Draws draws(static_cast<std::uint64_t>(number), static_cast<std::int64_t>(c));
+            for (std::size_t u = 0; u < by.size(); ++u)
+                if (norm(chains_[c].acceleration(u, forces_).shift) > large_force_)
+                    by[u].shift = way * draws.on_sphere();
+            chains_[c].move(by);  // leaves the chain as it is if its links cannot be closed
+            chains_[c].put_beads(at_);
+        }
+    }
+
+    Scene const& scene_;
+    std::vector<MovingChain>& chains_;
+    RelaxationSays const& say_;
+    SingleRankForces all_;
+    /// Positions of all beads and the forces there.
+    std::vector<Vec3> at_, forces_;
+    double large_force_;  // kJ/mol/nm
+};
 
 }  // namespace
 
@@ -127,7 +173,7 @@ RelaxedScene relax_start(Scene const& scene, Communicator const& communicator,
                          scene.file + ": relax", "leave it out, or add `forces: {openmm: ...}`");
     RelaxedScene made{scene, {}};
     std::vector<MovingChain> chains = moving_chains(made.scene);
-    on_first_rank(communicator, [&] { made.relaxation = relax_alone(scene, chains, say); });
+    on_first_rank(communicator, [&] { made.relaxation = Relaxation(scene, chains, say).run(); });
     for (MovingChain& chain : chains) {
         for (std::span<std::byte> const part : chain.bytes()) communicator.broadcast(part);
         chain.write();

@@ -103,11 +103,15 @@ class StartGenerator : public Generator {
                                         step * static_cast<double>(k % 2), 0}});
         return at;
     }
-    /// Turned by up to 60 degrees at each bead, within 1 nm of a line, so that chains keep apart.
+    /// Turned by up to 60 degrees at each bead, within 1 nm of a line, so that chains keep apart. A
+    /// walk that has come to a dead end begins again.
     std::vector<Vec3> walk(std::size_t beads, Vec3 const& corner) {
+        int constexpr patience = 10000;
+        Vec3 const ahead{{1, 0, 0}};
         std::vector<Vec3> at{corner};
-        Vec3 along{{1, 0, 0}};
-        while (at.size() < beads) {
+        Vec3 along = ahead;
+        for (int tries = 0; at.size() < beads; ++tries) {
+            if (tries == patience) at = {corner}, along = ahead, tries = 0;
             Vec3 const next = along + 0.8 * direction();
             Vec3 const step = (model_link / norm(next)) * next;
             Vec3 const there = at.back() + step;
@@ -116,6 +120,7 @@ class StartGenerator : public Generator {
                 continue;
             at.push_back(there);
             along = (1 / model_link) * step;
+            tries = 0;
         }
         return at;
     }

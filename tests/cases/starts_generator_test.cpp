@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <regex>
 
 #include "integrate/scene_beads.hpp"
 #include "mpi/communicator.hpp"
@@ -99,7 +100,7 @@ struct Relaxations {
 };
 
 /// Absurd as it is; after relaxation links have their lengths, nothing overlaps, and beads have
-/// moved as far as is said; or it is refused.
+/// moved as far as is said; or it is refused with the worst pair.
 void expect_mended_by_relaxation(Scene scene, Relaxations& relaxations) {
     scene.relax = true;
     std::unique_ptr<Communicator> const alone = serial_communicator();
@@ -108,6 +109,9 @@ void expect_mended_by_relaxation(Scene scene, Relaxations& relaxations) {
         relaxed = relax_start(scene, *alone);
     } catch (InputError const& error) {
         EXPECT_NE(std::string(error.what()).find("after relaxation ("), std::string::npos)
+            << error.what();
+        EXPECT_TRUE(std::regex_search(error.what(),
+                                      std::regex("(overlapping|nearest) beads?,? .*nm apart")))
             << error.what();
         ++relaxations.refused;
         return;
@@ -184,6 +188,18 @@ TEST(StartsAtRandom, EachDamageAlone) {
         expect_outcome(truth, given, damage.must, seed < seeds(8) / 4 ? &relaxations : nullptr);
     });
     EXPECT_GT(relaxations.mended, 9 * relaxations.refused);
+}
+
+/// A fold whose bead is caught between two others and their links: a balance of forces of 2e6
+/// kJ/mol/nm, from which no way leads downhill.
+TEST(StartsAtRandom, AFoldThatLocksABeadIsMended) {
+    StartGenerator generator(16);
+    Start const truth = generator.start();
+    Start given = truth;
+    fold_chain(given, generator);
+    Relaxations relaxations;
+    expect_outcome(truth, given, Becomes::absurd, &relaxations);
+    EXPECT_EQ(relaxations.mended, 1);
 }
 
 /// Wrapped afterwards: what is mended or refused stays so.

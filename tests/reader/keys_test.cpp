@@ -12,6 +12,7 @@
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
+#include "tests/frames/dcd_bytes.hpp"
 #include "tests/reader/refusal.hpp"
 #include "tests/reader/scene_files.hpp"
 
@@ -80,12 +81,33 @@ std::vector<std::string> const joints{
     "{type: revolute, axis: [0, 0, 1]}", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]]}",
     "{type: helical, axis: [0, 0, 1], pitch: 0.1}", "{type: spherical}"};
 
+/// Writes a DCD file of a frame of three beads on links and returns its path.
+std::string dcd_file() {
+    std::string const path = testing::TempDir() + "keys_test.dcd";
+    std::ofstream(path, std::ios::binary)
+        << dcd_bytes({{Vec3{{0, 0, 0}}, Vec3{{0.38, 0, 0}}, Vec3{{0.38, 0.38, 0}}}}, std::nullopt);
+    return path;
+}
+
+/// Regions and starts from frames.
+std::map<std::string, std::vector<Place>> places_of_starts() {
+    std::string const box = sequence + "box: {periodic: [30, 30, 30]}\n";
+    return {{"box.cubic", {{sequence + "box: {cubic: {}}\n", "box.cubic."}}},
+            {"place", {{box + "place: {}\n", "place."}}},
+            {"place.slab", {{box + "place: {slab: {thickness: 9}}\n", "place.slab."}}},
+            {"place.region",
+             {{box + "place: {region: {from: [0, 0, 0], to: [9, 9, 9]}}\n", "place.region."}}},
+            {"start", {{sequence + "start: {from: " + dcd_file() + "}\n", "start."}}}};
+}
+
 std::map<std::string, std::vector<Place>> places_of_sections() {
     std::string const openmm = sequence + "forces: {openmm: {builder: calvados2}}\n",
                       system = sequence + "forces: {openmm: {system: " CATENA_SOURCE_DIR
                                           "/README.md, map: {chain-1: [0, 2]}}}\n";
     return {{"scene", {{sequence, ""}}},
-            {"box", {{sequence + "box: {periodic: [30, 30, 30]}\n", "box."}}},
+            {"box",
+             {{sequence + "box: {periodic: [30, 30, 30]}\n", "box."},
+              {sequence + "box: {}\n", "box."}}},
             {"forces", {{sequence, "forces."}}},
             {"forces.drag", {{arm(joints[0]), "forces.drag."}}},
             {"forces.openmm", {{openmm, "forces.openmm."}, {system, "forces.openmm."}}},
@@ -172,6 +194,7 @@ std::map<std::string, std::vector<Place>> places_of_generators() {
 /// Scenes for every map that is a part of the scene itself.
 std::map<std::string, std::vector<Place>> all_places() {
     std::map<std::string, std::vector<Place>> places = places_of_sections();
+    places.merge(places_of_starts());
     places.merge(places_of_chains());
     places.merge(places_of_bodies());
     places.merge(places_of_generators());

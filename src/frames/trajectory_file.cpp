@@ -1,5 +1,5 @@
 // Implements the reader of trajectory.h5md by calls of the HDF5 C library.
-#include "analysis/trajectory_file.hpp"
+#include "frames/trajectory_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "io/output_file.hpp"
 #include "io/trial.hpp"
 
-namespace catena::analysis {
+namespace catena {
 namespace {
 
 using namespace hdf5;
@@ -248,4 +248,4 @@ void TrajectoryFile::read(std::size_t frame, Snapshot& snapshot) const {
                          name_, "leave it out with --first or --last");
 }
 
-}  // namespace catena::analysis
+}  // namespace catena

@@ -1,8 +1,8 @@
 // Replaces the reader of trajectories in a build without HDF5.
-#include "analysis/trajectory_file.hpp"
 #include "error.hpp"
+#include "frames/trajectory_file.hpp"
 
-namespace catena::analysis {
+namespace catena {
 
 struct TrajectoryFile::Series {};
 
@@ -13,4 +13,4 @@ TrajectoryFile::TrajectoryFile(std::string const& place) {
 TrajectoryFile::~TrajectoryFile() = default;
 void TrajectoryFile::read(std::size_t, Snapshot&) const {}
 
-}  // namespace catena::analysis
+}  // namespace catena

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "reader/chains.hpp"
+#include "place/draft.hpp"
 
 namespace catena::scene {
 

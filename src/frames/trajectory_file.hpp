@@ -9,7 +9,7 @@
 
 #include "io/output.hpp"
 
-namespace catena::analysis {
+namespace catena {
 
 /// Positions of one frame.
 struct Snapshot {
@@ -55,4 +55,4 @@ class TrajectoryFile {
     std::unique_ptr<Series> series_;
 };
 
-}  // namespace catena::analysis
+}  // namespace catena

@@ -1,7 +1,7 @@
 // Implements the placement of chains by their bounding spheres. All movable chains share one grid,
 // whose cells are as wide as the largest of them. If a box has too few clear cells, chains that may
 // be regrown are packed instead.
-#include "reader/placement.hpp"
+#include "place/placement.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,8 @@
 
 #include "generate/outline.hpp"
 #include "generate/place_grid.hpp"
-#include "reader/packing.hpp"
+#include "place/chain_motion.hpp"
+#include "place/packing.hpp"
 
 namespace catena::scene {
 
@@ -32,22 +33,6 @@ Sphere sphere_around(ChainSpec const& chain) {
     for (Vec3 const& p : outline.points)
         sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));
     return sphere;
-}
-
-/// Translates a chain, its anchors included.
-void move(ChainSpec& chain, Vec3 const& by) {
-    if (chain.tip_joint.anchor) chain.tip_joint.anchor = *chain.tip_joint.anchor + by;
-    for (Vec3& position : chain.beads.position) position = position + by;
-    for (Vec3& position : chain.linked.position) position = position + by;
-    bool const fixed = chain.base == Base::fixed;
-    if (chain.is_beads()) {
-        if (fixed) chain.beads.anchor = chain.beads.anchor + by;
-    } else if (chain.is_linked()) {
-        if (fixed) chain.linked.anchor = chain.linked.anchor + by;
-    } else {
-        Vec3& place = fixed ? chain.bodies.translation[0] : chain.bodies.free_position;
-        place = place + by;
-    }
 }
 
 /// True if the draft may be regrown.
@@ -113,7 +98,7 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
     }
     for (std::size_t i = 0; i < moving.size(); ++i) {
         refuse_far(*moving[i], {cells[i], spheres[i].radius, 0});
-        move(moving[i]->chain, cells[i] - spheres[i].centre);
+        translate(moving[i]->chain, cells[i] - spheres[i].centre);
     }
     return true;
 }

@@ -1,12 +1,12 @@
 // Implements the filling of slabs and droplets. The region is treated as a periodic box of its own
 // size, which also keeps chains apart across its sides.
-#include "reader/filling.hpp"
+#include "place/filling.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "reader/placement.hpp"
+#include "place/placement.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "reader/chains.hpp"
+#include "place/draft.hpp"
 #include "scene/node.hpp"
 
 namespace catena::scene {

@@ -1,0 +1,343 @@
+// Implements the start from a frame of another run.
+#include "place/start_frame.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "frames/chosen_frame.hpp"
+#include "generate/cells.hpp"
+#include "generate/conformation.hpp"
+#include "generate/start_fit.hpp"
+#include "generate/superposition.hpp"
+#include "io/printable.hpp"
+#include "keys/maps.hpp"
+#include "place/chain_motion.hpp"
+#include "scene/fields.hpp"
+#include "scene/files.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+/// Distance in nm between a domain and the frame's positions that is noted, and one that is
+/// refused.
+double constexpr noted_misfit = 0.02, largest_misfit = 0.5;
+/// Relative difference of box edges that is rounding, such as that of single precision.
+double constexpr same_edge = 1e-6;
+
+/// Residue names of the points known to OpenMM.
+std::vector<std::string> const& residues_of(ChainSpec const& chain) {
+    return chain.is_beads() ? chain.beads.residue : chain.carried().residue;
+}
+
+/// Range of the carried beads of a unit.
+std::pair<std::size_t, std::size_t> beads_of(LinkedArrays const& linked, std::size_t unit) {
+    return {static_cast<std::size_t>(linked.carried.offset[unit]),
+            static_cast<std::size_t>(linked.carried.offset[unit + 1])};
+}
+
+/// True if every body of a chain carries beads and is linked at its first and last one.
+bool is_linked_at_beads(LinkedArrays const& linked) {
+    for (std::size_t u = 0; u < linked.size(); ++u) {
+        auto const [first, end] = beads_of(linked, u);
+        if (first == end) return false;
+        std::vector<Vec3> const& at = linked.carried.position;
+        if (norm(linked.inboard[u] - at[first]) > same_edge ||
+            norm(linked.outboard[u] - at[end - 1]) > same_edge)
+            return false;
+    }
+    return true;
+}
+
+/// Beads of a chain, those of its rigid domains included, and the domains.
+struct Beads {
+    BeadArrays arrays;
+    std::vector<Domain> rigid;
+};
+
+/// Returns the beads of a chain at the frame's positions, with the lengths of their links.
+Beads beads_at(ChainSpec const& chain, std::span<Vec3 const> positions) {
+    if (chain.is_beads()) {
+        Beads beads{chain.beads, {}};
+        beads.arrays.position.assign(positions.begin(), positions.end());
+        return beads;
+    }
+    LinkedArrays const& linked = chain.linked;
+    Beads beads;
+    beads.arrays.anchor = linked.anchor;
+    beads.arrays.position.assign(positions.begin(), positions.end());
+    beads.arrays.mass = linked.carried.mass;
+    for (std::size_t u = 0; u < linked.size(); ++u) {
+        auto const [first, end] = beads_of(linked, u);
+        beads.arrays.length.push_back(linked.length[u]);
+        for (std::size_t b = first + 1; b < end; ++b)
+            beads.arrays.length.push_back(
+                norm(linked.carried.position[b] - linked.carried.position[b - 1]));
+        if (end > first + 1) beads.rigid.push_back({first, end - 1});
+    }
+    return beads;
+}
+
+/// Puts the chains of a scene where a frame has them.
+class FrameStart {
+  public:
+    FrameStart(std::vector<Draft>& drafts, Scene& scene, Node const& start)
+        : drafts_(drafts), scene_(scene), start_(start), fields_(start, keys::start) {
+        Node const* const number = fields_.find("frame");
+        bool const last = !number || (number->kind == Node::Kind::scalar && number->text == "last");
+        std::optional<std::int64_t> const chosen =
+            last ? std::nullopt : std::optional(whole(*number, 0));
+        Node const& from = fields_.need("from", "from: run-1");
+        frame_ = read_frame(resolved(text(from), scene.file), chosen);
+        frame_.file = shown_path(frame_.file);
+    }
+
+    void run(bool warm) {
+        compare();
+        place();
+        if (scene_.box && frame_.box) change_box();
+        bool thermal = false;
+        for (Draft& draft : drafts_) {
+            set_velocities(draft, warm);
+            thermal = thermal || draft.chain.velocities == StartVelocities::thermal;
+            draft.movable = false;
+        }
+        scene_.note(fmt::format(
+            "positions come from {}; its velocities are not used, chains start {}", frame_.text(),
+            thermal
+                ? fmt::format("with thermal ones drawn at {:.6g} K", scene_.dynamics.temperature)
+                : "at rest"));
+    }
+
+  private:
+    /// Throws InputError unless the frame has the scene's chains.
+    void compare() {
+        Node const& from = *fields_.find("from");
+        if (frame_.si != scene_.si)
+            fail(from,
+                 fmt::format("`{}` is in {}, the scene is not", frame_.file,
+                             frame_.si ? "SI units" : "nm and ps"),
+                 "give a trajectory in the scene's units");
+        std::size_t sites = 0;
+        for (Draft const& draft : drafts_) {
+            refuse_other_kind(draft);
+            sites += draft.chain.bead_count();
+        }
+        compare_chains(from);
+        if (sites != frame_.position.size())
+            fail(from,
+                 fmt::format("`{}` has {} beads, the scene has {}", frame_.file,
+                             frame_.position.size(), sites),
+                 "give a trajectory of the same chains");
+        compare_residues(from);
+    }
+    void refuse_other_kind(Draft const& draft) const {
+        ChainSpec const& chain = draft.chain;
+        if (chain.is_beads()) return;
+        if (!chain.is_linked())
+            fail(start_,
+                 fmt::format("chain `{}` has joints, and a frame gives positions of beads only",
+                             shown(chain.name)),
+                 "continue that run instead: `catena run --restart CHECKPOINT`");
+        if (!is_linked_at_beads(chain.linked))
+            fail(start_,
+                 fmt::format("bodies of chain `{}` are not linked at beads that they carry",
+                             shown(chain.name)),
+                 "continue that run instead: `catena run --restart CHECKPOINT`");
+        if (chain.tip == Tip::jointed)
+            fail(start_,
+                 fmt::format("chain `{}` has rigid domains and a tip that is not free",
+                             shown(chain.name)),
+                 "continue that run instead: `catena run --restart CHECKPOINT`");
+    }
+    void compare_chains(Node const& from) {
+        if (frame_.chains.empty()) return;
+        if (frame_.chains.size() != drafts_.size())
+            fail(from,
+                 fmt::format("`{}` has {} chains, the scene has {}", frame_.file,
+                             frame_.chains.size(), drafts_.size()),
+                 "give a trajectory of the same chains");
+        for (std::size_t c = 0; c < drafts_.size(); ++c) {
+            Topology::Chain const& other = frame_.chains[c];
+            ChainSpec const& chain = drafts_[c].chain;
+            if (other.count != static_cast<std::int64_t>(chain.bead_count()))
+                fail(from,
+                     fmt::format("chain {}, `{}`, has {} beads in `{}`, the scene's `{}` has {}",
+                                 c + 1, shown(printable(other.name)), other.count, frame_.file,
+                                 shown(chain.name), chain.bead_count()),
+                     "give a trajectory of the same chains in the same order");
+            if (other.name != chain.name && renamed_++ == 0)
+                first_renamed_ = fmt::format("`{}` for the scene's `{}`",
+                                             shown(printable(other.name)), shown(chain.name));
+        }
+        if (renamed_ > 0)
+            scene_.note(
+                fmt::format("`{}` names {} of {} chains otherwise, the first {}: their "
+                            "order counts",
+                            frame_.file, renamed_, drafts_.size(), first_renamed_));
+    }
+    void compare_residues(Node const& from) const {
+        std::size_t site = 0;
+        for (Draft const& draft : drafts_)
+            for (std::size_t k = 0; k < draft.chain.bead_count(); ++k, ++site) {
+                if (frame_.residue.empty()) continue;
+                std::string other = frame_.residue[site];
+                other.erase(std::remove(other.begin(), other.end(), ' '), other.end());
+                std::string const& own = residues_of(draft.chain)[k];
+                if (other == own || other == "UNK" || own == "UNK") continue;
+                fail(
+                    from,
+                    fmt::format("bead {} of chain `{}` is {} in the scene and {} in `{}`", k + 1,
+                                shown(draft.chain.name), own, shown(printable(other)), frame_.file),
+                    "give a trajectory of the same chains in the same order");
+            }
+    }
+
+    /// Places all chains, whole and with links of their lengths.
+    void place() {
+        bool const system = scene_.forces.openmm && !scene_.forces.openmm->system.empty();
+        StartFit fit(scene_, *fields_.find("from"), "give a frame of this model",
+                     system ? largest_soft_change : largest_link_change, largest_relaxed_change);
+        std::optional<Vec3> const& box = frame_.box ? frame_.box : scene_.box;
+        std::size_t site = 0;
+        for (Draft& draft : drafts_) {
+            std::size_t const count = draft.chain.bead_count();
+            place(draft.chain, std::span(frame_.position).subspan(site, count), fit, box);
+            site += count;
+        }
+        fit.note();
+        if (misfit_ > noted_misfit)
+            scene_.note(
+                fmt::format("rigid domains keep the scene's shape and were laid on the "
+                            "frame's positions: beads are up to {:.3g} nm from there ({})",
+                            misfit_, misfit_at_));
+    }
+    void place(ChainSpec& chain, std::span<Vec3 const> positions, StartFit& fit,
+               std::optional<Vec3> const& box) {
+        Beads beads = beads_at(chain, positions);
+        bool const link = chain.is_beads() && chain.tip == Tip::jointed;
+        StartFit::Chain const at{chain.name, beads.arrays, chain.base, beads.rigid,
+                                 link ? &chain.tip_joint : nullptr};
+        fit.make_whole(at, false, box);
+        if (std::int64_t const k = coincident_bead(beads.arrays, chain.base); k >= 0)
+            fail_at(*fields_.find("from"), "bead", k + 1,
+                    fmt::format("bead {} of chain `{}` coincides with the one before it", k + 1,
+                                shown(chain.name)),
+                    "give another frame");
+        std::vector<Superposition> const laid = lay_domains(chain, beads);
+        fit.fit(at);
+        if (chain.is_beads()) {
+            chain.beads.position = beads.arrays.position;
+            return;
+        }
+        LinkedArrays& linked = chain.linked;
+        for (std::size_t u = 0; u < linked.size(); ++u) {
+            Quat const& q = laid[u].rotation;
+            std::size_t const first = beads_of(linked, u).first;
+            linked.orientation[u] = {q.w, q.x, q.y, q.z};
+            linked.position[u] =
+                beads.arrays.position[first] - to_matrix(q) * linked.carried.position[first];
+        }
+    }
+    /// Lays the rigid domains of a chain on their beads and moves these onto them. Returns one
+    /// motion per unit; that of a single bead is no rotation.
+    std::vector<Superposition> lay_domains(ChainSpec const& chain, Beads& beads) {
+        LinkedArrays const& linked = chain.linked;
+        std::vector<Superposition> laid(linked.size());
+        for (std::size_t u = 0; u < linked.size(); ++u) {
+            auto const [first, end] = beads_of(linked, u);
+            if (end - first < 2) continue;
+            auto const shape = std::span(linked.carried.position).subspan(first, end - first);
+            laid[u] =
+                superpose(shape, std::span(beads.arrays.position).subspan(first, end - first));
+            if (laid[u].largest > misfit_) {
+                misfit_ = laid[u].largest;
+                misfit_at_ =
+                    fmt::format("beads {} to {} of chain `{}`", first + 1, end, shown(chain.name));
+            }
+            if (misfit_ > largest_misfit)
+                fail(*fields_.find("from"),
+                     fmt::format("{} form a rigid domain of another shape in the frame: beads are "
+                                 "up to {:.3g} nm from the scene's shape",
+                                 misfit_at_, misfit_),
+                     "give a frame of the same domains");
+            Mat3 const r = to_matrix(laid[u].rotation);
+            for (std::size_t b = first; b < end; ++b)
+                beads.arrays.position[b] = laid[u].shift + r * linked.carried.position[b];
+        }
+        return laid;
+    }
+
+    /// Brings whole chains into the frame's box, and that box into the middle of the scene's, along
+    /// the axes on which the edges differ.
+    void change_box() {
+        Vec3 const &old = *frame_.box, &now = *scene_.box;
+        std::array<bool, 3> differs{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            auto const axis = static_cast<int>(i);
+            differs[i] = std::abs(old[axis] - now[axis]) > same_edge * now[axis];
+        }
+        if (!differs[0] && !differs[1] && !differs[2]) return;
+        bool const free = std::all_of(drafts_.begin(), drafts_.end(),
+                                      [](Draft const& draft) { return is_rotatable(draft.chain); });
+        for (Draft& draft : drafts_) {
+            if (!free) break;
+            translate(draft.chain, shift_into(draft.chain, old, now, differs));
+        }
+        scene_.note(fmt::format(
+            "the frame's box is {:.6g} x {:.6g} x {:.6g} nm, the scene's {:.6g} x {:.6g} x {:.6g} "
+            "nm: {}",
+            old[0], old[1], old[2], now[0], now[1], now[2],
+            free
+                ? "along the axes that differ, whole chains are in the frame's box, which is in "
+                  "the middle of the scene's"
+                : "chains stay where the frame has them, because some are attached to the ground"));
+    }
+    static Vec3 shift_into(ChainSpec const& chain, Vec3 const& old, Vec3 const& now,
+                           std::array<bool, 3> const& differs) {
+        std::vector<Vec3> const& at =
+            chain.is_beads() ? chain.beads.position : chain.linked.position;
+        Vec3 centre = Vec3::zero(), shift = Vec3::zero();
+        for (Vec3 const& point : at)
+            centre = plus_scaled(centre, 1 / static_cast<double>(at.size()), point);
+        for (int i = 0; i < 3; ++i)
+            if (differs[static_cast<std::size_t>(i)])
+                shift[i] = 0.5 * (now[i] - old[i]) - old[i] * std::floor(centre[i] / old[i]);
+        return shift;
+    }
+
+    static void set_velocities(Draft& draft, bool warm) {
+        ChainSpec& chain = draft.chain;
+        Node const* const written = draft.node->find("velocities");
+        bool const zero = written && written->text == "zero";
+        chain.velocities = warm && !zero ? StartVelocities::thermal : StartVelocities::zero;
+        for (std::vector<Vec3>* const velocities :
+             {&chain.beads.velocity, &chain.linked.velocity, &chain.linked.omega})
+            std::fill(velocities->begin(), velocities->end(), Vec3::zero());
+    }
+
+    std::vector<Draft>& drafts_;
+    Scene& scene_;
+    Node const& start_;
+    Fields fields_;
+    ChosenFrame frame_;
+    /// Number of chains with other names, and the first of them.
+    std::size_t renamed_ = 0;
+    std::string first_renamed_;
+    /// Largest distance of a domain's bead from the frame's position, nm, and its domain.
+    double misfit_ = 0;
+    std::string misfit_at_;
+};
+
+}  // namespace
+
+void start_from_frame(std::vector<Draft>& drafts, Scene& scene, Node const& start, bool warm) {
+    FrameStart frame(drafts, scene, start);
+    forget_fits(scene);
+    frame.run(warm);
+}
+
+}  // namespace catena::scene
