@@ -14,7 +14,8 @@
 namespace catena {
 namespace {
 
-double constexpr least_gap = 1. / 3;  // of an edge: free of beads beside a slab or region
+double constexpr least_gap = 1. / 3;         // of an edge: free of beads beside a slab or region
+std::ptrdiff_t constexpr least_chains = 20;  // whose outermost beads tell a region's sides
 
 /// Part of the box that is not empty, along one axis.
 struct Occupied {
@@ -76,6 +77,7 @@ std::vector<ChainConcentration> concentrations_of(Scene const& scene) {
         auto const chains = std::span(scene.chains).subspan(first, count);
         std::string const begin = chains.front().name, end = chains.back().name;
         found.push_back(in_box(count == 1 ? begin : begin + " .. " + end, chains, *scene.box));
+        if (std::ssize(chains) < least_chains) continue;
         ChainConcentration part = in_part(found.back(), chains, *scene.box);
         if (!part.where.empty()) found.push_back(std::move(part));
     }

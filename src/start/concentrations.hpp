@@ -22,9 +22,9 @@ struct ChainConcentration {
 };
 
 /// Returns the concentration of each kind of chain in the periodic box. A second entry follows for
-/// chains that start in a part of the box only, such as a slab: the concentration between the
-/// outermost beads. All chains together come last if there are several kinds. Empty without a box,
-/// in SI units, and if no kind has several chains.
+/// 20 chains or more that start in a part of the box only, such as a slab: the concentration
+/// between the outermost beads. All chains together come last if there are several kinds. Empty
+/// without a box, in SI units, and if no kind has several chains.
 std::vector<ChainConcentration> concentrations_of(Scene const&);
 
 }  // namespace catena

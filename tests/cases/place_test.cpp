@@ -10,7 +10,7 @@ namespace {
 using Json = nlohmann::json;
 
 std::string const peptides =
-    "chains: [{name: p, count: 6, sequence: GSKEELRKALEDAGQYFKPSTWNHGMIVCD, model: calvados2}]\n"
+    "chains: [{name: p, count: 20, sequence: GSKEELRKALEDAGQYFKPSTWNHGMIVCD, model: calvados2}]\n"
     "forces: {openmm: {builder: calvados2, temperature: 293, ph: 7, platform: Reference}}\n"
     "dynamics: {integrator: g-baoab, step: 0.01, steps: 2, temperature: 293, friction: 0.01}\n"
     "output: {every: 1}\n";
@@ -29,12 +29,12 @@ TEST_F(PlacedSlab, IsCheckedWithItsConcentration) {
         write("s.yaml", "box: {periodic: [8, 8, 30]}\nplace: {slab: {axis: z, thickness: 8}}\n");
     Ended const e = catena({"check", scene});
     expect_good(e);
-    EXPECT_NE(e.out.find("6 chains (p-1 .. p-6) in the box: "), std::string::npos) << e.out;
-    EXPECT_NE(e.out.find("6 chains (p-1 .. p-6) in z from 1"), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find("20 chains (p-1 .. p-20) in the box: "), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find("20 chains (p-1 .. p-20) in z from 1"), std::string::npos) << e.out;
     Json const found = catena({"check", scene, "--json", "-"}).json()["concentrations"];
     ASSERT_EQ(found.size(), 2U);
-    EXPECT_NEAR(found[0]["mmol_per_l"].get<double>(), 6 * 1660.539 / 1920, 1e-3);
-    EXPECT_GE(found[1]["mmol_per_l"].get<double>(), 6 * 1660.539 / 512 - 1e-3);
+    EXPECT_NEAR(found[0]["mmol_per_l"].get<double>(), 20 * 1660.539 / 1920, 1e-3);
+    EXPECT_GE(found[1]["mmol_per_l"].get<double>(), 20 * 1660.539 / 512 - 1e-3);
     EXPECT_GT(found[1]["mg_per_ml"].get<double>(), 50);
 }
 
@@ -57,8 +57,8 @@ TEST_F(PlacedSlab, GoesOnInALongerBox) {
                 ranks = catena_on(2, {"check", second, "--json", "-"});
     EXPECT_EQ(ranks.status, 0) << ranks.err;
     EXPECT_EQ(alone.json()["scene_hash"], ranks.json()["scene_hash"]);
-    expect_refused(catena({"check", second, "--set", "chains[0].count=5"}), 2,
-                   "has 6 chains, the scene has 5");
+    expect_refused(catena({"check", second, "--set", "chains[0].count=19"}), 2,
+                   "has 20 chains, the scene has 19");
 }
 
 }  // namespace
