@@ -1,5 +1,6 @@
 // Chains, gaps, sites and domains of structures.
 #include <algorithm>
+#include <cmath>
 
 #include "tests/reader/scene_files.hpp"
 #include "tests/reader/structure_text.hpp"
@@ -179,6 +180,27 @@ TEST_F(Structures, beads_may_stand_at_centres_of_mass) {
     EXPECT_EQ(refusal_with("sites: com"),
               "atom N of residue GLY 1 of chain A of `a.pdb` has no known mass (line 1)" + at_ +
                   "give its element, or write `sites: ca`");
+}
+
+/// The CALVADOS package gives bonds of a domain's residues, and those to their neighbours, the
+/// distances of the structure.
+TEST_F(Structures, links_at_domains_keep_the_distances_of_centres_of_mass) {
+    std::vector<AtomLine> atoms;
+    for (int k = 0; k < 7; ++k) {
+        double const x = 3.8 * k, side = k % 2 == 0 ? 4.0 : -4.0;
+        atoms = atoms + std::vector<AtomLine>{{"CA", "GLY", "A", k + 1, x, 0, 0},
+                                              {"CB", "GLY", "A", k + 1, x, 0.3 * side, side}};
+    }
+    write("a.pdb", pdb_text(atoms));
+    LinkedArrays const com = with("sites: com, rigid: [[3, 5]]").chains.at(0).linked;
+    double const apart = 0.1 * std::sqrt(3.8 * 3.8 + 4 * 4 * (1 + 0.09));
+    EXPECT_NEAR(com.length[1], 0.38, 1e-12);
+    EXPECT_NEAR(com.length[2], apart, 1e-12);
+    EXPECT_NEAR(com.length[3], apart, 1e-12);
+    EXPECT_NEAR(com.length[4], 0.38, 1e-12);
+    LinkedArrays const given =
+        with("sites: com, rigid: [[3, 5]], links: as_given").chains.at(0).linked;
+    EXPECT_NEAR(given.length[1], apart, 1e-12);
 }
 
 TEST_F(Structures, domains_by_chain_and_residue_number) {
