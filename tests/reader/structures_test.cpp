@@ -238,8 +238,9 @@ TEST_F(Structures, a_domain_does_not_cross_a_gap) {
     std::vector<AtomLine> atoms = strand(gas_, "A", 1, 0) + strand(gas_, "A", 6, 15);
     write("a.pdb", pdb_text(atoms));
     EXPECT_EQ(refusal_with("gaps: split, rigid: [\"A:1-7\"]"),
-              "residues 1 to 7 of chain A do not lie in one chain (s.yaml: chains[0].rigid, line "
-              "1): end the domain where its chain ends");
+              "residues 1 to 7 of chain A do not lie in one chain (s.yaml: chains[0].rigid[0], "
+              "line 1): end the domain where its chain ends; for one body of both parts write a "
+              "list of ranges, [\"1-3\", ...]");
 }
 
 TEST_F(Structures, keys_of_structures_mean_nothing_for_sequences) {
