@@ -18,6 +18,7 @@ int execute(Session const& session, Answer const& answer) {
 }
 
 int execute(Session const& session, CheckRequest const& request) {
+    draw_domains(request, session.communicator());
     return session.conclude(
         check_scene(session.load(request.scene), session.communicator(), !request.json.empty()));
 }

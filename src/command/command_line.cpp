@@ -35,7 +35,7 @@ constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 struct Words {
     CommonOptions common;
     std::string scene, key, repeat, accelerations, steps, output, restart, name, sizes, joints,
-        loads, backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases;
+        loads, backends, figures, ranks, hosts, network, latency, bandwidth, suite, cases, picture;
     std::vector<std::string> scenes;
     SamplingOptionTexts sampling;
     AnalyseOptionTexts analyse;
@@ -137,6 +137,11 @@ void add_keys(CLI::App& app, Words& words) {
 void add_commands(CLI::App& app, Words& words) {
     CLI::App* command = app.add_subcommand("check", "validate a scene and describe it");
     add_scene(*command, words);
+    command
+        ->add_option("--picture", words.picture,
+                     "draw the rigid domains that `rigid: {pae: ...}` decides, with pLDDT and "
+                     "predicted errors, as SVG")
+        ->type_name("FILE");
     command->footer(
         "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml "
         "--set chains[0].count=10 --json -");
@@ -552,7 +557,14 @@ KeysRequest keys_request(Words const& words) {
 
 /// Returns the request of a command.
 Request request_of(std::string const& command, Words const& words) {
-    if (command == "check") return scene_request<CheckRequest>(words, command);
+    if (command == "check") {
+        auto request = scene_request<CheckRequest>(words, command);
+        request.picture = words.picture;
+        if (!words.picture.empty() && !words.picture.ends_with(".svg"))
+            throw InputError("the picture is an SVG file", "--picture " + words.picture,
+                             "name a file that ends in .svg");
+        return request;
+    }
     if (command == "plan") return plan_request(words);
     if (command == "run") return run_request(words);
     if (command == "report") return report_request(words);

@@ -12,6 +12,10 @@ namespace catena::command {
 /// is true if the outcome's JSON is needed; its list of chains takes about a kilobyte per chain.
 Outcome check_scene(Scene const&, Communicator const&, bool json);
 
+/// Writes the picture that `check --picture` asks for, on rank 0. Throws InputError if no chain of
+/// the scene decides its domains by a prediction. Collective.
+void draw_domains(CheckRequest const&, Communicator const&);
+
 /// Describes what will run, how long it takes, what is left out, and why.
 Outcome plan_scene(Scene const&, Communicator const&, PlanRequest const&);
 /// Measures every kind of chain on this machine and writes the times to the cache.

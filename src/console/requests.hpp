@@ -34,7 +34,10 @@ struct SceneOptions : CommonOptions {
     std::string scene;
 };
 /// Request of `catena check`.
-struct CheckRequest : SceneOptions {};
+struct CheckRequest : SceneOptions {
+    /// SVG file of the domains that predictions decide; empty for none.
+    std::string picture;
+};
 /// Request of `catena plan`. The scene may be missing if the machine is calibrated.
 struct PlanRequest : SceneOptions {
     bool explain = false, measure = false, calibrate = false;

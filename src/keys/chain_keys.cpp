@@ -59,8 +59,8 @@ constexpr Key chain_keys[] = {
      "A sequence without `positions` starts as a zig-zag, as a random walk that avoids itself, or "
      "from a PDB file.",
      "conformation: self_avoiding"},
-    {"rigid", "list of pairs or texts", "none", "",
-     "Residues from the first to the last of each entry become one rigid body.",
+    {"rigid", "list of ranges, or a map", "none", "",
+     "The residues of each range, or of each list of ranges, become one rigid body.",
      "rigid: [\"A:1-34\", [47, 80]]"},
     {"charge_termini", "`both`, `N`, `C`, `none`", "`forces.openmm.charge_termini`", "",
      "These ends are free termini: N adds +1 e and 2 amu, C adds -1 e and 16 amu.",
@@ -72,6 +72,26 @@ constexpr Key chain_keys[] = {
 constexpr Key conformation_keys[] = {
     {"pdb", "path", "required", "", "The chain starts from the positions of this PDB file.",
      "pdb: start.pdb"},
+};
+
+constexpr Key rigid_keys[] = {
+    {"domains", "path", "required without `pae`", "",
+     "The domains are those of this file of the CALVADOS package.", "domains: domains.yaml"},
+    {"protein", "text", "the one named as the chain, else the only one", "",
+     "The domains of this protein of the file count.", "protein: TIA1"},
+    {"pae", "path", "required without `domains`", "",
+     "The domains follow from this JSON file of predicted aligned errors and from the B factors of "
+     "`pdb`.",
+     "pae: AF-P12345-predicted_aligned_error.json"},
+    {"plddt", "number, 0 to 100", "70", "", "Residues of a lower pLDDT belong to no domain.",
+     "plddt: 80"},
+    {"max_pae", "number > 0", "5", "angstrom",
+     "Two parts of a domain have this mean error at most.", "max_pae: 8"},
+    {"min_length", "integer >= 3", "20", "", "Segments with fewer residues stay flexible.",
+     "min_length: 30"},
+    {"longest_loop", "integer >= 0", "10 with `pae`, 0 with `domains`", "",
+     "Up to this number of residues between two segments of one domain become part of it.",
+     "longest_loop: 40"},
 };
 
 constexpr Key tip_keys[] = {
@@ -152,6 +172,7 @@ constexpr Key model_keys[] = {
 constinit KeyMap const model{"chains.model", "chains[i].model", model_keys};
 constinit KeyMap const conformation{"chains.conformation", "chains[i].conformation",
                                     conformation_keys};
+constinit KeyMap const rigid{"chains.rigid", "chains[i].rigid", rigid_keys};
 constinit KeyMap const tip{"tip", "chains[i].tip", tip_keys};
 constinit KeyMap const tip_joint{"tip.joint", "chains[i].tip.joint", tip_joint_keys};
 constinit KeyMap const tip_ring{"tip.ring", "chains[i].tip.ring", ring_keys};

@@ -10,8 +10,9 @@ namespace catena::scene::keys {
 extern KeyMap const top, box, cubic, place, slab, region, start, forces, drag, openmm, dynamics,
     solver, output;
 
-/// An entry of `chains`, its start from a file, and its tip: a joint to the ground or to body 1.
-extern KeyMap const chain, model, conformation, tip, tip_joint, tip_ring;
+/// An entry of `chains`, its start from a file, its rigid domains, and its tip: a joint to the
+/// ground or to body 1.
+extern KeyMap const chain, model, conformation, rigid, tip, tip_joint, tip_ring;
 
 /// An entry of `bodies` that is a rigid body on a joint, and the maps that it may hold.
 extern KeyMap const body, wrench, carried_bead, joint, free_pose, free_rates, motion;

@@ -55,6 +55,18 @@ calvados2::ChargedTermini written_termini(ChainRequest const& request) {
     return {ends.first != 0 && protein.n, ends.second != 0 && protein.c};
 }
 
+/// Gives the links at the ends of rigid domains their lengths in the positions, as the bonds of the
+/// CALVADOS package have: centres of mass are not as far apart as alpha carbons.
+void keep_links_at_domains(BeadArrays& beads, std::vector<Domain> const& rigid) {
+    auto const keep = [&](std::size_t k) {
+        beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
+    };
+    for (Domain const& domain : rigid) {
+        if (domain.first > 0) keep(domain.first);
+        if (domain.last + 1 < beads.size()) keep(domain.last + 1);
+    }
+}
+
 /// True if the file numbers its residues from 1 on, or not at all.
 bool counts_from_one(PdbSites const& from) {
     for (std::size_t k = 0; k < from.sites.size(); ++k)
@@ -98,6 +110,16 @@ calvados2::ChargedTermini ChainRequest::termini() const {
         ends.c = ends.c && !part->cut_back;
     }
     return ends;
+}
+
+std::vector<calvados2::InnerTerminus> ChainRequest::inner_termini() const {
+    std::vector<calvados2::InnerTerminus> found;
+    if (part == nullptr) return found;
+    calvados2::ChargedTermini const charged = written_termini(*this);
+    for (ComplexEnd const& end : part->ends)
+        if (end.n ? charged.n : charged.c)
+            found.push_back({static_cast<std::int64_t>(end.bead), {end.n, !end.n}});
+    return found;
 }
 
 void ChainRequest::set_lengths(BeadArrays& beads, std::vector<double> lengths) const {
@@ -186,6 +208,7 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
         for (Domain const& domain : rigid)
             for (std::size_t k = domain.first + 1; k <= domain.last; ++k)
                 beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
+        if (part != nullptr && part->mass_centres) keep_links_at_domains(beads, rigid);
         fit.fit(chain);
     }
     fit.note();

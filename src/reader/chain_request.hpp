@@ -58,6 +58,8 @@ struct ChainRequest {
     /// Value of the chain's `charge_termini`, by default that of the whole scene for the ends that
     /// are amino acids. Ends that were cut at a gap are no termini.
     calvados2::ChargedTermini termini() const;
+    /// Charged termini of a complex, by bead; empty for other chains.
+    std::vector<calvados2::InnerTerminus> inner_termini() const;
     /// Sets the lengths of links, entry k that to bead k, and moves the beads accordingly. Where
     /// the System joins the two beads its length counts, unless the chain has `links: as_given`.
     void set_lengths(BeadArrays& beads, std::vector<double> lengths) const;
@@ -69,7 +71,7 @@ struct ChainRequest {
     std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
     /// Places the beads at `positions`, read from `from`, whole across the periodic box. Then fits
     /// positions to lengths or, with `links: as_given`, lengths to positions (StartFit). Rigid
-    /// domains keep their shape.
+    /// domains keep their shape, and with `sites: com` the links at their ends keep their lengths.
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
     /// Throws InputError if two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;

@@ -230,8 +230,14 @@ class ChainReader {
             request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
         bool const differ = request_.fields.find("charge_termini") || request_.is_cut() ||
                             request_.protein_ends != calvados2::ChargedTermini{};
-        if (openmm && !openmm->builder.empty() && differ)
-            openmm->map.push_back({name, as_numbers(request_.termini())});
+        if (!openmm || openmm->builder.empty()) return;
+        bool const complex = request_.part != nullptr && !request_.part->members.empty();
+        if (differ || complex)
+            openmm->map.push_back(
+                {name, as_numbers(complex ? calvados2::ChargedTermini{false, false}
+                                          : request_.termini())});
+        for (calvados2::InnerTerminus const& end : request_.inner_termini())
+            openmm->map.push_back({name, as_map_entry(end)});
     }
 
     /// Makes one copy with its tip and the kind of its start velocities.

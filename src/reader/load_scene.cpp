@@ -26,6 +26,7 @@
 #include "reader/imported.hpp"
 #include "reader/overrides.hpp"
 #include "reader/sections.hpp"
+#include "reader/structure_entry.hpp"
 #include "reader/system_links.hpp"
 #include "reader/validation.hpp"
 #include "scene/fields.hpp"
@@ -131,6 +132,26 @@ void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene&
 }
 
 }  // namespace
+
+std::vector<PredictedChain> load_predictions(std::string const& file,
+                                             std::vector<std::string> const& overrides) {
+    Node at;  // the file itself
+    at.text = file;
+    std::unique_ptr<Node> const root = scene::parse_document(scene::read_text_file(file, at), file);
+    for (std::string const& change : overrides) scene::apply_override(*root, change);
+    Fields const fields(*root, scene::keys::top);
+    Scene frame = read_frame(fields, file);
+    Node const* const chains = fields.find("chains");
+    std::vector<PredictedChain> made;
+    for (std::size_t i = 0; chains && i < scene::list(*chains).items.size(); ++i) {
+        Node const& entry = chains->items[i];
+        scene::ChainRequest request{Fields(entry, scene::keys::chain), entry, i, frame};
+        Node const* const pdb = request.fields.find("pdb");
+        auto const found = pdb ? scene::read_prediction(request, *pdb) : nullptr;
+        if (found) made.push_back({request.name(), found});
+    }
+    return made;
+}
 
 Scene load_scene(std::string const& file, std::vector<std::string> const& overrides) {
     Node at;  // the file itself

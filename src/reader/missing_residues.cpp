@@ -151,6 +151,7 @@ void number_sites(std::vector<PdbSite>& grown, PdbSite const& before, PdbSite co
     bool const counted = before.number && after.number && *after.number - *before.number == n + 1;
     for (std::int64_t i = 0; i < n; ++i) {
         PdbSite& site = grown[static_cast<std::size_t>(i)];
+        site.grown = true;
         site.number = before.number;
         if (counted) *site.number += i + 1;
         site.label =

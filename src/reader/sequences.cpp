@@ -6,6 +6,7 @@
 
 #include <map>
 
+#include "domains/rigid_entry.hpp"
 #include "generate/conformation.hpp"
 #include "generate/generators.hpp"
 #include "keys/maps.hpp"
@@ -76,13 +77,20 @@ Residues residues_named(PdbSites const& from, Node const& source, ResidueTable c
 double constexpr widest_exclusion = 1.5;
 
 /// Sets masses and names of the beads.
-void set_residues(BeadArrays& beads, Residues const& residues, calvados2::ChargedTermini termini) {
+void set_residues(BeadArrays& beads, Residues const& residues, ChainRequest const& request) {
     auto const n = static_cast<std::int64_t>(residues.size());
+    bool const complex = request.part != nullptr && !request.part->members.empty();
+    calvados2::ChargedTermini const termini =
+        complex ? calvados2::ChargedTermini{false, false} : request.termini();
     for (std::int64_t k = 0; k < n; ++k) {
         auto const at = static_cast<std::size_t>(k);
         beads.mass[at] = calvados2::bead_mass(*residues[at], {k, n, termini});
         beads.residue[at] = residues[at]->name;
     }
+    for (calvados2::InnerTerminus const& end : request.inner_termini())
+        beads.mass[static_cast<std::size_t>(end.bead)] +=
+            (end.charged.n ? calvados2::first_bead_mass : 0) +
+            (end.charged.c ? calvados2::last_bead_mass : 0);
 }
 
 /// Returns beads at their start positions; mass and residue of each bead are set later.
@@ -144,7 +152,10 @@ void read_rigid(ChainRequest& request, std::size_t residues) {
     if (!fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
         fail(*rigid, "rigid domains in a chain without positions",
              "give `pdb` or `positions`: they define the shape of the domains");
-    request.rigid = read_domains(*rigid, {residues});
+    RigidSource const source{{residues}, request.name(), request.scene.file};
+    RigidBodies const bodies = read_rigid_bodies(*rigid, source);
+    for (std::string const& note : bodies.notes) request.scene.note(note);
+    request.rigid = assemble(bodies.sets, source.numbers)[0].rigid;
 }
 
 }  // namespace
@@ -172,7 +183,7 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     hand_to_forces(request, residues);
     find_ends(request, residues);
     BeadArrays beads = at_start(request, link_lengths(residues), copy);
-    set_residues(beads, residues, request.termini());
+    set_residues(beads, residues, request);
     if (request.part != nullptr)
         request.place(beads, request.part->from.positions(), *request.fields.find("pdb"));
     return beads;

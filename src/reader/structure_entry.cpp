@@ -2,8 +2,10 @@
 #include "reader/structure_entry.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "reader/gaps.hpp"
 #include "reader/missing_residues.hpp"
@@ -126,6 +128,81 @@ void note_split(PdbSites const& from, std::vector<std::size_t> const& gaps, Scen
                     b.residue, b.label, norm(b.alpha - a.alpha)));
 }
 
+/// Longest text on the order of a complex's beads.
+std::size_t constexpr longest_order = 300;
+
+/// Chains that share a rigid body, as one part.
+class Complex {
+  public:
+    Complex(std::vector<StructurePart> const& parts, Assembly const& one,
+            ResidueNumbers const& numbers)
+        : parts_(parts), one_(one), numbers_(numbers) {}
+
+    StructurePart part() const {
+        StructurePart made = parts_[one_.chains[0]];
+        made.name.clear();
+        made.from.sites.clear();
+        made.from.chains[0].sequence = {};
+        made.rigid = one_.rigid;
+        made.cut_front = made.cut_back = false;
+        for (std::size_t const c : one_.chains) {
+            made.name += (made.name.empty() ? "" : "+") + parts_[c].name;
+            std::string const& own = parts_[c].from.chains[0].name;
+            made.members.push_back(own.empty() ? parts_[c].name : shown(own));
+        }
+        for (std::size_t const residue : one_.residues) add(residue, made);
+        made.order = order();
+        made.from.chains[0].first = 0;
+        made.from.chains[0].last = made.from.sites.size();
+        return made;
+    }
+
+  private:
+    void add(std::size_t residue, StructurePart& made) const {
+        std::size_t const chain = numbers_.chain_of(residue);
+        auto const [begin, end] = numbers_.range_of(chain);
+        if (residue == begin && !parts_[chain].cut_front)
+            made.ends.push_back({made.from.sites.size(), true});
+        if (residue + 1 == end && !parts_[chain].cut_back)
+            made.ends.push_back({made.from.sites.size(), false});
+        made.from.sites.push_back(parts_[chain].from.sites[residue - begin]);
+    }
+
+    /// Residues of one chain that follow each other in either direction.
+    std::string run(std::size_t first, std::size_t last) const {
+        std::string const chain = shown(parts_[numbers_.chain_of(first)].from.chains[0].name);
+        return fmt::format("{}{}{}{}", chain, chain.empty() ? "" : " ", numbers_.label(first),
+                           first == last ? "" : "-" + numbers_.label(last));
+    }
+    std::string order() const {
+        std::string text;
+        std::vector<std::size_t> const& all = one_.residues;
+        for (std::size_t begin = 0, end = 1; begin < all.size(); begin = end++) {
+            std::size_t const step = end < all.size() ? all[end] - all[begin] : 0;
+            bool const runs = step == 1 || step + 1 == 0;
+            while (runs && end < all.size() && all[end] - all[end - 1] == step &&
+                   numbers_.chain_of(all[end]) == numbers_.chain_of(all[begin]))
+                ++end;
+            text += (text.empty() ? "" : ", ") + run(all[begin], all[end - 1]);
+        }
+        return shown(text, longest_order);
+    }
+
+    std::vector<StructurePart> const& parts_;
+    Assembly const& one_;
+    ResidueNumbers const& numbers_;
+};
+
+/// Notes the chains of a complex and the order of its beads.
+void note_complex(StructurePart const& part, Scene& scene) {
+    std::set<std::string> const names(part.members.begin(), part.members.end());
+    scene.note(fmt::format(
+        "{} {} share a rigid body and are one chain, `{}`, of {} beads, in trajectory and "
+        "topology, too: {}",
+        names.size() == 1 ? "pieces of chain" : "chains", fmt::join(names, " and "),
+        shown(part.name), part.from.sites.size(), part.order));
+}
+
 /// Reads all chains of the file into parts.
 class StructureReader {
   public:
@@ -136,6 +213,25 @@ class StructureReader {
           all_(read_pdb(resolved(text(file), request.scene.file), file, keys_.choice)) {}
 
     std::vector<StructurePart> read() {
+        read_parts();
+        read_rigid();
+        for (StructurePart const& part : parts_)
+            if (!part.members.empty()) note_complex(part, request_.scene);
+        if (parts_.size() > 1) refuse_keys_of_one_chain();
+        return std::move(parts_);
+    }
+
+    /// The prediction behind `rigid`, if there is one.
+    std::shared_ptr<Prediction const> prediction() {
+        Node const* const rigid = request_.fields.find("rigid");
+        if (!rigid || rigid->kind != Node::Kind::map || !rigid->find("pae")) return nullptr;
+        read_parts();
+        return read_rigid_bodies(*rigid, rigid_source()).prediction;
+    }
+
+  private:
+    /// Reads the chosen chains, without their rigid bodies.
+    void read_parts() {
         for (std::string const& note : all_.notes) request_.scene.note(note);
         refuse_several(all_, keys_, file_);
         std::int64_t const particle = request_.particle;
@@ -144,12 +240,7 @@ class StructureReader {
             read_chain(c);
         }
         request_.particle = particle;
-        if (parts_.size() > 1) refuse_keys_of_one_chain();
-        read_rigid();
-        return std::move(parts_);
     }
-
-  private:
     void read_chain(std::size_t c) {
         PdbSites from = alone(all_, all_.chains[c]);
         StructurePart part;
@@ -179,58 +270,78 @@ class StructureReader {
                      "leave it out, or give each chain its own entry with `chain`");
     }
 
-    ResidueNumbers numbers() const {
-        ResidueNumbers numbers;
+    /// Residues by the file's numbers, or by bead numbers if the file has none.
+    RigidSource rigid_source() const {
+        RigidSource source{{}, request_.name(), request_.scene.file};
+        ResidueNumbers& numbers = source.numbers;
         bool all_numbered = true;
-        for (StructurePart const& part : parts_)
+        for (StructurePart const& part : parts_) {
+            numbers.begins.push_back(numbers.residues);
             for (PdbSite const& site : part.from.sites) {
                 ++numbers.residues;
                 all_numbered = all_numbered && site.number;
                 numbers.labels.push_back(site.label);
                 numbers.chains.push_back({part.from.chains[0].name, part.from.chains[0].label});
+                source.b_factors.push_back(site.b_factor);
+                source.grown.push_back(site.grown);
             }
+        }
         if (!all_numbered) numbers.labels = {}, numbers.chains = {};
-        return numbers;
+        return source;
     }
-    /// Reads `rigid` by the file's residue numbers, or by bead numbers if the file has none, and
-    /// gives each part its domains.
+    /// Gives each part its rigid bodies. Parts that share a body become one.
     void read_rigid() {
         Node const* const rigid = request_.fields.find("rigid");
         if (!rigid) return;
-        ResidueNumbers const known = numbers();
-        std::vector<Domain> const domains = read_domains(*rigid, known);
-        std::size_t begin = 0, taken = 0;
-        for (StructurePart& part : parts_) {
-            std::size_t const end = begin + part.from.sites.size();
-            for (; taken < domains.size() && domains[taken].first < end; ++taken) {
-                if (domains[taken].last >= end)
-                    fail(*rigid, domains[taken].name + " do not lie in one chain",
-                         "end the domain where its chain ends");
-                part.rigid.push_back(domains[taken]);
-                part.rigid.back().first -= begin;
-                part.rigid.back().last -= begin;
-            }
-            begin = end;
-        }
-        if (known.labels.empty())
+        RigidSource const source = rigid_source();
+        RigidBodies const bodies = read_rigid_bodies(*rigid, source);
+        for (std::string const& note : bodies.notes) request_.scene.note(note);
+        std::vector<StructurePart> made;
+        for (Assembly const& one : assemble(bodies.sets, source.numbers))
+            made.push_back(one.chains.size() == 1 ? alone_with(one)
+                                                  : Complex(parts_, one, source.numbers).part());
+        bool const together = made.size() == 1 && parts_.size() > 1;
+        parts_ = std::move(made);
+        if (together && (request_.fields.find("name") || all_.chains.size() == 1))
+            parts_[0].name = request_.name();
+        for (StructurePart const& part : parts_) check_complex(part, *rigid);
+        if (source.numbers.labels.empty())
             note_no_numbers();
-        else
-            note_numbering(known, domains);
+        else if (rigid->kind == Node::Kind::list)
+            note_numbering(source.numbers, bodies.sets);
+    }
+    /// The part of one chain with its rigid bodies.
+    StructurePart alone_with(Assembly const& one) {
+        StructurePart part = std::move(parts_[one.chains[0]]);
+        part.rigid = one.rigid;
+        return part;
+    }
+    /// Throws InputError for keys that a complex cannot have; notes its beads.
+    void check_complex(StructurePart const& part, Node const& rigid) const {
+        if (part.members.empty()) return;
+        if (request_.system)
+            fail(rigid,
+                 fmt::format("chains {} share a rigid body, and the beads of a System follow "
+                             "another order",
+                             fmt::join(part.members, " and ")),
+                 "give each chain bodies of its own, or the forces by `builder`");
+        for (char const* const key : {"base", "tip", "anchor"})
+            if (Node const* const here = request_.fields.find(key))
+                fail(*here, fmt::format("key `{}` for chains that share a rigid body", key),
+                     "leave it out");
     }
     /// Notes which beads `rigid` means if the file's numbers differ from those of the beads.
     /// Domains that name their chain are plain enough.
-    void note_numbering(ResidueNumbers const& known, std::vector<Domain> const& domains) const {
-        bool const plain = std::all_of(domains.begin(), domains.end(), [](Domain const& domain) {
-            return domain.name.find(" of chain ") != std::string::npos;
-        });
-        bool from_one = true;
-        for (std::size_t k = 0; k < known.labels.size(); ++k)
-            from_one = from_one && known.labels[k] == std::to_string(k + 1);
-        if (plain || from_one) return;
+    void note_numbering(ResidueNumbers const& known, std::vector<RigidSet> const& sets) const {
+        bool plain = true;
         std::string list;
-        for (Domain const& domain : domains)
-            list += fmt::format("{}{} are beads {} to {}", list.empty() ? "" : ", ", domain.name,
-                                domain.first + 1, domain.last + 1);
+        for (RigidSet const& set : sets)
+            for (Domain const& range : set.ranges) {
+                plain = plain && range.name.find(" of chain ") != std::string::npos;
+                list += fmt::format("{}{} are beads {} to {}", list.empty() ? "" : ", ", range.name,
+                                    range.first + 1, range.last + 1);
+            }
+        if (plain || known.count_from_one()) return;
         request_.scene.note(
             fmt::format("`rigid` means the residue numbers of `{}`: {}", all_.file, list));
     }
@@ -256,6 +367,10 @@ class StructureReader {
 
 std::vector<StructurePart> read_structure(ChainRequest& request, Node const& file) {
     return StructureReader(request, file).read();
+}
+
+std::shared_ptr<Prediction const> read_prediction(ChainRequest& request, Node const& file) {
+    return StructureReader(request, file).prediction();
 }
 
 }  // namespace catena::scene

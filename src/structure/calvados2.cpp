@@ -32,9 +32,29 @@ ResidueType const* ForceResidues::find(std::string_view name) const {
 
 namespace calvados2 {
 
+namespace {
+/// Numbers of entries for inner termini: the bead is counted from `first_inner` on.
+std::int64_t constexpr first_inner = 2, n_flag = 1, c_flag = 2;
+}  // namespace
+
+std::pair<std::int64_t, std::int64_t> as_map_entry(InnerTerminus const& end) {
+    return {first_inner + end.bead, (end.charged.n ? n_flag : 0) + (end.charged.c ? c_flag : 0)};
+}
+
 ChainEnds::ChainEnds(OpenMmSpec const& spec) {
     for (auto const& [name, charged] : spec.map)
-        ends_[name] = {charged.first != 0, charged.second != 0};
+        if (charged.first >= first_inner)
+            inner_[name].push_back(
+                {charged.first - first_inner,
+                 {(charged.second & n_flag) != 0, (charged.second & c_flag) != 0}});
+        else
+            ends_[name] = {charged.first != 0, charged.second != 0};
+}
+
+std::vector<InnerTerminus> const& ChainEnds::inside(std::string const& chain) const {
+    static std::vector<InnerTerminus> const none;
+    auto const found = inner_.find(chain);
+    return found == inner_.end() ? none : found->second;
 }
 
 ChargedTermini ChainEnds::of(std::string const& chain) const {

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -57,17 +58,28 @@ struct ChargedTermini {
     bool n = true, c = true;
     bool operator==(ChargedTermini const&) const = default;
 };
+/// A charged terminus of a complex, at any bead of its chain.
+struct InnerTerminus {
+    std::int64_t bead;
+    ChargedTermini charged;
+};
+/// Entry of OpenMmSpec::map for such a terminus. A first number from 2 on marks it.
+std::pair<std::int64_t, std::int64_t> as_map_entry(InnerTerminus const&);
+
 /// Charged termini of all chains, read from OpenMmSpec::map of a builder. The map holds 1 or 0 for
 /// the first and the last bead, by the chain's name. The name "" stands for chains without an
-/// entry. Without any entry both ends are charged.
+/// entry. Without any entry both ends are charged. Further entries of a name are inner termini.
 class ChainEnds {
   public:
     explicit ChainEnds(OpenMmSpec const&);
     /// Charged termini of the chain of that name.
     ChargedTermini of(std::string const& chain) const;
+    /// Further termini of the chain of that name.
+    std::vector<InnerTerminus> const& inside(std::string const& chain) const;
 
   private:
     std::unordered_map<std::string, ChargedTermini> ends_;
+    std::unordered_map<std::string, std::vector<InnerTerminus>> inner_;
 };
 
 /// Position of a bead in its chain: bead k (from 0) of a chain of n residues.

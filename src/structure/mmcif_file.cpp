@@ -88,14 +88,15 @@ enum Item : std::size_t {
     y,
     z,
     occupancy,
+    b_factor,
     model_of,
     items
 };
 constexpr std::array<char const*, items> item_names = {
-    "group_PDB",     "type_symbol",  "label_atom_id",     "auth_atom_id", "label_alt_id",
-    "label_comp_id", "auth_comp_id", "label_asym_id",     "auth_asym_id", "label_entity_id",
-    "label_seq_id",  "auth_seq_id",  "pdbx_PDB_ins_code", "Cartn_x",      "Cartn_y",
-    "Cartn_z",       "occupancy",    "pdbx_PDB_model_num"};
+    "group_PDB",     "type_symbol",  "label_atom_id",     "auth_atom_id",      "label_alt_id",
+    "label_comp_id", "auth_comp_id", "label_asym_id",     "auth_asym_id",      "label_entity_id",
+    "label_seq_id",  "auth_seq_id",  "pdbx_PDB_ins_code", "Cartn_x",           "Cartn_y",
+    "Cartn_z",       "occupancy",    "B_iso_or_equiv",    "pdbx_PDB_model_num"};
 using AtomTable = Category<items>;
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
@@ -173,6 +174,8 @@ class AtomRows {
                 coordinate(table_.at(row, x + static_cast<std::size_t>(i)), path_, row);
         if (double value = 1; parse_number(table_.at(row, occupancy), value) == NumberFault::none)
             atom.occupancy = value;
+        if (double value = 0; parse_number(table_.at(row, b_factor), value) == NumberFault::none)
+            atom.b_factor = value;
         return atom;
     }
     int part_of(std::string_view label) {

@@ -117,6 +117,8 @@ PdbAtom read_atom(std::string_view line, std::string const& path, int n) {
         atom.position[static_cast<int>(i)] = coordinate(line, 31 + 8 * i, path, n);
     if (double occupancy = 1; parse_number(columns(line, 55, 6), occupancy) == NumberFault::none)
         atom.occupancy = occupancy;
+    if (double factor = 0; parse_number(columns(line, 61, 6), factor) == NumberFault::none)
+        atom.b_factor = factor;
     return atom;
 }
 

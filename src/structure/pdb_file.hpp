@@ -32,7 +32,9 @@ struct PdbAtom {
     /// Position of the residue in the chain's sequence, from 1 (`label_seq_id`).
     std::optional<std::int64_t> sequence_index = {};
     double occupancy = 1;  // 1 if the file gives none
-    Vec3 position{};       // angstrom
+    /// B factor, angstrom^2, or the pLDDT of a predicted structure; nothing if the file gives none.
+    std::optional<double> b_factor = {};
+    Vec3 position{};  // angstrom
 
     /// True if both atoms belong to one chain: the same letter and segment, and no end of a chain
     /// between them.

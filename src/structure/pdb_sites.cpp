@@ -188,6 +188,7 @@ class Selection {
                               residue_number(atom.number), beside(residue, atom, "C"),
                               beside(residue, atom, "N")});
         made.sites.back().sequence_index = atom.sequence_index;
+        made.sites.back().b_factor = atom.b_factor;
         if (mass_centres_) made.sites.back().position = mass_centre(residue, atom);
         from_.push_back(&atom);
     }

@@ -24,6 +24,10 @@ struct PdbSite {
     Vec3 alpha = position;
     /// Position in the chain's sequence, from 1, if the file gives it.
     std::optional<std::int64_t> sequence_index{};
+    /// B factor of the site's atom, or its pLDDT in a predicted structure.
+    std::optional<double> b_factor{};
+    /// True for a missing residue that was grown.
+    bool grown = false;
 };
 
 /// Consecutive sites of one chain.

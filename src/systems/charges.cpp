@@ -62,6 +62,10 @@ std::vector<double> bead_charges(OpenMmSpec const& spec, ForceResidues const& re
             charges.push_back(type ? calvados2::bead_charge(*type, {k, length, termini}, spec.ph)
                                    : 0);
         }
+        for (auto const& [bead, charged] : ends.inside(beads.chain_name[c]))
+            charges[static_cast<std::size_t>(first + bead)] +=
+                (charged.n ? calvados2::first_bead_charge : 0) +
+                (charged.c ? calvados2::last_bead_charge : 0);
     }
     return charges;
 }

@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <fstream>
 
 #include "tests/command/program.hpp"
+#include "tests/domains/helix.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace catena::test {
@@ -43,6 +47,54 @@ TEST(Check, TheLogGoesToStandardError) {
     Ended const e = catena({"check", input("arm.yaml"), "--log-level", "debug"});
     EXPECT_EQ(e.status, 0);
     EXPECT_NE(e.err.find("catena: debug: "), std::string::npos) << e.err;
+}
+
+/// A predicted structure of two domains and a loop of 12 residues between them.
+void write_prediction(TemporaryFolder const& folder, double between) {
+    std::vector<AtomLine> atoms = helix(62, "A");
+    std::string rows;
+    for (int i = 0; i < 62; ++i) {
+        auto const part = [](int k) { return k < 25 ? 0 : k < 37 ? 1 : 2; };
+        atoms[static_cast<std::size_t>(i)].b_factor = part(i) == 1 ? 40 : 90;
+        std::vector<double> row;
+        for (int j = 0; j < 62; ++j) row.push_back(part(i) == part(j) ? 2 : between);
+        rows += fmt::format("{}[{}]", i == 0 ? "" : ", ", fmt::join(row, ", "));
+    }
+    std::ofstream(folder / "a.pdb") << pdb_text(atoms);
+    std::ofstream(folder / "pae.json") << "[{\"predicted_aligned_error\": [" << rows << "]}]";
+    std::ofstream(folder / "s.yaml")
+        << "chains: [{name: p, pdb: a.pdb, model: calvados2, rigid: {pae: pae.json}}]\n";
+}
+
+TEST(Check, SaysAndDrawsTheDomainsOfAPrediction) {
+    TemporaryFolder const folder;
+    write_prediction(folder, 20);
+    Ended const e = catena({"check", "s.yaml", "--picture", "domains.svg"}, folder.path());
+    expect_good(e);
+    EXPECT_NE(e.out.find("chain `p`: 2 rigid domains by `pae.json`, pLDDT 70 and more, errors of 5 "
+                         "angstrom at most: residues 1-25, 38-62"),
+              std::string::npos)
+        << e.out;
+    std::ifstream svg(folder / "domains.svg");
+    std::string const text(std::istreambuf_iterator<char>(svg), {});
+    EXPECT_NE(text.find("Rigid domains of chain p"), std::string::npos);
+}
+
+/// A loop of a domain is refused; the picture shows it all the same.
+TEST(Check, DrawsDomainsThatItRefuses) {
+    TemporaryFolder const folder;
+    write_prediction(folder, 3);
+    Ended const e = catena({"check", "s.yaml", "--picture", "domains.svg"}, folder.path());
+    expect_refused(e, 2, "residues 26 to 37 would be a flexible loop");
+    EXPECT_TRUE(std::filesystem::exists(folder / "domains.svg"));
+}
+
+TEST(Check, DrawsNoPictureWithoutAPrediction) {
+    TemporaryFolder const folder;
+    expect_refused(catena({"check", input("arm.yaml"), "--picture", folder / "a.svg"}), 2,
+                   "no chain of the scene decides its rigid domains by a prediction");
+    expect_refused(catena({"check", input("arm.yaml"), "--picture", folder / "a.png"}), 2,
+                   "the picture is an SVG file");
 }
 
 TEST(Plan, SaysWhatRunsAndWhatIsLeftOut) {

@@ -1,5 +1,6 @@
 // The declared keys are those that the reader reads, with the values and defaults that it has.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -12,6 +13,7 @@
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
+#include "tests/domains/helix.hpp"
 #include "tests/frames/dcd_bytes.hpp"
 #include "tests/reader/refusal.hpp"
 #include "tests/reader/scene_files.hpp"
@@ -76,6 +78,19 @@ std::string pdb_file() {
     return path;
 }
 
+/// Writes a predicted helix with its errors. Returns a chain of it without the end of its `rigid`.
+std::string prediction() {
+    std::string const name = testing::TempDir() + "keys_test_prediction";
+    std::vector<AtomLine> atoms = helix(25, "A");
+    for (AtomLine& each : atoms) each.b_factor = 90;
+    std::ofstream(name + ".pdb") << pdb_text(atoms);
+    std::vector<int> const row(25, 1);
+    std::ofstream(name + ".json") << fmt::format(
+        "{{\"pae\": [{}]}}",
+        fmt::join(std::vector<std::string>(25, fmt::format("[{}]", fmt::join(row, ", "))), ", "));
+    return "chains: [{model: calvados2, pdb: " + name + ".pdb, rigid: {pae: " + name + ".json";
+}
+
 /// Types of joints that differ in their keys.
 std::vector<std::string> const joints{
     "{type: revolute, axis: [0, 0, 1]}", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]]}",
@@ -132,6 +147,10 @@ std::map<std::string, std::vector<Place>> places_of_chains() {
         {"chains", kinds},
         {"chains.model", {{"chains: [{sequence: GGG, model: {}}]\n", "chains[0].model."}}},
         {"chains.conformation", {{sequence, "chains[0].conformation."}}},
+        {"chains.rigid",
+         {{prediction() + "}}]\n", "chains[0].rigid."},
+          {start + "pdb: " + pdb_file() + ", rigid: {domains: lost.yaml}}]\n",
+           "chains[0].rigid."}}},
         {"tip", {{arm(joints[0]), "chains[0].tip."}}}};
     for (std::string const& joint : joints) {
         std::string const at = joint.substr(0, joint.size() - 1) + ", translation: [1, 0, 0]}}";

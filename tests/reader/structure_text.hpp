@@ -20,6 +20,7 @@ struct AtomLine {
     /// True if a TER record follows.
     bool ends_chain = false;
     int model = 1;
+    double b_factor = 0;
 };
 
 /// A straight piece of a chain along x: one CA atom per residue, 3.8 angstrom apart.
@@ -49,7 +50,7 @@ inline std::string pdb_text(std::vector<AtomLine> const& atoms) {
             "{:6}{:5} {:4}{}{:3} {:1}{:4}{}   {:8.3f}{:8.3f}{:8.3f}{:6.2f}{:6.2f}"
             "          {:>2}\n",
             a.het ? "HETATM" : "ATOM", 1, name, a.alternate, a.residue, a.chain, a.number,
-            a.insertion, a.x, a.y, a.z, a.occupancy, 0.0, a.element);
+            a.insertion, a.x, a.y, a.z, a.occupancy, a.b_factor, a.element);
         if (a.ends_chain) text += "TER\n";
     }
     return text;
@@ -73,7 +74,8 @@ inline std::string cif_text(std::vector<AtomLine> const& atoms,
     for (char const* const item :
          {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id",
           "label_asym_id", "label_entity_id", "label_seq_id", "pdbx_PDB_ins_code", "Cartn_x",
-          "Cartn_y", "Cartn_z", "occupancy", "auth_seq_id", "auth_asym_id", "pdbx_PDB_model_num"})
+          "Cartn_y", "Cartn_z", "occupancy", "B_iso_or_equiv", "auth_seq_id", "auth_asym_id",
+          "pdbx_PDB_model_num"})
         text += fmt::format("_atom_site.{}\n", item);
     char label = 'P';
     std::string chain = atoms.empty() ? "" : atoms[0].chain;
@@ -91,10 +93,11 @@ inline std::string cif_text(std::vector<AtomLine> const& atoms,
         ended = a.ends_chain;
         auto const or_null = [](char c, char null) { return c == ' ' ? null : c; };
         text += fmt::format(
-            "{} {} {} \"{}\" {} '{}' {} 1 {} {} {:.3f} {:.3f} {:.3f} {:.2f} {} {} {}\n",
+            "{} {} {} \"{}\" {} '{}' {} 1 {} {} {:.3f} {:.3f} {:.3f} {:.2f} {:.2f} {} {} {}\n",
             a.het ? "HETATM" : "ATOM", k + 1, a.element, a.name, or_null(a.alternate, '.'),
             a.residue, label, sequence.empty() ? "." : std::to_string(a.number),
-            or_null(a.insertion, '?'), a.x, a.y, a.z, a.occupancy, a.number, a.chain, a.model);
+            or_null(a.insertion, '?'), a.x, a.y, a.z, a.occupancy, a.b_factor, a.number, a.chain,
+            a.model);
     }
     return text;
 }

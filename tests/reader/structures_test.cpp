@@ -1,5 +1,6 @@
 // Chains, gaps, sites and domains of structures.
 #include <algorithm>
+#include <cmath>
 
 #include "tests/reader/scene_files.hpp"
 #include "tests/reader/structure_text.hpp"
@@ -181,6 +182,27 @@ TEST_F(Structures, beads_may_stand_at_centres_of_mass) {
                   "give its element, or write `sites: ca`");
 }
 
+/// The CALVADOS package gives bonds of a domain's residues, and those to their neighbours, the
+/// distances of the structure.
+TEST_F(Structures, links_at_domains_keep_the_distances_of_centres_of_mass) {
+    std::vector<AtomLine> atoms;
+    for (int k = 0; k < 7; ++k) {
+        double const x = 3.8 * k, side = k % 2 == 0 ? 4.0 : -4.0;
+        atoms = atoms + std::vector<AtomLine>{{"CA", "GLY", "A", k + 1, x, 0, 0},
+                                              {"CB", "GLY", "A", k + 1, x, 0.3 * side, side}};
+    }
+    write("a.pdb", pdb_text(atoms));
+    LinkedArrays const com = with("sites: com, rigid: [[3, 5]]").chains.at(0).linked;
+    double const apart = 0.1 * std::sqrt(3.8 * 3.8 + 4 * 4 * (1 + 0.09));
+    EXPECT_NEAR(com.length[1], 0.38, 1e-12);
+    EXPECT_NEAR(com.length[2], apart, 1e-12);
+    EXPECT_NEAR(com.length[3], apart, 1e-12);
+    EXPECT_NEAR(com.length[4], 0.38, 1e-12);
+    LinkedArrays const given =
+        with("sites: com, rigid: [[3, 5]], links: as_given").chains.at(0).linked;
+    EXPECT_NEAR(given.length[1], apart, 1e-12);
+}
+
 TEST_F(Structures, domains_by_chain_and_residue_number) {
     auto const bent = [](std::string const& chain, int number, double y) {
         std::vector<AtomLine> atoms = strand(Words(6, "GLY"), chain, number, 0, y);
@@ -216,8 +238,9 @@ TEST_F(Structures, a_domain_does_not_cross_a_gap) {
     std::vector<AtomLine> atoms = strand(gas_, "A", 1, 0) + strand(gas_, "A", 6, 15);
     write("a.pdb", pdb_text(atoms));
     EXPECT_EQ(refusal_with("gaps: split, rigid: [\"A:1-7\"]"),
-              "residues 1 to 7 of chain A do not lie in one chain (s.yaml: chains[0].rigid, line "
-              "1): end the domain where its chain ends");
+              "residues 1 to 7 of chain A do not lie in one chain (s.yaml: chains[0].rigid[0], "
+              "line 1): end the domain where its chain ends; for one body of both parts write a "
+              "list of ranges, [\"1-3\", ...]");
 }
 
 TEST_F(Structures, keys_of_structures_mean_nothing_for_sequences) {

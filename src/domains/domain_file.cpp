@@ -1,0 +1,65 @@
+// Implements the reader of domain files.
+#include "domains/domain_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/fields.hpp"
+#include "scene/files.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+char const* const form =
+    "write `NAME: [[first, last], ...]`, with residues counted from 1 along the chain";
+
+/// The protein's entry in the file. Throws InputError if no name decides.
+Node const& protein_in(Node const& file, Node const& at, std::string const& wanted,
+                       std::string const& chain) {
+    if (Node const* const named = file.find(wanted.empty() ? chain : wanted)) return *named;
+    if (wanted.empty() && file.items.size() == 1) return file.items[0];
+    std::vector<std::string_view> names;
+    for (Node const& item : file.items) names.push_back(item.key);
+    if (names.size() > 8) names.resize(8);
+    fail(at,
+         fmt::format("`{}` has no protein `{}`", shown_path(file.text),
+                     shown(wanted.empty() ? chain : wanted)),
+         fmt::format("name one as `protein`: {}{}", joined(names),
+                     file.items.size() > 8 ? ", ..." : ""));
+}
+
+std::array<std::int64_t, 2> segment_of(Node const& node) {
+    if (node.kind != Node::Kind::list || node.items.size() != 2)
+        fail(node, describe(node) + " is not a pair of residues", form);
+    std::array<std::int64_t, 2> const pair{whole(node.items[0], 1), whole(node.items[1], 1)};
+    if (pair[1] < pair[0])
+        fail(node, fmt::format("the last residue, {}, precedes the first, {}", pair[1], pair[0]),
+             form);
+    return pair;
+}
+
+DomainSegments domain_of(Node const& node) {
+    bool const several = node.kind == Node::Kind::list && !node.items.empty() &&
+                         node.items[0].kind == Node::Kind::list;
+    if (!several) return {segment_of(node)};
+    DomainSegments segments;
+    for (Node const& item : node.items) segments.push_back(segment_of(item));
+    return segments;
+}
+
+}  // namespace
+
+FileDomains read_domain_file(std::string const& path, Node const& at, std::string const& wanted,
+                             std::string const& chain) {
+    auto const file = parse_document(read_text_file(path, at), path);
+    Node const& protein = protein_in(*file, at, wanted, chain);
+    FileDomains made{protein.key, {}};
+    if (protein.kind != Node::Kind::list || protein.items.empty())
+        fail(protein, fmt::format("protein `{}` has no list of domains", shown(protein.key)), form);
+    for (Node const& item : protein.items) made.domains.push_back(domain_of(item));
+    return made;
+}
+
+}  // namespace catena::scene

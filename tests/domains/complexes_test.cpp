@@ -1,0 +1,156 @@
+// Scenes with rigid bodies across chains.
+#include "structure/calvados2.hpp"
+#include "tests/domains/helix.hpp"
+#include "tests/reader/scene_files.hpp"
+
+namespace catena::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class Complexes : public SceneFiles {
+  protected:
+    Complexes() { write("a.pdb", pdb_text(helix(12, "A") + helix(10, "B", 1, 12))); }
+    static std::string scene_of(std::string const& rigid, std::string const& more = "") {
+        return "chains: [{pdb: a.pdb, model: calvados2, chain: all, rigid: " + rigid + more + "}]";
+    }
+    static std::string const builder_;
+};
+
+std::string const Complexes::builder_ =
+    "\nforces: {openmm: {builder: calvados2}}\ndynamics: {integrator: g-baoab, step: 0.01, "
+    "temperature: 300}";
+
+TEST_F(Complexes, are_one_chain_whose_body_carries_beads_of_both) {
+    Scene const s = read(scene_of("[[\"A:5-12\", \"B:1-6\"]]"));
+    ASSERT_EQ(s.chains.size(), 1u);
+    EXPECT_EQ(s.chains[0].name, "A+B");
+    LinkedArrays const& l = s.chains[0].linked;
+    EXPECT_EQ(l.carried.offset, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 18, 19, 20, 21, 22}));
+    EXPECT_EQ(notes_of(s),
+              Words{"chains A and B share a rigid body and are one chain, `A+B`, of 22 beads, in "
+                    "trajectory and topology, too: A 1-12, B 1-10"});
+    // The body has the mass of its beads, and both inner ends are termini.
+    double const gly = find_calvados2('G')->mass;
+    EXPECT_NEAR(l.mass[4], 14 * gly + 2 + 16, 1e-9);
+    EXPECT_NEAR(l.mass[0], gly + 2, 1e-9);
+    EXPECT_NEAR(l.mass[8], gly + 16, 1e-9);
+    // Links join the chains where they leave the body.
+    auto const from = [&](std::size_t body, std::size_t bead) {
+        return l.carried.position[static_cast<std::size_t>(l.carried.offset[body]) + bead];
+    };
+    EXPECT_NEAR(norm(l.inboard[4] - from(4, 0)), 0, 1e-12);
+    EXPECT_NEAR(norm(l.outboard[4] - from(4, 13)), 0, 1e-12);
+    for (std::size_t k = 1; k < l.size(); ++k) EXPECT_NEAR(l.length[k], 0.38, 1e-9) << k;
+}
+
+TEST_F(Complexes, keep_all_distances_of_the_structure) {
+    Scene const apart =
+        read("chains: [{pdb: a.pdb, model: calvados2, chain: all, links: as_given}]");
+    LinkedArrays const l = read(scene_of("[[\"A:5-12\", \"B:1-6\"]]")).chains.at(0).linked;
+    std::vector<Vec3> expected(apart.chains[0].beads.position.begin() + 4,
+                               apart.chains[0].beads.position.end());
+    expected.insert(expected.end(), apart.chains[1].beads.position.begin(),
+                    apart.chains[1].beads.position.begin() + 6);
+    ASSERT_EQ(expected.size(), 14u);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_NEAR(norm(l.carried.position[4 + i] - l.carried.position[4 + j]),
+                        norm(expected[i] - expected[j]), 1e-12);
+}
+
+TEST_F(Complexes, have_the_charges_of_all_termini) {
+    auto const map = read(scene_of("[[\"A:5-12\", \"B:1-6\"]]") + builder_).forces.openmm->map;
+    calvados2::ChainEnds const ends([&] {
+        OpenMmSpec spec;
+        spec.builder = "calvados2";
+        spec.map = map;
+        return spec;
+    }());
+    EXPECT_EQ(ends.of("A+B"), (calvados2::ChargedTermini{false, false}));
+    std::vector<std::pair<std::int64_t, bool>> found;
+    for (auto const& [bead, charged] : ends.inside("A+B")) {
+        EXPECT_NE(charged.n, charged.c);
+        found.emplace_back(bead, charged.n);
+    }
+    EXPECT_EQ(found, (std::vector<std::pair<std::int64_t, bool>>{
+                         {0, true}, {11, false}, {12, true}, {21, false}}));
+    auto const none =
+        read(scene_of("[[\"A:5-12\", \"B:1-6\"]]", ", charge_termini: none") + builder_);
+    for (auto const& entry : none.forces.openmm->map) EXPECT_LT(entry.second.first, 2);
+}
+
+TEST_F(Complexes, may_run_backwards_along_a_chain) {
+    Scene const s = read(scene_of("[[\"A:5-12\", \"B:4-10\"]]", ", name: pair"));
+    EXPECT_EQ(s.chains.at(0).name, "pair");
+    EXPECT_EQ(notes_of(s),
+              Words{"chains A and B share a rigid body and are one chain, `pair`, of 22 beads, in "
+                    "trajectory and topology, too: A 1-12, B 5-10, B 4-1"});
+}
+
+TEST_F(Complexes, have_copies) {
+    Scene const s = read(scene_of("[[\"A:5-12\", \"B:1-6\"]]", ", count: 3, name: pair"));
+    ASSERT_EQ(s.chains.size(), 3u);
+    EXPECT_EQ(s.chains[2].name, "pair-3");
+    EXPECT_EQ(s.chains[2].bead_count(), 22u);
+}
+
+TEST_F(Complexes, of_rigid_partners_alone_are_one_body) {
+    Scene const s = read(scene_of("[[\"A:1-12\", \"B:1-10\"]]"));
+    ASSERT_EQ(s.chains.size(), 1u);
+    EXPECT_EQ(s.chains[0].linked.size(), 1u);
+}
+
+TEST_F(Complexes, that_no_serial_chain_can_hold_are_refused) {
+    std::string const at = " (s.yaml: chains[0].rigid[0], line 1): ";
+    EXPECT_EQ(
+        refusal(scene_of("[[\"A:5-8\", \"B:3-10\"]]")),
+        "3 flexible parts would hang on the rigid body of residues 5 to 8 of chain A and "
+        "residues 3 to 10 of chain B, and a serial chain has two: residues 1 to 4 of chain A, "
+        "residues 9 to 12 of chain A, residues 1 to 2 of chain B" +
+            at +
+            "include flexible ends in the body's ranges until two are left, or give each "
+            "chain bodies of its own");
+    EXPECT_EQ(refusal(scene_of("[[\"A:1-4\", \"A:8-12\"], [\"B:1-6\"]]")),
+              "residues 5 to 7 of chain A would be a flexible loop between two parts of one rigid "
+              "body, which a serial chain cannot hold" +
+                  at +
+                  "write \"A:1-12\" to make the loop rigid, too (with `domains` or `pae`: "
+                  "`longest_loop: 3`), or leave a part out of the body");
+    EXPECT_EQ(refusal(scene_of("[\"A:5-8\", [\"A:8-12\", \"B:1-6\"]]")),
+              "residues 8 to 12 of chain A overlap the domain 5 to 8 of chain A (s.yaml: "
+              "chains[0].rigid[1], line 1): assign each residue to one domain");
+    EXPECT_EQ(refusal(scene_of("[[\"A:5-12\", \"B:1-6\"]]", ", base: fixed")),
+              "key `base` for chains that share a rigid body (s.yaml: chains[0].base, line 1): "
+              "leave it out");
+}
+
+/// A domain with a gap in the file is one body of two pieces of the chain.
+TEST_F(Complexes, join_the_pieces_of_a_chain_with_a_gap) {
+    write("a.pdb", pdb_text(helix(12, "A") + helix(10, "A", 20, 0, 32)));
+    std::string const start =
+        "chains: [{pdb: a.pdb, model: calvados2, gaps: split, name: p, rigid: ";
+    Scene const s = read(start + "[[\"A:5-12\", \"A:20-25\"]]}]");
+    ASSERT_EQ(s.chains.size(), 1u);
+    EXPECT_EQ(s.chains[0].name, "p");
+    EXPECT_EQ(s.chains[0].linked.size(), 9u);
+    EXPECT_EQ(notes_of(s).back(),
+              "pieces of chain A share a rigid body and are one chain, `p`, of 22 beads, in "
+              "trajectory and topology, too: A 1-12, A 20-29");
+    // Ends at the gap are no termini.
+    EXPECT_NEAR(s.chains[0].linked.mass[4], 14 * find_calvados2('G')->mass, 1e-9);
+    EXPECT_EQ(refusal(start + "[\"A:5-25\"]}]"),
+              "residues 5 to 25 of chain A do not lie in one chain (s.yaml: chains[0].rigid[0], "
+              "line 1): end the domain where its chain ends; for one body of both parts write a "
+              "list of ranges, [\"5-12\", ...]");
+}
+
+TEST_F(Complexes, ranges_of_one_chain_that_touch_are_one) {
+    Scene const s = read(scene_of("[[\"A:2-5\", [6, 10], \"A:11-11\"]]", "")
+                             .replace(scene_of("").find("chain: all"), 10, "chain: A"));
+    EXPECT_EQ(s.chains.at(0).linked.size(), 3u);
+    EXPECT_EQ(s.chains.at(0).linked.carried.offset, (std::vector<std::int64_t>{0, 1, 11, 12}));
+}
+
+}  // namespace
+}  // namespace catena::test
