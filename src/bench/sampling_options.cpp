@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <utility>
 
 #include "bench/sampling_rows.hpp"
 #include "console/option_values.hpp"
@@ -36,10 +36,10 @@ void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
 
 }  // namespace
 
-void add_sampling(CLI::App& bench, SamplingOptionTexts& words) {
+void add_sampling(OptionList& bench, SamplingOptionTexts& words) {
     auto const add = [&](char const* option, std::string& word, char const* type,
                          char const* what) {
-        bench.add_option(option, word, std::string("for sampling: ") + what)->type_name(type);
+        bench.value(option, word, type, std::string("for sampling: ") + what);
     };
     add("SCENE", words.scene, "",
         "a scene of one chain with CALVADOS 2 (default: alpha-synuclein)");

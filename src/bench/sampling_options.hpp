@@ -3,11 +3,8 @@
 
 #include <string>
 
+#include "console/command_parser.hpp"
 #include "console/requests.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace catena::command {
 
@@ -17,7 +14,7 @@ struct SamplingOptionTexts {
 };
 
 /// Adds the options to `catena bench`.
-void add_sampling(CLI::App& bench, SamplingOptionTexts&);
+void add_sampling(OptionList& bench, SamplingOptionTexts&);
 
 /// Reads the options. Throws InputError for values that are no number, out of bounds or unknown,
 /// for an option that benchmark `name` does not have, and if the file `json` is the scene.

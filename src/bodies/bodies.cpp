@@ -100,7 +100,7 @@ std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
 }
 
 /// Returns the node of the joint's type, or nullptr.
-Node const* type_of(Node const& body) {
+Node const* type_node_of(Node const& body) {
     Node const* const joint = body.find("joint");
     return joint ? joint->find("type") : nullptr;
 }
@@ -113,7 +113,7 @@ BodyList kind_of_list(Node const& bodies) {
     Node const* other = nullptr;
     bool links = false, rigid = false;
     for (Node const& body : bodies.items) {
-        Node const* const type = type_of(body);
+        Node const* const type = type_node_of(body);
         bool const link = type && type->text == "link";
         links = links || link;
         rigid = rigid || body.find("inertia");

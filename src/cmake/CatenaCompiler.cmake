@@ -108,16 +108,47 @@ function(catena_precompiled_options target)
     endif()
 endfunction()
 
+option(CATENA_UNITY "Compile several sources of a folder at once: half of the time of a first build, longer after each change" OFF)
+
 # catena_without_vectors(<target> folders...): sources below src/ that run once per run. -O1 takes two thirds of the time to compile.
 function(catena_without_vectors target)
     list(JOIN ARGN "|" folders)
     get_target_property(sources ${target} SOURCES)
-    list(FILTER sources INCLUDE REGEX "/src/(${folders})/[^/]*[.]cpp$")
-    set_property(SOURCE ${sources} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+    list(FILTER sources INCLUDE REGEX "[.]cpp$")
+    set(others ${sources})
+    list(FILTER sources INCLUDE REGEX "/src/(${folders})/[^/]*$")
+    list(FILTER others EXCLUDE REGEX "/src/(${folders})/[^/]*$")
+    if(CATENA_UNITY)
+        # CMake compiles a source with options of its own by itself: the others get them.
+        target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
+        set_property(SOURCE ${others} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
+        catena_compile_at_once(${target} ${sources})
+    else()
+        set_property(SOURCE ${sources} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+    endif()
 endfunction()
 
-# avx2.cpp and avx512.cpp of the folder that calls it, or no_levels.cpp, into `target`. One source an instruction set; optimised in every
-# build, so that nothing of it is left over that the linker could give to others.
+# catena_compile_at_once(<target> sources...): up to eight sources of a folder become one.
+function(catena_compile_at_once target)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>)  # of what another source declares
+    set(number 0)
+    foreach(source IN LISTS ARGN)
+        get_filename_component(folder "${source}" DIRECTORY)
+        get_filename_component(folder "${folder}" NAME)
+        if(NOT folder STREQUAL previous)
+            set(number 0)
+        endif()
+        math(EXPR group "${number} / 8")
+        set_property(SOURCE "${source}" TARGET_DIRECTORY ${target} PROPERTY UNITY_GROUP "${folder}_${group}")
+        set(previous "${folder}")
+        math(EXPR number "${number} + 1")
+    endforeach()
+endfunction()
+
+# catena_add_simd_sources(<target> parts...): avx2_<part>.cpp and avx512_<part>.cpp of the folder that calls it, or no_levels.cpp, into `target`.
+# A source has one instruction set, and parts keep it short to compile. Sources are optimised in every build, so that nothing of them is left
+# over that the linker could give to others.
 set(CATENA_HAVE_SIMD FALSE)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND NOT (CATENA_SANITIZE AND CATENA_SANITIZE_QUICKLY))
     set(CATENA_HAVE_SIMD TRUE)
@@ -127,7 +158,6 @@ function(catena_add_simd_sources target)
         target_sources(${target} PRIVATE no_levels.cpp)
         return()
     endif()
-    target_sources(${target} PRIVATE avx2.cpp avx512.cpp)
     set(flags -O3)
     if(CATENA_SANITIZE)
         list(APPEND flags -fno-sanitize=all)  # whose checks are calls that stay
@@ -138,6 +168,12 @@ function(catena_add_simd_sources target)
         # And what is computed before it is wanted (PRE) waits in memory: 3 % of a chain on revolute joints.
         list(APPEND flags --param=sra-max-scalarization-size-Ospeed=4096 -fno-tree-slp-vectorize -fno-tree-pre)
     endif()
-    set_source_files_properties(avx2.cpp TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v3" SKIP_PRECOMPILE_HEADERS ON)
-    set_source_files_properties(avx512.cpp TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v4" SKIP_PRECOMPILE_HEADERS ON)
+    foreach(level IN ITEMS avx2=x86-64-v3 avx512=x86-64-v4)
+        string(REPLACE "=" ";" level ${level})
+        list(GET level 0 name)
+        list(GET level 1 processor)
+        list(TRANSFORM ARGN REPLACE "(.+)" "${name}_\\1.cpp" OUTPUT_VARIABLE sources)
+        target_sources(${target} PRIVATE ${sources})
+        set_source_files_properties(${sources} TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS "${flags};-march=${processor}" SKIP_PRECOMPILE_HEADERS ON)
+    endforeach()
 endfunction()

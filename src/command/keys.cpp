@@ -1,9 +1,10 @@
-// Implements `keys`: the declared keys of a scene as text and JSON.
+// Implements `keys`: its options, and the declared keys of a scene as text and JSON.
 #include <fmt/format.h>
 
 #include <vector>
 
 #include "command/commands.hpp"
+#include "command/shared_options.hpp"
 #include "console/option_values.hpp"
 #include "console/text.hpp"
 #include "error.hpp"
@@ -84,7 +85,34 @@ Json json_of(Chosen const& chosen) {
     return {{"map", chosen.map.name}, {"place", chosen.map.place}, {"keys", keys}};
 }
 
+class KeysCommand final : public Command {
+  public:
+    std::string name() const override { return "keys"; }
+    std::string meaning() const override {
+        return "print the keys that a scene may have: type, default, unit, meaning";
+    }
+    SharedOptions shared() const override { return SharedOptions::answer; }
+    void add_options(OptionList& list, CommonOptions&) override {
+        list.argument("NAME", key_,
+                      "a map, such as dynamics or forces.openmm, or a key, such as friction "
+                      "(default: all maps)");
+        list.footer(
+            "Examples:\n  catena keys dynamics\n  catena keys friction\n  catena keys --json "
+            "keys.json");
+    }
+    Request request(CommonOptions const& common) const override {
+        auto request = common_request<KeysRequest>(common);
+        request.name = key_;
+        return request;
+    }
+
+  private:
+    std::string key_;
+};
+
 }  // namespace
+
+std::unique_ptr<Command> keys_command() { return std::make_unique<KeysCommand>(); }
 
 Outcome declared_keys(KeysRequest const& request) {
     std::vector<Chosen> chosen = maps_named(request.name);

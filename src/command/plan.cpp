@@ -233,15 +233,10 @@ plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communica
     return plan::measure_phases(system, {5, 200, 0.5});
 }
 
-/// Returns the plan for the chosen backend. Collective.
-Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator,
-                    PlanRequest const& request, Predictions predictions) {
-    ChainSystem const system(scene, axes, communicator, implicit_step_of(scene));
-    predictions.choice.arrangement = {system.backend(), system.executor().threads()};
-    std::vector<SolverReport> const reports = system.solver_reports();
-    Outcome outcome;
-    Json& json = outcome.json;
-    std::string const& reason = predictions.choice.reason;
+/// Adds what the system runs on: backend, ranks and threads.
+void add_backend(Text& text, Json& json, ChainSystem const& system, std::string const& reason) {
+    Scene const& scene = system.scene();
+    Communicator const& communicator = system.communicator();
     GatherWay const& way = communicator.gather_way();
     json = {{"scene", scene.file},
             {"backend", name_of(system.backend())},
@@ -254,7 +249,6 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
             {"gpu_levels", gpu_levels_json(scene)},
             {"tree_table", dca::tree_table_version},
             {"groups", Json::array()}};
-    Text text;
     text.heading(title_of(scene));
     text.entry("backend", fmt::format("{} ({})", name_of(system.backend()), reason));
     if (!json["gpu_levels"].is_null())
@@ -269,24 +263,27 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
                                   : "`run` measures the speeds of the ranks and divides the chains "
                                     "accordingly; this plan assumes equal speeds");
     text.entry("threads per rank", std::to_string(system.executor().threads()));
-    for (std::size_t i = 0; i < reports.size(); ++i)
-        add_group(text, json["groups"], *system.groups()[i], reports[i]);
-    add_memory(text, json, scene, predictions, communicator.size());
+}
+
+/// Adds the forces.
+void add_forces(Text& text, Json& json, ChainSystem const& system) {
+    Scene const& scene = system.scene();
     text.heading("forces");
     text.entry("gravity", vector_text(scene.forces.gravity));
     text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
     json["openmm"] = nullptr;
-    if (system.openmm()) {
-        json["openmm"] = system.openmm()->description();
-        for (std::size_t i = 0; i < json["openmm"].size(); ++i)
-            text.entry(i == 0 ? "OpenMM" : "", json["openmm"][i].get<std::string>());
-        text.entry("",
-                   "on path host the matrix sweep runs during OpenMM's forces, because matrices do "
-                   "not depend on forces");
-    }
-    add_dynamics(text, json, scene);
-    add_messages(text, json, system, request, predictions);
-    add_output(text, json, scene);
+    if (!system.openmm()) return;
+    json["openmm"] = system.openmm()->description();
+    for (std::size_t i = 0; i < json["openmm"].size(); ++i)
+        text.entry(i == 0 ? "OpenMM" : "", json["openmm"][i].get<std::string>());
+    text.entry("",
+               "on path host the matrix sweep runs during OpenMM's forces, because matrices do "
+               "not depend on forces");
+}
+
+/// Adds what is left out, with the time that this saves if the request asks for it. Collective.
+void add_left_out(Text& text, Json& json, ChainSystem const& system, PlanRequest const& request) {
+    Scene const& scene = system.scene();
     text.heading("left out");
     json["left_out"] = Json::array();
     for (Savings const& each : left_out(scene, system)) {
@@ -294,12 +291,37 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
         if (!request.explain) text.note(each.text);
     }
     if (request.explain) add_savings(text, json, scene, system);
-    if (communicator.rank() == 0) add_predictions(text, json, predictions);
+}
+
+/// Adds the notes on the scene.
+void add_notes(Text& text, Json& json, Scene const& scene) {
     json["notes"] = Json::array();
     for (std::string const& note : notes_on(scene, estimate_step_limit(scene))) {
         json["notes"].push_back(note);
         text.note(note);
     }
+}
+
+/// Returns the plan for the chosen backend. Collective.
+Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator,
+                    PlanRequest const& request, Predictions predictions) {
+    ChainSystem const system(scene, axes, communicator, implicit_step_of(scene));
+    predictions.choice.arrangement = {system.backend(), system.executor().threads()};
+    std::vector<SolverReport> const reports = system.solver_reports();
+    Outcome outcome;
+    Json& json = outcome.json;
+    Text text;
+    add_backend(text, json, system, predictions.choice.reason);
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        add_group(text, json["groups"], *system.groups()[i], reports[i]);
+    add_memory(text, json, scene, predictions, communicator.size());
+    add_forces(text, json, system);
+    add_dynamics(text, json, scene);
+    add_messages(text, json, system, request, predictions);
+    add_output(text, json, scene);
+    add_left_out(text, json, system, request);
+    if (communicator.rank() == 0) add_predictions(text, json, predictions);
+    add_notes(text, json, scene);
     if (request.measure) {
         plan::PhaseSeconds const measured = measure(scene, axes, communicator);
         if (communicator.rank() == 0) add_measured(text, json, predictions, measured);

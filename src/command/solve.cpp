@@ -123,16 +123,9 @@ char const* why_no_estimate(Scene const& scene) {
     return refinable ? "there are very many bodies" : "beads and bodies on links are not refined";
 }
 
-/// Returns the text that `catena solve` prints.
-std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing,
-                    Solution const& solution) {
+/// Adds what was solved, and on what.
+void add_solver(Text& text, ChainSystem const& system, Json const& json) {
     Scene const& scene = system.scene();
-    Text text;
-    text.heading(title_of(scene));
-    text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(),
-                                     counted(std::ssize(scene.chains), "chain", "chains"),
-                                     degrees_of_freedom(scene)));
-    add_accelerations(text, scene, solution);
     text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()),
                                      name_of(scene.solver.handles),
                                      counted(system.communicator().size(), "rank", "ranks"),
@@ -144,6 +137,10 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
         text.entry("velocities", fmt::format("thermal, {} K, seed {}, as at the start of a run",
                                              scene.dynamics.temperature, scene.dynamics.seed));
     if (json["relaxation"].is_string()) text.entry("relaxation", json["relaxation"]);
+}
+
+/// Adds the times of an evaluation, of its phases and of the refinement.
+void add_times(Text& text, Scene const& scene, Json const& json, Timing const& timing) {
     text.entry(
         "time",
         fmt::format("{}, median of {} ({} to {}); {:.4g} ns per body",
@@ -160,9 +157,10 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
         text.entry("refinement",
                    fmt::format("{}, {} each", counted(std::ssize(refinement), "step", "steps"),
                                duration_text(spread_of(refinement).median)));
-    for (auto const& [term, energy] : json["potential_energy"].items())
-        text.entry("potential energy",
-                   fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
+}
+
+/// Adds the residuals and the estimated error.
+void add_errors(Text& text, ChainSystem const& system, Json const& json) {
     Json const &inverse = json["rnea_residual"], &error = json["estimated_error"];
     text.entry(
         "inverse dynamics",
@@ -176,7 +174,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry(
         "estimated error",
         error.is_null()
-            ? fmt::format("not estimated ({})", why_no_estimate(scene))
+            ? fmt::format("not estimated ({})", why_no_estimate(system.scene()))
             : fmt::format(
                   "{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
                   error.get<double>(), json["estimated_error_bound"].get<double>()));
@@ -188,6 +186,24 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)",
                            json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
+}
+
+/// Returns the text that `catena solve` prints.
+std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing,
+                    Solution const& solution) {
+    Scene const& scene = system.scene();
+    Text text;
+    text.heading(title_of(scene));
+    text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(),
+                                     counted(std::ssize(scene.chains), "chain", "chains"),
+                                     degrees_of_freedom(scene)));
+    add_accelerations(text, scene, solution);
+    add_solver(text, system, json);
+    add_times(text, scene, json, timing);
+    for (auto const& [term, energy] : json["potential_energy"].items())
+        text.entry("potential energy",
+                   fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
+    add_errors(text, system, json);
     for (std::string const& note : scene.notes) text.note(note);
     return text.str();
 }
@@ -216,82 +232,109 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
     });
 }
 
-/// Returns the reason why a solution is not valid, with a remedy.
-std::string complaint_of(Scene const& scene, ForwardError const& error, double residual,
-                         double bound) {
-    if (error.is_small() || !(residual <= bound))
-        return fmt::format(
-            "residual {:.2e}, bound {:.2e}: compare with --refine 2 or, for open chains on joints, "
-            "--handles articulated",
-            residual, bound);
-    char const* const refine = scene.solver.refine < 2 ? "--refine 2" : "more steps of --refine";
-    return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: use {}",
-                       *error.estimate, largest_forward_error,
-                       remedy_of_forward_error(scene, true, {refine, "--handles articulated"}));
+/// A solution and what is known about its errors.
+struct Solved {
+    Solution solution;  // empty if nobody reads it
+    ForwardError error;
+    double residual = 0, bound = 0;
+
+    /// True if the residual and the estimated error are small and all values are finite. Values
+    /// that are not finite make the residual large as well.
+    bool is_valid() const {
+        return residual <= bound && error.is_small() && finite(solution.acceleration) &&
+               finite(solution.joint_force);
+    }
+    /// Returns the reason why the solution is not valid, with a remedy.
+    std::string complaint(Scene const& scene) const {
+        if (error.is_small() || !(residual <= bound))
+            return fmt::format(
+                "residual {:.2e}, bound {:.2e}: compare with --refine 2 or, for open chains on "
+                "joints, --handles articulated",
+                residual, bound);
+        char const* const more = scene.solver.refine < 2 ? "--refine 2" : "more steps of --refine";
+        return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: use {}",
+                           *error.estimate, largest_forward_error,
+                           remedy_of_forward_error(scene, true, {more, "--handles articulated"}));
+    }
+};
+
+/// Returns the solution of an evaluated and refined system. Arrays of all bodies are built only if
+/// `wanted`. Collective.
+Solved solved(ChainSystem& system, bool wanted) {
+    Solved s;
+    s.bound = system.residual_bound();
+    s.error = forward_error(system, [&] {
+        s.residual = system.residual();
+        if (wanted) s.solution = solution_of(system);
+    });
+    return s;
+}
+
+/// Adds the errors of the solution.
+void add_errors(Json& json, ChainSystem const& system, Solved const& s) {
+    json["residual"] = s.residual;
+    json["residual_bound"] = s.bound;
+    json["residual_bound_formula"] = "32 depth(tree) 2^-53";
+    json["estimated_error"] = s.error.estimate ? Json(*s.error.estimate) : Json(nullptr);
+    json["estimated_error_bound"] = largest_forward_error;
+    json["refinement"]["steps_unasked"] = s.error.steps;
+    json["rnea_residual"] = inverse_dynamics_residual(system, s.solution);
+}
+
+/// Brings the start to where a run would begin: closes the tips, so that velocities fit them, and
+/// refuses overlapping beads, whose accelerations are right but of no use. Throws InputError if the
+/// scene asks for refinement and no chain can be refined. Collective.
+void prepare_start(ChainSystem& system) {
+    if (system.scene().solver.refine > 0 && system.joint().empty())
+        throw InputError("chains of beads or linked bodies cannot be refined", "solver.refine",
+                         "leave it out");
+    system.close_tips();
+    if (!system.openmm()) return;
+    system.evaluate(false);
+    look_at_start(system);
+}
+
+/// Returns the energy of each force term as JSON.
+Json energies_json(std::vector<EnergyTerm> const& energies) {
+    Json json = Json::object();
+    for (EnergyTerm const& term : energies) json[term.name] = term.value;
+    return json;
 }
 
 /// Solves the scene with the chosen backend. Collective.
 Outcome solve_chosen(Scene const& given, Communicator const& communicator,
                      SolveRequest const& request, std::string const& reason) {
-    bool const thermal = starts_thermal(given);
     std::optional<RelaxedScene> relaxed =
         relaxed_where_asked(given, communicator, relaxation_says(is_quiet()));
     if (!relaxed) refuse_coinciding(given, communicator);
     Scene const scene =
         with_start_velocities(relaxed ? std::move(relaxed->scene) : given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
-    int const refinements = scene.solver.refine;
-    if (refinements > 0 && system.joint().empty())
-        throw InputError("chains of beads or linked bodies cannot be refined", "solver.refine",
-                         "leave it out");
-    // A run closes the tips likewise; velocities then fit them.
-    system.close_tips();
-    if (system.openmm()) {
-        system.evaluate(false);
-        look_at_start(
-            system);  // accelerations under forces of overlapping beads are right, but nobody's
-    }
+    prepare_start(system);
     Timing const timing = time_evaluations(system, request.repeat);
-    std::vector<double> const refinement = refine(system, refinements);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);
     json["backend_reason"] = reason;
-    json["refinement"] = {{"steps", refinements}, {"seconds_of_each", refinement}};
+    json["refinement"] = {{"steps", scene.solver.refine},
+                          {"seconds_of_each", refine(system, scene.solver.refine)}};
     std::vector<EnergyTerm> const energies = system.potential_energy();
-    // Arrays of all bodies are built only if they are read. Values that are not finite make the
-    // residual fail as well.
     bool const wanted = scene.bodies() <= most_bodies_in_json ||
                         communicator.max(request.accelerations.empty() ? 0 : 1) > 0;
-    double const bound = system.residual_bound();
-    double residual = 0;
-    Solution solution;
-    ForwardError const error = forward_error(system, [&] {
-        residual = system.residual();
-        if (wanted) solution = solution_of(system);
-    });
-    bool const holds = residual <= bound && error.is_small() && finite(solution.acceleration) &&
-                       finite(solution.joint_force);
-    outcome.valid = communicator.max(holds ? 0 : 1) == 0;
+    Solved const found = solved(system, wanted);
+    outcome.valid = communicator.max(found.is_valid() ? 0 : 1) == 0;
     on_first_rank(communicator, [&] {
-        json["residual"] = residual;
-        json["residual_bound"] = bound;
-        json["residual_bound_formula"] = "32 depth(tree) 2^-53";
-        json["estimated_error"] = error.estimate ? Json(*error.estimate) : Json(nullptr);
-        json["estimated_error_bound"] = largest_forward_error;
-        json["refinement"]["steps_unasked"] = error.steps;
-        json["rnea_residual"] = inverse_dynamics_residual(system, solution);
+        add_errors(json, system, found);
         json["valid"] = outcome.valid;
-        json["potential_energy"] = Json::object();
-        for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
-        json["velocities"] = thermal ? "thermal" : "given";
+        json["potential_energy"] = energies_json(energies);
+        json["velocities"] = starts_thermal(given) ? "thermal" : "given";
         json["relaxation"] = relaxed ? Json(relaxed->relaxation.text()) : Json(nullptr);
         json["notes"] = scene.notes;
-        if (scene.bodies() <= most_bodies_in_json) add_solution(json, scene, solution);
-        if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
-        outcome.text = text_of(system, json, timing, solution) +
+        if (scene.bodies() <= most_bodies_in_json) add_solution(json, scene, found.solution);
+        if (!outcome.valid) outcome.complaint = found.complaint(scene);
+        outcome.text = text_of(system, json, timing, found.solution) +
                        (outcome.valid ? "VALID" : "INVALID: " + outcome.complaint) + "\n";
         if (request.accelerations.empty()) return;
-        write_accelerations(request.accelerations, scene, solution);
+        write_accelerations(request.accelerations, scene, found.solution);
         spdlog::info("wrote {}", request.accelerations);
     });
     return outcome;

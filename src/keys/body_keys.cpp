@@ -6,8 +6,8 @@ namespace catena::scene::keys {
 namespace {
 
 // Keys that several maps share.
-constexpr Key mass{"mass",     "number > 0", "required", "mass", "The body has this mass.",
-                   "mass: 1.2"};
+constexpr Key body_mass{"mass",     "number > 0", "required", "mass", "The body has this mass.",
+                        "mass: 1.2"};
 constexpr Key com{"com",
                   "3 numbers",
                   "`[0, 0, 0]`",
@@ -42,7 +42,7 @@ constexpr Key link_type{"type",      "`link`", "required", "", "The body hangs o
 constexpr std::string_view as_coordinate = "radians or length";
 
 constexpr Key body_keys[] = {
-    mass,
+    body_mass,
     com,
     {"inertia", "3 rows of 3 numbers, or 3 numbers of a diagonal", "required", "mass length^2",
      "The body has this inertia tensor about its centre of mass, in B.",
@@ -132,7 +132,7 @@ constexpr Key motion_keys[] = {
 };
 
 constexpr Key bead_keys[] = {
-    mass,
+    body_mass,
     position,
     velocity,
     residue,
@@ -147,7 +147,7 @@ constexpr Key bead_link_keys[] = {
 };
 
 constexpr Key linked_keys[] = {
-    mass,
+    body_mass,
     {"inertia", "3 rows of 3 numbers, or 3 numbers of a diagonal", "none: a bead", "mass length^2",
      "The entry is a rigid body with this inertia about its centre of mass, in B.",
      "inertia: [400, 500, 600]"},

@@ -1,4 +1,6 @@
 // Condition numbers of the joint-space inertia and of the links' matrix.
+#include <Eigen/Eigenvalues>
+
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
 #include "oracle/linked.hpp"

@@ -1,7 +1,7 @@
-// Dense Eigen matrices of any oracle scalar. Internal to the oracles.
+// Dense Eigen matrices of any oracle scalar, without their decompositions. Internal to the oracles.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "oracle/algebra.hpp"
 

@@ -1,4 +1,6 @@
 // Least-squares projection of velocities on the constraints of tips and links.
+#include <Eigen/QR>
+
 #include "oracle/eigen.hpp"
 #include "oracle/linked.hpp"
 

@@ -1,4 +1,6 @@
 // Residuals of given accelerations by inverse dynamics.
+#include <Eigen/QR>
+
 #include "error.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "oracle/eigen.hpp"
+#include "oracle/full_pivoting.hpp"
 #include "oracle/joint.hpp"
 
 namespace catena::oracle {
@@ -54,12 +54,12 @@ Column<S> solve(System<S> const& system) {
         scaled_matrix.row(i) *= scale[i];
         right[i] *= scale[i];
     }
-    Eigen::FullPivLU<Dense<S>> const lu(scaled_matrix);
+    FullPivoting<S> const lu(scaled_matrix);
     Column<S> x = lu.solve(right);
     Column<S> rest = system.right;
     for (Index j = 0; j < n; ++j) rest -= system.matrix.col(j) * x[j];
     for (Index i = 0; i < n; ++i) rest[i] *= scale[i];
-    x += Column<S>(lu.solve(rest));
+    x += lu.solve(rest);
     return x;
 }
 

@@ -1,7 +1,7 @@
 // Chains with a jointed tip: closure of the tip joint, and the wrench that satisfies it.
 #include <cmath>
 
-#include "oracle/eigen.hpp"
+#include "oracle/full_pivoting.hpp"
 #include "oracle/joint.hpp"
 #include "oracle/rotations.hpp"
 
@@ -88,8 +88,7 @@ class TipSystem {
             scale_[i] = d > S(Eigen::NumTraits<S>::epsilon()) * most ? S(S(1) / S(sqrt(d))) : S(0);
         }
         matrix = scale_.asDiagonal() * matrix * scale_.asDiagonal();
-        lu_.setThreshold(S(64 * bodies) * Eigen::NumTraits<S>::epsilon());
-        lu_.compute(matrix);
+        lu_ = FullPivoting<S>(matrix, S(64 * bodies) * Eigen::NumTraits<S>::epsilon());
     }
     /// Adds to `components` the change that removes the residual `defect`.
     void correct(Column<S> const& defect, std::vector<S>& components) const {
@@ -102,7 +101,7 @@ class TipSystem {
 
   private:
     Column<S> scale_;
-    Eigen::FullPivLU<Dense<S>> lu_;
+    FullPivoting<S> lu_;
 };
 
 }  // namespace

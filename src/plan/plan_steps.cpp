@@ -93,9 +93,6 @@ Json json_of(plan::StepWork const& work) {
             {"noises", work.noises}};
 }
 
-/// Formats a table cell; "-" for an unknown time.
-std::string cell(double seconds) { return std::isfinite(seconds) ? duration_text(seconds) : "-"; }
-
 /// Returns the JSON of one row: computing, messages, and the speed-up over one rank.
 Json row_of(MessagesOnRanks const& messages, plan::StepPrediction const& computing,
             double one_rank) {

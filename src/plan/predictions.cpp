@@ -7,10 +7,10 @@
 #include <cmath>
 
 namespace catena::command {
-namespace {
 
-/// Formats a table cell; "-" for an unknown time.
 std::string cell(double seconds) { return std::isfinite(seconds) ? duration_text(seconds) : "-"; }
+
+namespace {
 
 /// Converts times to JSON, in seconds by name of the phase.
 Json json_of(plan::PhaseSeconds const& seconds) {

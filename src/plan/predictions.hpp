@@ -32,6 +32,8 @@ Predictions predict(plan::Planner&, Scene const&, Axes, int ranks);
 /// Returns the prediction of an arrangement; nullptr if there is none.
 plan::Prediction const* prediction_of(Predictions const&, plan::Arrangement const&);
 
+/// Returns a time as the cell of a table; "-" for an unknown time.
+std::string cell(double seconds);
 /// Adds a table of all phases on every arrangement and, if there is a GPU, one of all levels.
 void add_predictions(Text&, Json&, Predictions const&);
 /// Adds the predicted and the measured times of the chosen arrangement.

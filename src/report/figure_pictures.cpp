@@ -10,8 +10,6 @@
 namespace catena::command {
 namespace {
 
-constexpr double microseconds = 1e6, milliseconds = 1e3;
-
 /// Draws the time of each level on one core, threads and the GPU, with the transfers of a cut.
 std::string levels_picture(LevelStudy const& study) {
     CurveFamily family{

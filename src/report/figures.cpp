@@ -20,8 +20,6 @@
 namespace catena::command {
 namespace {
 
-constexpr double microseconds = 1e6, milliseconds = 1e3;
-
 /// Formats a measured number; "-" if it is missing.
 std::string number(std::optional<double> const& value) {
     if (value && !std::isfinite(*value)) return "not resolved";
@@ -261,43 +259,69 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
     });
 }
 
-}  // namespace
+/// True if the request asks for the figure.
+bool wants(BenchRequest const& request, std::string_view figure) {
+    return std::find(request.figures.begin(), request.figures.end(), figure) !=
+           request.figures.end();
+}
 
-Outcome bench_figures(Communicator const& communicator, BenchRequest const& request) {
-    std::string const folder = request.output.empty() ? "catena-figures" : request.output;
-    make_folder(communicator, folder);
-    auto const wanted = [&](std::string_view figure) {
-        return std::find(request.figures.begin(), request.figures.end(), figure) !=
-               request.figures.end();
-    };
-    std::vector<Handles> handles{Handles::full, Handles::projected};
-    if (!request.handles.empty())
-        handles = {request.handles == "full" ? Handles::full : Handles::projected};
-    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
-    std::vector<std::string> left_out;
+/// Returns the kinds of handles that are measured: both, or that of --handles.
+std::vector<Handles> handles_of(BenchRequest const& request) {
+    if (request.handles.empty()) return {Handles::full, Handles::projected};
+    return {request.handles == "full" ? Handles::full : Handles::projected};
+}
+
+/// Returns the number of --threads; 0 if it was not given.
+int threads_of(BenchRequest const& request) {
+    return request.threads.empty() ? 0 : std::stoi(request.threads);
+}
+
+/// Measures figure 2.3 on the largest chain.
+std::vector<LevelStudy> measure_all_levels(Communicator const& communicator,
+                                           BenchRequest const& request) {
+    std::vector<LevelStudy> levels;
+    std::int64_t const largest = *std::max_element(request.sizes.begin(), request.sizes.end());
+    int const threads = threads_of(request);
+    for (Handles const kind : handles_of(request))
+        levels.push_back(measure_levels(
+            kind, largest, threads > 0 ? threads : cores_of_rank(communicator), request.repeat));
+    return levels;
+}
+
+/// Measures the points of figures 2.5 to 2.7. Collective.
+std::vector<FigurePoint> measure_all_steps(Communicator const& communicator,
+                                           BenchRequest const& request,
+                                           std::vector<FigureCase> const& cases) {
+    std::vector<FigurePoint> all;
+    for (Handles const kind : handles_of(request))
+        for (std::int64_t const bodies : request.sizes) {
+            auto const points = measure_steps(cases, kind, bodies, threads_of(request),
+                                              request.repeat, communicator);
+            all.insert(all.end(), points.begin(), points.end());
+            spdlog::info("{} bodies, {} handles: measured", bodies, name_of(kind));
+        }
+    return all;
+}
+
+/// Measures what the request asks for; adds to `left_out` what cannot be measured here. Collective.
+Figures measure(Communicator const& communicator, BenchRequest const& request,
+                std::vector<std::string>& left_out) {
     std::vector<FigureCase> const cases = figure_cases(left_out);
     if (cases.back().backend == Backend::cuda)
         left_out.emplace_back("cuda in figure 2.7: its transfers are not timed separately");
-
     Figures figures;
-    std::int64_t const largest = *std::max_element(request.sizes.begin(), request.sizes.end());
-    if (wanted("2.3") && communicator.size() == 1)
-        for (Handles const kind : handles)
-            figures.levels.push_back(
-                measure_levels(kind, largest, threads > 0 ? threads : cores_of_rank(communicator),
-                               request.repeat));
-    else if (wanted("2.3"))
+    if (wants(request, "2.3") && communicator.size() == 1)
+        figures.levels = measure_all_levels(communicator, request);
+    else if (wants(request, "2.3"))
         left_out.emplace_back("figure 2.3: levels are timed on one rank");
-    if (wanted("2.5") || wanted("2.6") || wanted("2.7"))
-        for (Handles const kind : handles)
-            for (std::int64_t const bodies : request.sizes) {
-                auto const points =
-                    measure_steps(cases, kind, bodies, threads, request.repeat, communicator);
-                figures.points.insert(figures.points.end(), points.begin(), points.end());
-                spdlog::info("{} bodies, {} handles: measured", bodies, name_of(kind));
-            }
+    if (wants(request, "2.5") || wants(request, "2.6") || wants(request, "2.7"))
+        figures.points = measure_all_steps(communicator, request, cases);
+    return figures;
+}
 
-    Outcome outcome;
+/// Adds what was measured, and on what.
+void add_circumstances(Outcome& outcome, Communicator const& communicator,
+                       BenchRequest const& request, std::vector<std::string> const& left_out) {
     outcome.json = {{"bench", "figures"},
                     {"build", version_json()},
                     {"hardware", hardware_json()},
@@ -310,34 +334,54 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
         fmt::format("medians of {}, cases in turn. {}, {}; {}, {}. ch.: the chapter, {}\n",
                     request.repeat, counted(communicator.size(), "rank", "ranks"), hardware_text(),
                     compiler_name(), instruction_set(), chapter_hardware);
-    if (wanted("table-2.1")) add_table(outcome);
-    for (LevelStudy const& study : figures.levels) add_levels(outcome, study);
-    add_points(outcome, figures.points);
-    for (FigureQuantity const& quantity : figure_quantities)
-        for (Handles const kind : handles)
-            if (wanted(quantity.figure)) add_quantity(outcome, figures.points, quantity, kind);
-    for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
+}
+
+/// Returns the chapter's own numbers.
+Json chapter_json() {
     Json chapter = Json::object();
     for (auto const& [figure, rows] : chapter_figures())
         for (auto const& [bodies, row] : rows)
             chapter[figure].push_back({bodies, row[0], row[1], row[2], row[3], row[4], row[5]});
-    outcome.json["chapter"] = {
-        {"hardware", chapter_hardware},
-        {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
-        {"milliseconds", chapter}};
+    return {{"hardware", chapter_hardware},
+            {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
+            {"milliseconds", chapter}};
+}
+
+/// Writes figures.json and the pictures into the folder, and names them in the text.
+void write_files(Outcome& outcome, std::string const& folder, Figures const& figures,
+                 BenchRequest const& request) {
+    write_text_file(folder + "/figures.json", json_text(outcome.json));
+    outcome.text += "wrote " + folder + "/figures.json";
+    for (auto const& [name, svg] : draw_figures(figures, request.figures)) {
+        write_text_file(fmt::format("{}/{}", folder, name), svg);
+        outcome.text += ", " + name;
+    }
+    outcome.text +=
+        fmt::format("\n{}{}\n", verdict(outcome.valid), resolution_text(figures.levels));
+}
+
+}  // namespace
+
+Outcome bench_figures(Communicator const& communicator, BenchRequest const& request) {
+    std::string const folder = request.output.empty() ? "catena-figures" : request.output;
+    make_folder(communicator, folder);
+    std::vector<std::string> left_out;
+    Figures const figures = measure(communicator, request, left_out);
+    Outcome outcome;
+    add_circumstances(outcome, communicator, request, left_out);
+    if (wants(request, "table-2.1")) add_table(outcome);
+    for (LevelStudy const& study : figures.levels) add_levels(outcome, study);
+    add_points(outcome, figures.points);
+    for (FigureQuantity const& quantity : figure_quantities)
+        for (Handles const kind : handles_of(request))
+            if (wants(request, quantity.figure))
+                add_quantity(outcome, figures.points, quantity, kind);
+    for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
+    outcome.json["chapter"] = chapter_json();
     outcome.json["valid"] = outcome.valid;
     outcome.json["not_resolved"] = resolved(figures.levels).missing;
     outcome.complaint = "a residual above its bound: see the results";
-    on_first_rank(communicator, [&] {
-        write_text_file(folder + "/figures.json", json_text(outcome.json));
-        outcome.text += "wrote " + folder + "/figures.json";
-        for (auto const& [name, svg] : draw_figures(figures, request.figures)) {
-            write_text_file(fmt::format("{}/{}", folder, name), svg);
-            outcome.text += ", " + name;
-        }
-        outcome.text +=
-            fmt::format("\n{}{}\n", verdict(outcome.valid), resolution_text(figures.levels));
-    });
+    on_first_rank(communicator, [&] { write_files(outcome, folder, figures, request); });
     return outcome;
 }
 

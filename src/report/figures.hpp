@@ -7,6 +7,8 @@
 
 namespace catena::command {
 
+/// Units of time, per second.
+inline constexpr double microseconds = 1e6, milliseconds = 1e3;
 /// Names that --figure accepts.
 inline constexpr std::string_view figure_names[] = {"table-2.1", "2.3", "2.5", "2.6", "2.7"};
 

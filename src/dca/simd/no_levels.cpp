@@ -1,4 +1,4 @@
-// Replacements for avx2.cpp and avx512.cpp in builds without SIMD sources: no SIMD level is
+// Replacements for the sources of AVX2 and AVX-512 in builds without them: no SIMD level is
 // available.
 #include "dca/simd/runs.hpp"
 

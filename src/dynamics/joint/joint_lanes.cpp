@@ -46,6 +46,13 @@ void deal_out(ChainGroup const& group, bool springs, std::int64_t begin, std::in
     }
 }
 
+/// Returns all loops of an instruction set.
+JointLoops loops_of(SimdLevel level, bool positions) {
+    if (level == SimdLevel::avx512)
+        return {avx512_kinematic_loops(positions), avx512_step_loops(positions)};
+    return {avx2_kinematic_loops(positions), avx2_step_loops(positions)};
+}
+
 }  // namespace
 
 JointLanes::JointLanes(ChainGroup const& group, bool springs, bool revolutes, SimdLevel level) {
@@ -53,8 +60,7 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool revolutes, Si
         group.carried_in_scene || !group.implicit_joint.empty())
         return;
     for (bool const positions : {false, true})
-        loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions)
-                                                               : avx2_joint_loops(positions);
+        loops_[positions ? 1 : 0] = loops_of(level, positions);
     int const lanes = lanes_of(level);
     asks_ahead_ = dca::prefetches(group);
     deal_out(group, springs, 0, group.size, lanes, bodies_);

@@ -24,9 +24,9 @@ struct RunsAbreast {
     dca::RunsInLanes const* items;
     bool prefetches;
 };
-/// Loops of one instruction set over groups [begin, end). There is one table with and one without
-/// positions.
-struct JointLoops {
+/// Loops of one instruction set over groups [begin, end) that compute the motion of bodies. There
+/// is one table with and one without positions.
+struct KinematicLoops {
     void (*set_relative)(JointChains const&, BodyLanes const&, std::int64_t begin,
                          std::int64_t end);
     /// Runs JointScan::follow on runs, and stores the motion across each run (JointScan::whole).
@@ -40,6 +40,9 @@ struct JointLoops {
     /// Computes angular velocities of the runs' first bodies, after the scan.
     void (*begin_runs)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
     void (*set_motion)(JointChains const&, BodyLanes const&, std::int64_t begin, std::int64_t end);
+};
+/// Loops of one instruction set over groups [begin, end) that advance the state of bodies.
+struct StepLoops {
     void (*set_rates)(JointChains const&, RatesView const&, BodyLanes const&, std::int64_t begin,
                       std::int64_t end);
     void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodyLanes const&,
@@ -47,11 +50,15 @@ struct JointLoops {
     void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodyLanes const&,
                            std::int64_t begin, std::int64_t end);
 };
+/// All loops of one instruction set.
+struct JointLoops : KinematicLoops, StepLoops {};
 /// Numbers per body: the axis of the revolute joint, and the rotation of its meeting frame.
 inline constexpr int revolute_constants = 7;
 /// Loops of an instruction set. Precondition: simd_levels() includes it.
-JointLoops avx2_joint_loops(bool positions);
-JointLoops avx512_joint_loops(bool positions);
+KinematicLoops avx2_kinematic_loops(bool positions);
+KinematicLoops avx512_kinematic_loops(bool positions);
+StepLoops avx2_step_loops(bool positions);
+StepLoops avx512_step_loops(bool positions);
 
 /// Decides which bodies and runs of a group are placed side by side, and executes their loops.
 class JointLanes {
@@ -93,14 +100,14 @@ class JointLanes {
     std::span<dca::Run const> other_runs() const { return runs_.others; }
     /// Bodies that begin a chain, in runs that are side by side.
     std::span<std::int64_t const> chains_begin() const { return chains_begin_; }
-    /// Runs JointLoops::follow_revolutes. Precondition: set_relative() of chains_begin().
+    /// Runs KinematicLoops::follow_revolutes. Precondition: set_relative() of chains_begin().
     template <class Space>
     void follow_revolutes(Space const& space, JointLoads const& loads) const {
         over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
             loops_[0].follow_revolutes(loads, runs, constants_.data(), begin, end);
         });
     }
-    /// Runs JointLoops::begin_runs, after the scan.
+    /// Runs KinematicLoops::begin_runs, after the scan.
     template <class Space>
     void begin_runs(Space const& space, JointScan const& scan) const {
         over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {

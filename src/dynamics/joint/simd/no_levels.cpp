@@ -3,7 +3,9 @@
 
 namespace catena {
 
-JointLoops avx2_joint_loops(bool) { return {}; }
-JointLoops avx512_joint_loops(bool) { return {}; }
+KinematicLoops avx2_kinematic_loops(bool) { return {}; }
+KinematicLoops avx512_kinematic_loops(bool) { return {}; }
+StepLoops avx2_step_loops(bool) { return {}; }
+StepLoops avx512_step_loops(bool) { return {}; }
 
 }  // namespace catena

@@ -1,4 +1,5 @@
-// Kernels for AVX-512, compiled with that instruction set (runs.hpp).
+// Kernels for AVX-512 of leaves with five directions, compiled with that instruction set
+// (runs.hpp).
 #include "dca/simd/avx512.hpp"
 
 #include "dca/simd/kernels.hpp"
@@ -11,6 +12,6 @@ RunKernels<Leaf> avx512_kernels() {
 }
 
 #define CATENA_INSTANTIATE(...) template RunKernels<__VA_ARGS__> avx512_kernels();
-CATENA_LEAVES_IN_LANES(CATENA_INSTANTIATE)
+CATENA_LEAVES_OF_FIVE_DIRECTIONS(CATENA_INSTANTIATE)
 
 }  // namespace catena::dca

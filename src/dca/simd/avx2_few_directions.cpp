@@ -1,4 +1,5 @@
-// Kernels for AVX2, compiled with that instruction set (runs.hpp).
+// Kernels for AVX2 of leaves with up to four directions, compiled with that instruction set
+// (runs.hpp).
 #include "dca/simd/avx2.hpp"
 
 #include "dca/simd/kernels.hpp"
@@ -11,6 +12,6 @@ RunKernels<Leaf> avx2_kernels() {
 }
 
 #define CATENA_INSTANTIATE(...) template RunKernels<__VA_ARGS__> avx2_kernels();
-CATENA_LEAVES_IN_LANES(CATENA_INSTANTIATE)
+CATENA_LEAVES_OF_FEW_DIRECTIONS(CATENA_INSTANTIATE)
 
 }  // namespace catena::dca

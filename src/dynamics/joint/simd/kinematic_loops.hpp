@@ -1,5 +1,5 @@
-// Implementation of JointLoops for vectors of type `Real`. Each source of this folder compiles it
-// for one instruction set.
+// Implementation of KinematicLoops for vectors of type `Real`, compiled for one instruction set by
+// each source that includes it.
 #pragma once
 
 #include "dca/simd/abreast.hpp"
@@ -236,9 +236,24 @@ void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
                  as_vector(normalized(before * first.rotation)));
 }
 
-/// The table of loops for one vector type.
+/// KinematicLoops::follow_revolutes for one vector type.
+template <class Real>
+[[gnu::flatten]] void follow_revolutes(JointLoads const& loads, RunsAbreast const& runs,
+                                       double const* constants, std::int64_t begin,
+                                       std::int64_t end) {
+    FollowRevolutes<Real> lanes(loads, constants, runs.prefetches);
+    for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items, i);
+}
+/// KinematicLoops::begin_runs for one vector type.
+template <class Real>
+[[gnu::flatten]] void begin_all_runs(JointScan const& scan, RunsAbreast const& runs,
+                                     std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) begin_runs<Real>(scan, runs.items[i]);
+}
+
+/// The other loops for one vector type, with or without positions.
 template <class Real, bool positions>
-struct LoopsOf {
+struct KinematicLoopsOf {
     using Bodies = dca::Abreast<Real>;
     [[gnu::flatten]] static void set_relative(JointChains const& chains, BodyLanes const& bodies,
                                               std::int64_t begin, std::int64_t end) {
@@ -250,51 +265,22 @@ struct LoopsOf {
         FollowRuns<Real, positions> lanes(scan, runs.prefetches);
         for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items[i]);
     }
-    [[gnu::flatten]] static void follow_revolutes(JointLoads const& loads, RunsAbreast const& runs,
-                                                  double const* constants, std::int64_t begin,
-                                                  std::int64_t end) {
-        FollowRevolutes<Real> lanes(loads, constants, runs.prefetches);
-        for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items, i);
-    }
-    [[gnu::flatten]] static void begin_runs(JointScan const& scan, RunsAbreast const& runs,
-                                            std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) catena::begin_runs<Real>(scan, runs.items[i]);
-    }
     [[gnu::flatten]] static void set_motion(JointChains const& chains, BodyLanes const& bodies,
                                             std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
             chains.template set_motion<positions>(Bodies{bodies.first[i], bodies.prefetches},
                                                   false);
     }
-    [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out,
-                                           BodyLanes const& bodies, std::int64_t begin,
-                                           std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i)
-            chains.set_rates(Bodies{bodies.first[i], bodies.prefetches}, out);
-    }
-    [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage,
-                                             BodyLanes const& bodies, std::int64_t begin,
-                                             std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i)
-            steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.prefetches},
-                                                  stage);
-    }
-    [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps,
-                                                EmbeddedStage const& stage, BodyLanes const& bodies,
-                                                std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i)
-            steps.template advance<positions>(Bodies{bodies.first[i], bodies.prefetches}, stage);
-    }
-    static constexpr JointLoops loops() {
-        return {set_relative, follow,    follow_revolutes, begin_runs,
-                set_motion,   set_rates, runge_kutta,      embedded_stage};
+    static constexpr KinematicLoops table() {
+        return {set_relative, follow, follow_revolutes<Real>, begin_all_runs<Real>, set_motion};
     }
 };
 
 /// Table of loops with or without positions.
 template <class Real>
-JointLoops joint_loops(bool positions) {
-    return positions ? LoopsOf<Real, true>::loops() : LoopsOf<Real, false>::loops();
+KinematicLoops kinematic_loops(bool positions) {
+    return positions ? KinematicLoopsOf<Real, true>::table()
+                     : KinematicLoopsOf<Real, false>::table();
 }
 
 }  // namespace catena
