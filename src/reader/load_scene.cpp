@@ -166,7 +166,10 @@ Scene parse_scene(std::string const& text, std::string const& name,
     for (std::string const& change : overrides) scene::apply_override(*root, change);
     Fields const fields(*root, scene::keys::top);
     Scene made = read_frame(fields, name);
+    // Positions that those of a frame replace need not fit the links.
+    bool const relax = std::exchange(made.relax, made.relax || fields.find("start"));
     std::vector<scene::Draft> drafts = read_chains(fields, made);
+    made.relax = relax;
     if (Node const* const cubic = cubic_of(fields)) set_cube(*cubic, drafts, made);
     scene::check_together(*root, made, drafts);
     give_places(fields, drafts, made);

@@ -123,6 +123,18 @@ TEST(Place, rigid_domains_find_places) {
     expect_apart(scene);
 }
 
+/// `fill` lets ends stand out. In a box that is hardly longer than its region they may meet.
+TEST(Place, ends_that_fill_lets_meet_across_the_box_are_refused) {
+    std::string refusal = "accepted";
+    for (int seed = 1; seed < 20 && refusal == "accepted"; ++seed)
+        refusal = refusal_of("chains: [{count: 60, " + peptide +
+                             "}]\nbox: {periodic: [8, 8, 9], fill: [8, 8, 8.3]}\ndynamics: "
+                             "{integrator: rattle, step: 0.01, seed: " +
+                             std::to_string(seed) + "}\n");
+    EXPECT_NE(refusal.find("meet across the box"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("write `place: {region: ...}`"), std::string::npos) << refusal;
+}
+
 std::string advised(std::string const& message) {
     std::smatch found;
     return std::regex_search(message, found, std::regex("`thickness: ([0-9.]+)`")) ? found[1].str()

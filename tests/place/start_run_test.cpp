@@ -1,6 +1,8 @@
 // Scenes start from frames of Catena's own runs.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "io/output.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/place/beads_of_scene.hpp"
@@ -65,6 +67,19 @@ TEST_F(StartRun, continues_from_the_last_frame_bit_for_bit) {
         EXPECT_NE(scene.notes[0].find("frame 1 of 0 to 1 (step 50, 0.5 ps)"), std::string::npos)
             << scene.notes[0];
     }
+}
+
+/// Own positions that fit no links are no reason to refuse those of a frame.
+TEST_F(StartRun, replaces_positions_that_would_be_refused) {
+    write_run(read(yaml_));
+    std::ofstream table(folder_ / "short.csv");
+    for (int k = 0; k < 8; ++k) table << 0.2 * k << "," << 0.01 * (k % 2) << ",0\n";
+    table.close();
+    std::string const own =
+        "chains: [{name: a, sequence: GSKEELRK, model: calvados2, positions: short.csv}, {name: b, "
+        "sequence: GSKEELRK, model: calvados2}]\nbox: {periodic: [12, 12, 12]}\n";
+    EXPECT_NE(refusal(own), "accepted");
+    EXPECT_EQ(refusal(own + "start: {from: run}\n"), "accepted");
 }
 
 TEST_F(StartRun, of_other_chains_is_refused_with_both) {
