@@ -29,7 +29,7 @@ namespace {
 /// over a minute without an end, so these run in a process that can be stopped.
 constexpr std::int64_t most_constraints_unguarded = 200000;
 constexpr std::chrono::seconds patience{30};
-constexpr double block_seconds = 0.1, longest_block = 4;
+constexpr double openmm_block_seconds = 0.1, longest_block = 4;
 /// Seconds per step from which two steps are enough to warm up.
 constexpr double slow_seconds = 1;
 /// Number of steps whose phases are recorded; the median one is drawn.
@@ -54,7 +54,7 @@ struct Runner {
         double const start = seconds_now();
         step(3);
         double const one = (seconds_now() - start) / 3;
-        of_block = static_cast<int>(std::clamp(block_seconds / one, 1.0, 1000.0));
+        of_block = static_cast<int>(std::clamp(openmm_block_seconds / one, 1.0, 1000.0));
         if (period * one < longest_block) of_block = std::max(of_block, period);
         step(std::min(of_block, 40));
     }
