@@ -8,6 +8,7 @@
 
 #include "bench/sampling_options.hpp"
 #include "command/analyse_options.hpp"
+#include "command/import_options.hpp"
 #include "console/option_values.hpp"
 #include "error.hpp"
 #include "report/figures.hpp"
@@ -39,6 +40,7 @@ struct Words {
     std::vector<std::string> scenes;
     SamplingOptionTexts sampling;
     AnalyseOptionTexts analyse;
+    ImportOptionTexts import_;
     bool quick = false, overwrite = false, branch = false, explain = false, measure = false,
          calibrate = false, alike = false;
 };
@@ -305,6 +307,7 @@ void add_commands(CLI::App& app, Words& words) {
     add_keys(app, words);
     for (CLI::App* each : add_trajectory_commands(app, words.analyse))
         add_answer(*each, words.common);
+    add_answer(*add_import(app, words.import_), words.common);
 }
 
 /// Returns views of the texts.
@@ -559,6 +562,7 @@ Request request_of(std::string const& command, Words const& words) {
     if (command == "bench") return bench_request(words);
     if (command == "keys") return keys_request(words);
     if (command == "analyse") return analyse_request(words.analyse, checked(words.common));
+    if (command == "import") return import_request(words.import_, checked(words.common));
     if (command == "convert") return convert_request(words.analyse, checked(words.common));
     auto request = scene_request<SolveRequest>(words, "solve");
     request.accelerations = words.accelerations;
