@@ -1,4 +1,5 @@
-// Entry point of the command line: catena check | plan | solve | run | report | bench | keys. The
+// Entry point of the command line: catena check | plan | solve | run | report | bench | keys |
+// analyse | convert | import. The
 // commands are implemented in command/.
 #include "bench/benchmarks.hpp"
 #include "command/commands.hpp"
@@ -67,6 +68,10 @@ int execute(Session const& session, AnalyseRequest const& request) {
 
 int execute(Session const& session, ConvertRequest const& request) {
     return session.conclude(convert_run(session.communicator(), request));
+}
+
+int execute(Session const& session, ImportRequest const& request) {
+    return session.conclude(import_folder(session.communicator(), request));
 }
 
 }  // namespace

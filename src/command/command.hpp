@@ -45,5 +45,6 @@ std::unique_ptr<Command> bench_command();
 std::unique_ptr<Command> keys_command();
 std::unique_ptr<Command> analyse_command();
 std::unique_ptr<Command> convert_command();
+std::unique_ptr<Command> import_command();
 
 }  // namespace catena::command

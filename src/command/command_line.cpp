@@ -16,7 +16,7 @@ Commands all_commands() {
     Commands all;
     for (auto* const make :
          {check_command, plan_command, solve_command, run_command, report_command, bench_command,
-          keys_command, analyse_command, convert_command})
+          keys_command, analyse_command, convert_command, import_command})
         all.push_back(make());
     return all;
 }

@@ -32,6 +32,9 @@ Outcome analyse_run(Communicator const&, AnalyseRequest const&);
 /// Writes the trajectory of a run in another format, on rank 0. Collective.
 Outcome convert_run(Communicator const&, ConvertRequest const&);
 
+/// Writes a scene from the files of another tool, on rank 0, and checks it. Collective.
+Outcome import_folder(Communicator const&, ImportRequest const&);
+
 /// Scenes that `report` measures: the solver's error on all scenes, the errors of integrators and
 /// forces on those that have them.
 struct ReportScenes {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -123,6 +124,16 @@ struct ConvertRequest : CommonOptions {
     std::string folder;  // of a run, or its trajectory
     analysis::DcdRequest dcd;
 };
+/// A request of `import`.
+struct ImportRequest : CommonOptions {
+    std::string source;    // folder or serialised System
+    std::string topology;  // PDB, mmCIF or State; empty: that of the folder
+    std::string output;    // scene; empty: the System's name in the working folder
+    /// Forces of the System to leave out, and links in the place of custom bonds (nm).
+    std::vector<std::string> leave_out;
+    std::vector<std::pair<std::string, double>> links;
+    bool overwrite = false;
+};
 /// Returns the default numbers of bodies of a benchmark; empty if it chooses them itself.
 std::vector<std::int64_t> bench_sizes(std::string const& name);
 /// True if the benchmark has the option --figure, --output, --joints, --alike, --loads, --sizes or
@@ -139,6 +150,6 @@ struct Answer : CommonOptions {
 
 using Request =
     std::variant<Answer, CheckRequest, PlanRequest, SolveRequest, RunRequest, ReportRequest,
-                 BenchRequest, KeysRequest, AnalyseRequest, ConvertRequest>;
+                 BenchRequest, KeysRequest, AnalyseRequest, ConvertRequest, ImportRequest>;
 
 }  // namespace catena::command

@@ -17,6 +17,13 @@ Vec3 middle_of(std::span<Vec3 const> positions) {
     return (1.0 / static_cast<double>(positions.size())) * sum;
 }
 
+/// True if the energy may depend on coordinates, not only on distances.
+bool may_know_places(OpenMM::Force const& force) {
+    return dynamic_cast<OpenMM::CustomExternalForce const*>(&force) != nullptr ||
+           dynamic_cast<OpenMM::CustomCompoundBondForce const*>(&force) != nullptr ||
+           dynamic_cast<OpenMM::CustomCentroidBondForce const*>(&force) != nullptr;
+}
+
 }  // namespace
 
 Placement placement_for(OpenMM::System const& system) {
@@ -25,8 +32,7 @@ Placement placement_for(OpenMM::System const& system) {
         OpenMM::Force const& force = system.getForce(i);
         if (!can_be_split(force) && dynamic_cast<OpenMM::NonbondedForce const*>(&force) == nullptr)
             return Placement::as_given;
-        if (dynamic_cast<OpenMM::CustomExternalForce const*>(&force) != nullptr)
-            return Placement::as_given;
+        if (may_know_places(force)) return Placement::as_given;
         images = images && force.usesPeriodicBoundaryConditions();
         if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
             images = images && (pairs->getNumExceptions() == 0 ||

@@ -33,6 +33,14 @@ ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_
     throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
 }
 
+BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name) {
+    throw built_without("OpenMM", name, remedy);
+}
+
+std::vector<Vec3> read_openmm_state(std::string const&, std::string const& where) {
+    throw built_without("OpenMM", where, remedy);
+}
+
 std::unique_ptr<OpenMmIntegrator> make_openmm_integrator(OpenMmSpec const&, BeadSystem const& beads,
                                                          Communicator const&, OwnLinks,
                                                          OwnRun const&, std::vector<Vec3> const&) {

@@ -20,6 +20,7 @@
 #include "scene/node.hpp"
 #include "structure/residue_table.hpp"
 #include "systems/box.hpp"
+#include "systems/extra_forces.hpp"
 #include "systems/force_layers.hpp"
 #include "systems/subset.hpp"
 
@@ -356,6 +357,7 @@ OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
                          where, "use builder: calvados2, or system: and topology:");
     OpenMmModel model =
         spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
+    add_extra_forces(model, spec, beads);
     if (communicator.size() > 1 && !spec.replicate)
         refuse_what_cannot_be_split(model, where, communicator.size());
     return model;

@@ -151,6 +151,18 @@ constexpr Key openmm_keys[] = {
      "audit: true"},
     {"force_groups", "list of integers, 0 to 31", "all", "",
      "Only these force groups of the System count.", "force_groups: [1, 2]"},
+    {"leave_out", "list of texts", "none", "",
+     "Forces of the System with one of these names or kinds do not count.",
+     "leave_out: [CustomExternalForce]"},
+    {"links", "map of lengths", "none", "length",
+     "Bonds of a CustomBondForce, by its name or kind, become rigid links of this length where "
+     "they "
+     "join neighbours.",
+     "links: {FENE: 0.97}"},
+    {"extra", "list of paths", "none", "",
+     "These serialised forces of OpenMM (XML) act in addition: restraints, pulling, umbrella "
+     "windows.",
+     "extra: [pull.xml]"},
     {"charge_termini", "`both`, `N`, `C`, `none`", "`both`", "",
      "These ends are charged termini in chains without a `charge_termini` of their own.",
      "charge_termini: N"},

@@ -10,6 +10,7 @@
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
+#include "scene/force_changes.hpp"
 
 namespace catena::scene {
 
@@ -47,6 +48,26 @@ void read_map(Node const& node, OpenMmSpec& spec) {
     }
 }
 
+/// Reads `links`: name or kind of a force to the length of the links that replace its bonds.
+void read_links(Node const& node, ForceChanges& changes) {
+    if (node.kind != Node::Kind::map)
+        fail(node, describe(node) + " is not a map",
+             "give force: length, as in links: {CustomBondForce: 0.97}");
+    for (Node const& item : node.items) changes.links.emplace_back(item.key, positive(item));
+}
+
+/// Reads `leave_out`, `links` and `extra`.
+ForceChanges read_changes(Fields const& fields, std::string const& file) {
+    ForceChanges changes;
+    if (Node const* const left = fields.find("leave_out"))
+        for (Node const& name : list(*left).items) changes.leave_out.push_back(text(name));
+    if (Node const* const links = fields.find("links")) read_links(*links, changes);
+    if (Node const* const extra = fields.find("extra"))
+        for (Node const& force : list(*extra).items)
+            changes.extra.push_back(existing_file(force, file));
+    return changes;
+}
+
 /// Reads the keys that define the force model: a builder, or a System with topology or map.
 void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file) {
     Node const* const builder = fields.find("builder");
@@ -60,7 +81,8 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
     if (builder) {
         choice<int>(*builder, {{"calvados2", 2}, {"calvados3", 3}});
         spec.builder = builder->text;
-        for (Node const* const extra : {topology, map, fields.find("force_groups")})
+        for (Node const* const extra : {topology, map, fields.find("force_groups"),
+                                        fields.find("leave_out"), fields.find("links")})
             if (extra)
                 fail(*extra, fmt::format("key `{}` does not apply to a builder", extra->key),
                      "leave it out or give `system`");
@@ -124,6 +146,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
     if (Node const* const groups = fields.find("force_groups"))
         for (Node const& group : list(*groups).items)
             spec.force_groups.push_back(static_cast<int>(whole(group, 0, 31)));
+    add_changes(read_changes(fields, file), spec);
     return spec;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "reader/force_notes.hpp"
+#include "scene/force_changes.hpp"
 
 namespace catena::scene {
 
@@ -31,7 +32,7 @@ WrittenSystem::WrittenSystem(Scene& scene)
     : links_(read_system_links(*scene.forces.openmm, scene.file)),
       temperature_(scene.forces.openmm->temperature) {
     for (std::string const& note : links_.notes) scene.note(note);
-    for (auto const& [chain, particles] : scene.forces.openmm->map)
+    for (auto const& [chain, particles] : chain_map(*scene.forces.openmm))
         first_.emplace(chain, particles.first);
 }
 

@@ -12,6 +12,7 @@
 
 #include "reader/models.hpp"
 #include "scene/fields.hpp"
+#include "scene/force_changes.hpp"
 #include "scene/freedom.hpp"
 #include "structure/calvados2.hpp"
 
@@ -209,8 +210,9 @@ std::vector<std::string> const& residues_of(ChainSpec const& chain) {
 void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
     std::unordered_map<std::string_view, Draft const*> of_name;
     for (Draft const& draft : drafts) of_name.emplace(draft.chain.name, &draft);
-    for (std::size_t i = 0; i < openmm.map.size(); ++i) {
-        auto const& [name, range] = openmm.map[i];
+    ChainMap const map = chain_map(openmm);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        auto const& [name, range] = map[i];
         auto const found = of_name.find(name);
         Node const& entry = at.find("map")->items[i];  // entries are in the order of the file
         if (found == of_name.end())

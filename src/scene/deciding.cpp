@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "scene/force_changes.hpp"
 #include "scene/hash.hpp"
 
 namespace catena::scene {
@@ -46,7 +47,7 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     content("system", o.system);
     content(o.builder.empty() ? "topology" : "residues", o.topology);
     std::vector<std::string> map;
-    for (auto const& [chain, range] : o.map)
+    for (auto const& [chain, range] : chain_map(o))
         map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
     std::string list = fmt::format("{}", fmt::join(map, ", "));
     if (list.size() > longest_list)
@@ -59,6 +60,13 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     add(values, at + "switch_width", o.switch_width);
     if (!o.force_groups.empty())
         add(values, at + "force_groups", fmt::format("{}", fmt::join(o.force_groups, ", ")));
+    ForceChanges const changes = changes_of(o);
+    if (!changes.leave_out.empty())
+        add(values, at + "leave_out", fmt::format("{}", fmt::join(changes.leave_out, ", ")));
+    for (auto const& [force, length] : changes.links) add(values, at + "links." + force, length);
+    for (std::size_t i = 0; i < changes.extra.size(); ++i)
+        add(values, fmt::format("{}extra[{}]", at, i),
+            "content " + content_print(changes.extra[i]));
 }
 
 void add_forces(Values& values, ForceSpec const& f) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "error.hpp"
+#include "scene/force_changes.hpp"
 
 namespace catena::scene {
 
@@ -180,9 +181,15 @@ std::string fingerprint(Scene const& scene) {
     print.add(scene.forces.openmm.has_value());
     if (scene.forces.openmm) {
         OpenMmSpec const& o = *scene.forces.openmm;
-        print.add_each(o.builder, content_of(o.system), content_of(o.topology), o.map,
+        print.add_each(o.builder, content_of(o.system), content_of(o.topology), chain_map(o),
                        o.temperature, o.ionic_strength, o.ph, o.switch_width);
         print.add(o.force_groups);
+        ForceChanges const changes = changes_of(o);
+        add_named(print, "left out", !changes.leave_out.empty(), changes.leave_out);
+        for (auto const& [force, length] : changes.links)
+            add_named(print, "links", true, force, length);
+        for (std::string const& file : changes.extra)
+            add_named(print, "extra", true, content_of(file));
     }
     DynamicsSpec const& d = scene.dynamics;
     ForceSpec const& f = scene.forces;

@@ -132,6 +132,69 @@ std::unique_ptr<Force> copy_terms(CustomExternalForce const& from, TermFilter& f
     return to;
 }
 
+/// Copies the tabulated functions.
+template <class Source>
+void copy_tables(Source const& from, Source& to) {
+    for (int i = 0; i < from.getNumTabulatedFunctions(); ++i)
+        to.addTabulatedFunction(from.getTabulatedFunctionName(i),
+                                from.getTabulatedFunction(i).Copy());
+}
+
+/// Passes a term with any number of particles to the filter.
+bool keep_all(TermFilter& filter, std::vector<int>& particles) {
+    std::vector<int*> pointers;
+    for (int& p : particles) pointers.push_back(&p);
+    return !pointers.empty() && filter.keep(std::span<int* const>(pointers));
+}
+
+std::unique_ptr<Force> copy_terms(CustomCompoundBondForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<CustomCompoundBondForce>(from.getNumParticlesPerBond(),
+                                                        from.getEnergyFunction());
+    copy_periodicity(from, *to);
+    copy_globals(from, *to);
+    copy_tables(from, *to);
+    for (int i = 0; i < from.getNumPerBondParameters(); ++i)
+        to->addPerBondParameter(from.getPerBondParameterName(i));
+    std::vector<int> particles;
+    std::vector<double> parameters;
+    for (int i = 0; i < from.getNumBonds(); ++i) {
+        from.getBondParameters(i, particles, parameters);
+        if (keep_all(filter, particles)) to->addBond(particles, parameters);
+    }
+    return to;
+}
+
+/// A term needs the particles of all its groups. Each kept term gets groups of its own.
+std::unique_ptr<Force> copy_terms(CustomCentroidBondForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<CustomCentroidBondForce>(from.getNumGroupsPerBond(),
+                                                        from.getEnergyFunction());
+    copy_periodicity(from, *to);
+    copy_globals(from, *to);
+    copy_tables(from, *to);
+    for (int i = 0; i < from.getNumPerBondParameters(); ++i)
+        to->addPerBondParameter(from.getPerBondParameterName(i));
+    std::vector<int> groups, members, all;
+    std::vector<double> parameters, weights;
+    for (int i = 0; i < from.getNumBonds(); ++i) {
+        from.getBondParameters(i, groups, parameters);
+        all.clear();
+        for (int const group : groups) {
+            from.getGroupParameters(group, members, weights);
+            all.insert(all.end(), members.begin(), members.end());
+        }
+        if (!keep_all(filter, all)) continue;
+        auto next = all.begin();
+        for (int& group : groups) {
+            from.getGroupParameters(group, members, weights);
+            auto const end = next + static_cast<std::ptrdiff_t>(members.size());
+            group = to->addGroup({next, end}, weights);
+            next = end;
+        }
+        to->addBond(groups, parameters);
+    }
+    return to;
+}
+
 /// Tries the bonded kinds one after the other; nullptr if none matches.
 template <class... Kinds>
 std::unique_ptr<Force> copy_bonded_as(Force const& from, TermFilter& filter) {
@@ -149,7 +212,8 @@ std::unique_ptr<Force> copy_bonded_as(Force const& from, TermFilter& filter) {
 std::unique_ptr<Force> copy_bonded(Force const& from, TermFilter& filter) {
     return copy_bonded_as<HarmonicBondForce, HarmonicAngleForce, PeriodicTorsionForce,
                           RBTorsionForce, CustomBondForce, CustomAngleForce, CustomTorsionForce,
-                          CustomExternalForce>(from, filter);
+                          CustomExternalForce, CustomCompoundBondForce, CustomCentroidBondForce>(
+        from, filter);
 }
 
 }  // namespace catena

@@ -5,6 +5,7 @@
 
 #include <initializer_list>
 #include <memory>
+#include <span>
 
 namespace catena {
 
@@ -13,7 +14,10 @@ class TermFilter {
   public:
     virtual ~TermFilter() = default;
     /// Returns true to keep the term; may change the particles' numbers in place.
-    virtual bool keep(std::initializer_list<int*> particles) = 0;
+    virtual bool keep(std::span<int* const> particles) = 0;
+    bool keep(std::initializer_list<int*> particles) {
+        return keep(std::span<int* const>(particles.begin(), particles.size()));
+    }
 };
 
 /// Returns a copy of a bonded force with the terms that the filter keeps. Returns nullptr for a

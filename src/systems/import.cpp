@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "scene/force_changes.hpp"
 #include "scene/node.hpp"
 #include "systems/links.hpp"
 #include "systems/model.hpp"
@@ -63,37 +64,96 @@ std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joining
                                : fmt::format("{} chains are closed", rings))};
 }
 
+/// True if a bond of the chain that begins with particle `first` stays a force.
+bool has_cut(PdbChain const& chain, int first, Joinings const& joinings) {
+    for (int p = first + 1; p < first + static_cast<int>(chain.size()); ++p)
+        if (joinings.bond_stays_force(p)) return true;
+    return false;
+}
+
+/// Moves the beads of a chain by whole edges of the box, each to the image nearest to the bead
+/// before it. Returns true if a bead was moved.
+bool make_whole(PdbChain& chain, Vec3 const& box) {
+    bool moved = false;
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+        Vec3 const step = chain.position[k] - chain.position[k - 1];
+        Vec3 shift = Vec3::zero();
+        for (int i = 0; i < 3; ++i) shift[i] = -box[i] * std::round(step[i] / box[i]);
+        chain.position[k] = chain.position[k] + shift;
+        moved = moved || norm(shift) > 0;
+    }
+    return moved;
+}
+
+/// Makes the chains whole that will be cut where bonds stay forces. Other chains are made whole
+/// when the scene is read.
+void make_cut_chains_whole(std::vector<PdbChain>& chains, Joinings const& joinings,
+                           ImportedSystem& imported) {
+    int first = 0, moved = 0;
+    for (PdbChain& chain : chains) {
+        if (has_cut(chain, first, joinings) && make_whole(chain, imported.box)) ++moved;
+        first += static_cast<int>(chain.size());
+    }
+    if (moved > 0)
+        imported.notes.push_back(fmt::format(
+            "{} of the topology {} made whole across the sides of the box, bead by bead "
+            "by minimum image.",
+            moved == 1 ? "1 chain" : fmt::format("{} chains", moved), moved == 1 ? "is" : "are"));
+}
+
 }  // namespace
 
 SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
-    auto const system = read_openmm_system(spec.system, where);
     SystemLinks links;
-    links.notes = leave_movers_out(*system, spec.force_groups, where);
+    auto const system = read_scene_system(spec, scene_file, links.notes);
     links.periodic = system->usesPeriodicBoundaryConditions();
-    Joinings const joinings(*system, where);
+    Joinings const joinings(*system, changes_of(spec).links, where);
     links.to_previous.resize(static_cast<std::size_t>(system->getNumParticles()));
     for (int p = 1; p < system->getNumParticles(); ++p)
         links.to_previous[static_cast<std::size_t>(p)] = joinings.to_previous(p);
     return links;
 }
 
+BondedChains chains_by_bonds(OpenMmSpec const& spec, std::string const& name) {
+    std::vector<std::string> ignored;
+    auto const system = read_scene_system(spec, name, ignored);
+    Joinings const joinings(*system, changes_of(spec).links, openmm_key(name, "system"));
+    BondedChains chains;
+    for (int p = 0; p < system->getNumParticles(); ++p) {
+        bool const joined =
+            p > 0 && (joinings.to_previous(p).holds() || joinings.bond_stays_force(p));
+        if (!joined) chains.sizes.push_back(0);
+        ++chains.sizes.back();
+        chains.mass.push_back(system->getParticleMass(p));
+    }
+    OpenMM::Vec3 a, b, c;
+    system->getDefaultPeriodicBoxVectors(a, b, c);
+    if (system->usesPeriodicBoundaryConditions()) chains.box = Vec3{{a[0], b[1], c[2]}};
+    return chains;
+}
+
 ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
-    auto const system = read_openmm_system(spec.system, where);
     ImportedSystem imported;
-    imported.notes = leave_movers_out(*system, spec.force_groups, where);
-    auto const chains =
+    auto const system = read_scene_system(spec, scene_file, imported.notes);
+    auto whole =
         read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"), &imported.notes);
     std::size_t atoms = 0;
-    for (auto const& chain : chains) atoms += chain.size();
+    for (auto const& chain : whole) atoms += chain.size();
     if (static_cast<int>(atoms) != system->getNumParticles())
         throw InputError(fmt::format("the topology has {} atoms and the System {} particles", atoms,
                                      system->getNumParticles()),
                          openmm_key(scene_file, "topology"),
                          "give one atom per particle, in the System's order");
 
-    Joinings const joinings(*system, where);
+    Joinings const joinings(*system, changes_of(spec).links, where);
+    imported.periodic = system->usesPeriodicBoundaryConditions();
+    OpenMM::Vec3 a, b, c;
+    system->getDefaultPeriodicBoxVectors(a, b, c);
+    imported.box = {{a[0], b[1], c[2]}};
+    if (imported.periodic) make_cut_chains_whole(whole, joinings, imported);
+    auto const chains = cut_at_bonds(whole, joinings, &imported.notes);
     StiffLinks links(spec.temperature, where);
     int first = 0;
     for (auto const& chain : chains) {
@@ -103,10 +163,6 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     for (auto const& notes : {links.notes(), note_rings(chains, joinings, spec.temperature)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.largest_spread = links.largest_spread();
-    imported.periodic = system->usesPeriodicBoundaryConditions();
-    OpenMM::Vec3 a, b, c;
-    system->getDefaultPeriodicBoxVectors(a, b, c);
-    imported.box = {{a[0], b[1], c[2]}};
     return imported;
 }
 

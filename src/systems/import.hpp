@@ -2,6 +2,8 @@
 // `chains`.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +58,24 @@ ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_
 
 /// Reads the links of a System. Throws like import_openmm_system(), but not for neighbours.
 SystemLinks read_system_links(OpenMmSpec const&, std::string const& scene_file);
+
+/// The particles of a System as chains by its bonds.
+struct BondedChains {
+    /// Number of particles of each chain, a run of consecutive particles that harmonic bonds,
+    /// constraints or CustomBondForces join.
+    std::vector<std::int64_t> sizes;
+    std::vector<double> mass;  // amu, one per particle
+    /// Edges of the box, nm, if a force uses it.
+    std::optional<Vec3> box;
+};
+/// Finds the chains of the System that the spec names. Throws like import_openmm_system(); `name`
+/// takes the place of the scene file in messages.
+BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name);
+
+/// Returns the positions in a serialised State, nm. Throws InputError for another file and for a
+/// State without positions; `where` is the place in messages. A build without OpenMM throws "built
+/// without OpenMM".
+std::vector<Vec3> read_openmm_state(std::string const& file, std::string const& where);
 
 /// Names a key in messages: "scene.yaml: forces.openmm.system".
 inline std::string openmm_key(std::string const& scene_file, std::string const& key) {

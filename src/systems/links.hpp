@@ -8,31 +8,54 @@
 #include <unordered_map>
 #include <vector>
 
+#include "systems/model.hpp"
+#include "systems/pdb_topology.hpp"
 #include "systems/stiff_links.hpp"
 
 namespace catena {
 
-/// All pairs of particles that harmonic bonds or constraints of a System join.
+/// All pairs of particles that harmonic bonds or constraints of a System join. Custom bonds between
+/// consecutive particles join them if `links` names their force.
 class Joinings {
   public:
     /// Throws InputError for bonds of negative or infinite stiffness and for unknown particles.
     /// `where` is the scene file and key.
-    Joinings(OpenMM::System const&, std::string const& where);
+    Joinings(OpenMM::System const&, NamedLinks const& links, std::string const& where);
     /// Joining of particle p and the preceding one; it does not hold if nothing joins them.
     Joining to_previous(int p) const { return between(p - 1, p); }
     /// Joining of any two particles.
     Joining between(int a, int b) const;
+    /// True if a CustomBondForce alone joins particle p and the preceding one.
+    bool bond_stays_force(int p) const {
+        return custom_to_previous_[static_cast<std::size_t>(p)] >= 0 && !to_previous(p).holds();
+    }
+    /// Kind of the custom bond between particle p and the preceding one, e.g. "CustomBondForce
+    /// (FENE)". Precondition: bond_stays_force(p).
+    std::string custom_bond(int p) const;
+    /// Name by which `links` can name that bond's force.
+    std::string custom_name(int p) const;
     /// Throws the InputError for a missing link between p - 1 and p, in a chain that begins with
     /// particle `first`. The message names the reason and the place `at`.
     [[noreturn]] void refuse_gap(int p, int first, std::string const& at) const;
 
   private:
-    /// Kind of a custom bond between two particles; empty if there is none.
-    std::string custom_bond(int a, int b) const;
+    void add_harmonic_bonds(OpenMM::HarmonicBondForce const&, std::string const& where);
+    void add_custom_bonds(int force, NamedLinks const&, std::string const& where);
+    void refuse_foreign(char const* what, int a, int b, std::string const& where) const;
+    Joining& at(int a, int b);
 
     OpenMM::System const& system_;
     std::vector<std::unordered_map<int, Joining>>
         to_lower_;  // key: higher particle, then lower one
+    /// Index of a CustomBondForce that joins each particle to the preceding one; -1: none.
+    std::vector<int> custom_to_previous_;
 };
+
+/// Cuts the chains of a topology where a CustomBondForce alone joins neighbours, which Catena's
+/// chains cannot hold: the bond stays a force between two chains. Further pieces are named A-2,
+/// A-3,
+/// ... `notes`, unless nullptr, receives a sentence on them that tells how to make links.
+std::vector<PdbChain> cut_at_bonds(std::vector<PdbChain> const&, Joinings const&,
+                                   std::vector<std::string>* notes = nullptr);
 
 }  // namespace catena

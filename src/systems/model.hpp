@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "systems/bead_system.hpp"
@@ -38,6 +39,9 @@ OpenMmModel calvados2_model(OpenMmSpec const&, BeadSystem const&);
 /// Builds the model from a serialised System whose particles are the beads.
 OpenMmModel system_model(OpenMmSpec const&, BeadSystem const&);
 
+/// Number of force groups that OpenMM distinguishes.
+inline constexpr int force_groups_of_openmm = 32;
+
 /// Class name of the force, e.g. "CustomNonbondedForce".
 std::string kind_of(OpenMM::Force const&);
 
@@ -51,6 +55,23 @@ std::vector<std::string> term_names(OpenMM::System const&, std::vector<int> cons
 /// versions.
 std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file,
                                                    std::string const& where);
+
+/// Reads the serialised Force in `file`. Throws InputError like read_openmm_system().
+std::unique_ptr<OpenMM::Force> read_openmm_force(std::string const& file, std::string const& where);
+
+/// True if the name is the force's own or that of its kind.
+bool is_named(OpenMM::Force const&, std::string const& name);
+/// Links in the place of custom bonds: names or kinds of forces with lengths, nm
+/// (ForceChanges::links).
+using NamedLinks = std::vector<std::pair<std::string, double>>;
+/// Length of the links that replace bonds of a CustomBondForce, nm; 0 for other forces.
+double named_length(NamedLinks const&, OpenMM::Force const&);
+
+/// Reads the scene's System without the forces that ForceChanges::leave_out names and without
+/// movers. Appends sentences on these to `notes`. Throws InputError like read_openmm_system() and
+/// leave_movers_out(), and for names of `leave_out` and `links` that the System does not have.
+std::unique_ptr<OpenMM::System> read_scene_system(OpenMmSpec const&, std::string const& scene_file,
+                                                  std::vector<std::string>& notes);
 
 /// Removes forces that move particles and returns a sentence on each. Removable are
 /// CMMotionRemovers, and thermostats and barostats in groups that `groups` (empty: all) does not

@@ -1,32 +1,45 @@
-// Implements the treatment of forces that move particles and of particles without dynamics.
+// Implements the treatment of forces that a scene leaves out or that move particles, and of
+// particles without dynamics.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
+#include "scene/force_changes.hpp"
+#include "scene/node.hpp"
 #include "systems/model.hpp"
 
 namespace catena {
 
 namespace {
 
+/// Ways to do without the force.
+std::string way_out(OpenMM::Force const& force) {
+    return fmt::format(
+        "remove it, or leave it out by `leave_out: [{0}]` (catena import --leave-out {0})",
+        kind_of(force));
+}
+
+std::string constant_volume(OpenMM::Force const& force) {
+    return way_out(force) + ": Catena runs at constant volume, in the System's box";
+}
+
 /// Describes what the force would do in OpenMM; empty if it does not move particles. `remedy`
 /// receives the advice; it stays empty for a force that may be removed.
 std::string work_of(OpenMM::Force const& force, std::string& remedy) {
     if (auto const* isotropic = dynamic_cast<OpenMM::MonteCarloBarostat const*>(&force)) {
-        remedy = "remove it: Catena runs at constant volume, in the System's box";
+        remedy = constant_volume(force);
         return fmt::format("which changes the box's volume to hold {:.6g} bar at {:.6g} K",
                            isotropic->getDefaultPressure(), isotropic->getDefaultTemperature());
     }
     if (kind_of(force).find("Barostat") != std::string::npos) {
-        remedy = "remove it: Catena runs at constant volume, in the System's box";
+        remedy = constant_volume(force);
         return "which changes the box's edges to hold a pressure";
     }
     if (auto const* andersen = dynamic_cast<OpenMM::AndersenThermostat const*>(&force)) {
-        remedy =
-            "remove it: Catena's own integrators hold the temperature (dynamics.integrator: "
-            "g-baoab)";
+        remedy = way_out(force) +
+                 ": Catena's own integrators hold the temperature (dynamics.integrator: g-baoab)";
         return fmt::format("which holds {:.6g} K by collisions", andersen->getDefaultTemperature());
     }
     if (dynamic_cast<OpenMM::CMMotionRemover const*>(&force))
@@ -50,7 +63,86 @@ void refuse_particles(OpenMM::System const& system, std::string const& where) {
     }
 }
 
+/// Names of the System's forces for messages: their own names or kinds.
+std::string names_of(OpenMM::System const& system, bool custom_bonds_only) {
+    std::vector<std::string> names;
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        OpenMM::Force const& force = system.getForce(i);
+        if (custom_bonds_only && dynamic_cast<OpenMM::CustomBondForce const*>(&force) == nullptr)
+            continue;
+        std::string const name =
+            scene::shown(force.getName().empty() ? kind_of(force) : force.getName());
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Removes the forces with one of these names and returns a sentence on each.
+std::vector<std::string> leave_named_out(OpenMM::System& system,
+                                         std::vector<std::string> const& names,
+                                         std::string const& scene_file) {
+    std::vector<std::string> notes;
+    for (std::string const& name : names) {
+        std::size_t const before = notes.size();
+        for (int i = system.getNumForces() - 1; i >= 0; --i) {
+            OpenMM::Force const& force = system.getForce(i);
+            if (!is_named(force, name)) continue;
+            notes.push_back(
+                fmt::format("The System's {} is left out by `leave_out`.", kind_of(force)));
+            system.removeForce(i);
+        }
+        if (notes.size() == before)
+            throw InputError(
+                fmt::format("the System has no force `{}`", scene::shown(name)),
+                openmm_key(scene_file, "leave_out"),
+                fmt::format("name a force or a kind of force: {}", names_of(system, false)));
+    }
+    return notes;
+}
+
+/// Throws InputError for a name in `links` that is no CustomBondForce's.
+void refuse_unknown_links(OpenMM::System const& system, NamedLinks const& links,
+                          std::string const& scene_file) {
+    for (auto const& [name, length] : links) {
+        bool known = false;
+        for (int i = 0; i < system.getNumForces(); ++i)
+            known = known || (is_named(system.getForce(i), name) &&
+                              named_length(links, system.getForce(i)) > 0);
+        if (!known)
+            throw InputError(
+                fmt::format("the System has no CustomBondForce `{}`", scene::shown(name)),
+                openmm_key(scene_file, "links"),
+                fmt::format("name one of its CustomBondForces ({}); constraints and stiff harmonic "
+                            "bonds become links by themselves",
+                            names_of(system, true)));
+    }
+}
+
 }  // namespace
+
+bool is_named(OpenMM::Force const& force, std::string const& name) {
+    return force.getName() == name || kind_of(force) == name;
+}
+
+double named_length(NamedLinks const& links, OpenMM::Force const& force) {
+    if (dynamic_cast<OpenMM::CustomBondForce const*>(&force) == nullptr) return 0;
+    for (auto const& [name, length] : links)
+        if (is_named(force, name)) return length;
+    return 0;
+}
+
+std::unique_ptr<OpenMM::System> read_scene_system(OpenMmSpec const& spec,
+                                                  std::string const& scene_file,
+                                                  std::vector<std::string>& notes) {
+    std::string const where = openmm_key(scene_file, "system");
+    ForceChanges const changes = changes_of(spec);
+    auto system = read_openmm_system(spec.system, where);
+    for (auto const& more : {leave_named_out(*system, changes.leave_out, scene_file),
+                             leave_movers_out(*system, spec.force_groups, where)})
+        notes.insert(notes.end(), more.begin(), more.end());
+    refuse_unknown_links(*system, changes.links, scene_file);
+    return system;
+}
 
 std::vector<std::string> leave_movers_out(OpenMM::System& system, std::vector<int> const& groups,
                                           std::string const& where) {

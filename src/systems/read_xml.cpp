@@ -1,5 +1,5 @@
-// Implements the reading of serialised Systems. The text is checked before and the result after
-// OpenMM's own reader, which accepts damaged files silently.
+// Implements the reading of serialised Systems, forces and States. The text is checked before and
+// the result after OpenMM's own reader, which accepts damaged files silently.
 #include <cxxabi.h>
 #include <fmt/format.h>
 #include <openmm/serialization/XmlSerializer.h>
@@ -9,6 +9,7 @@
 #include <fstream>
 #include <new>
 #include <sstream>
+#include <string_view>
 #include <typeinfo>
 
 #include "error.hpp"
@@ -26,13 +27,14 @@ namespace {
 /// particles, bonds and exclusions), and there are two copies of the text.
 double constexpr bytes_a_character = 8;
 
-/// Reads a file; throws InputError before it if the memory does not suffice.
-std::string read_text(std::string const& file, std::string const& where) {
+/// Reads a file that should hold an object of that kind. Throws InputError before it if the memory
+/// does not suffice.
+std::string read_text(std::string const& file, std::string const& where, char const* kind) {
     std::ifstream in(file, std::ios::binary | std::ios::ate);
     std::streamoff const size = in ? static_cast<std::streamoff>(in.tellg()) : -1;
     if (size < 0)
         throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where,
-                         "name a serialised System that can be read");
+                         fmt::format("name a serialised {} that can be read", kind));
     double const needed = bytes_a_character * static_cast<double>(size);
     auto const present = static_cast<double>(memory_limit());
     if (needed > present)
@@ -61,6 +63,62 @@ std::string difference(std::vector<std::string> const& written, OpenMM::System c
     return "";
 }
 
+/// Kind of object that a file should hold.
+struct Wanted {
+    /// Name of its root element.
+    char const* root;
+    char const* remedy;
+    /// Scene file and key in messages.
+    std::string const& where;
+};
+
+/// Throws the InputError for a file that holds something else.
+[[noreturn]] void refuse_other(std::string const& name, Wanted const& wanted) {
+    throw InputError(fmt::format("{} is not a serialised {}", name, wanted.root), wanted.where,
+                     wanted.remedy);
+}
+
+/// True for the types of forces, thermostats and barostats.
+bool is_force(std::string const& type) {
+    return type.ends_with("Force") || type.ends_with("Thermostat") || type.ends_with("Barostat") ||
+           type == "CMMotionRemover";
+}
+
+/// Checks the text and returns its outline. Throws InputError for another root element.
+XmlOutline outline_of(std::string const& xml, std::string const& name, Wanted const& wanted) {
+    load_openmm_plugins();
+    if (xml.find(fmt::format("<{}", wanted.root)) == std::string::npos) refuse_other(name, wanted);
+    XmlOutline outline = scan_system_xml(xml, name, wanted.where);
+    // OpenMM makes what `type` says, whatever the reader expects.
+    bool const fits = std::string_view(wanted.root) == "Force" ? is_force(outline.type)
+                                                               : outline.type == wanted.root;
+    if (outline.root != wanted.root || !fits) refuse_other(name, wanted);
+    return outline;
+}
+
+/// Makes the object by OpenMM's reader, whose exceptions become InputErrors that name both
+/// versions.
+template <class Object>
+std::unique_ptr<Object> deserialized(std::string const& xml, XmlOutline const& outline,
+                                     std::string const& name, Wanted const& wanted) {
+    try {
+        std::istringstream in(xml);
+        return std::unique_ptr<Object>(OpenMM::XmlSerializer::deserialize<Object>(in));
+    } catch (std::bad_alloc const&) {
+        throw;
+    } catch (std::exception const& e) {
+        throw InputError(
+            fmt::format(
+                "OpenMM {} cannot read {}, written by OpenMM {}: {}",
+                OpenMM::Platform::getOpenMMVersion(), name,
+                outline.version.empty() ? "of an unknown version" : scene::shown(outline.version),
+                scene::shown(e.what(), 300)),
+            wanted.where,
+            "build Catena with that OpenMM or a later one, or write it with an earlier "
+            "one");
+    }
+}
+
 }  // namespace
 
 std::string kind_of(OpenMM::Force const& force) {
@@ -74,33 +132,36 @@ std::string kind_of(OpenMM::Force const& force) {
 
 std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file,
                                                    std::string const& where) {
-    load_openmm_plugins();
-    std::string const name = scene::shown_path(file), xml = read_text(file, where);
-    char const* const remedy = "write it with OpenMM's XmlSerializer.serialize(system)";
-    if (xml.find("<System") == std::string::npos)
-        throw InputError(fmt::format("{} is not a serialised System", name), where, remedy);
-    XmlOutline const outline = scan_system_xml(xml, name, where);
-    if (outline.type != "System")
-        throw InputError(fmt::format("{} is not a serialised System", name), where, remedy);
-    std::unique_ptr<OpenMM::System> system;
-    try {
-        std::istringstream in(xml);
-        system.reset(OpenMM::XmlSerializer::deserialize<OpenMM::System>(in));
-    } catch (std::bad_alloc const&) {
-        throw;
-    } catch (std::exception const& e) {
-        throw InputError(fmt::format("OpenMM {} cannot read {}, written by OpenMM {}: {}",
-                                     OpenMM::Platform::getOpenMMVersion(), name,
-                                     outline.version.empty() ? "of an unknown version"
-                                                             : scene::shown(outline.version),
-                                     scene::shown(e.what(), 300)),
-                         where,
-                         "build Catena with that OpenMM or a later one, or write the System with "
-                         "an earlier one");
-    }
+    std::string const name = scene::shown_path(file), xml = read_text(file, where, "System");
+    Wanted const wanted{"System", "write it with OpenMM's XmlSerializer.serialize(system)", where};
+    XmlOutline const outline = outline_of(xml, name, wanted);
+    std::unique_ptr<OpenMM::System> system =
+        deserialized<OpenMM::System>(xml, outline, name, wanted);
     if (std::string const lost = difference(outline.forces, *system); !lost.empty())
-        throw InputError(fmt::format("OpenMM reads {} from {}", lost, name), where, remedy);
+        throw InputError(fmt::format("OpenMM reads {} from {}", lost, name), where, wanted.remedy);
     return system;
+}
+
+std::unique_ptr<OpenMM::Force> read_openmm_force(std::string const& file,
+                                                 std::string const& where) {
+    std::string const name = scene::shown_path(file), xml = read_text(file, where, "Force");
+    Wanted const wanted{"Force", "write it with OpenMM's XmlSerializer.serialize(force)", where};
+    XmlOutline const outline = outline_of(xml, name, wanted);
+    std::unique_ptr<OpenMM::Force> force = deserialized<OpenMM::Force>(xml, outline, name, wanted);
+    return force;
+}
+
+std::vector<Vec3> read_openmm_state(std::string const& file, std::string const& where) {
+    std::string const name = scene::shown_path(file), xml = read_text(file, where, "State");
+    Wanted const wanted{"State", "write it with OpenMM's XmlSerializer.serialize(state)", where};
+    XmlOutline const outline = outline_of(xml, name, wanted);
+    auto const state = deserialized<OpenMM::State>(xml, outline, name, wanted);
+    if ((state->getDataTypes() & OpenMM::State::Positions) == 0)
+        throw InputError(fmt::format("{} holds no positions", name), where,
+                         "write it after getState(getPositions=True)");
+    std::vector<Vec3> positions;
+    for (OpenMM::Vec3 const& x : state->getPositions()) positions.push_back({{x[0], x[1], x[2]}});
+    return positions;
 }
 
 }  // namespace catena

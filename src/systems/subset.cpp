@@ -26,7 +26,7 @@ class PartnerCollector : public TermFilter {
         : own_(particle_count, false) {
         for (int p : own) own_[p] = true;
     }
-    bool keep(std::initializer_list<int*> particles) override {
+    bool keep(std::span<int* const> particles) override {
         bool const touches =
             std::any_of(particles.begin(), particles.end(), [&](int const* p) { return own_[*p]; });
         if (touches)
@@ -47,8 +47,8 @@ class JoinedAcrossRanks : public TermFilter {
   public:
     explicit JoinedAcrossRanks(std::vector<int> const& rank_of_particle)
         : rank_(rank_of_particle), joined_(rank_.size(), 0) {}
-    bool keep(std::initializer_list<int*> particles) override {
-        int const rank = rank_[**particles.begin()];
+    bool keep(std::span<int* const> particles) override {
+        int const rank = rank_[*particles.front()];
         if (std::any_of(particles.begin(), particles.end(),
                         [&](int const* p) { return rank_[*p] != rank; }))
             for (int const* p : particles) joined_[*p] = 1;
@@ -65,7 +65,7 @@ class JoinedAcrossRanks : public TermFilter {
 /// Keeps no term; used to recognise bonded forces.
 class NoTerm : public TermFilter {
   public:
-    bool keep(std::initializer_list<int*>) override { return false; }
+    bool keep(std::span<int* const>) override { return false; }
 };
 
 /// Keeps the terms that involve an own particle, and renumbers them for the subset. Exchangeable
@@ -80,7 +80,7 @@ class Renumbering : public TermFilter {
           index_(particle_count, -1) {
         for (int i = 0; i < subset.fixed; ++i) index_[particles_[i]] = i;
     }
-    bool keep(std::initializer_list<int*> particles) override {
+    bool keep(std::span<int* const> particles) override {
         bool const touches = std::any_of(particles.begin(), particles.end(), [&](int const* p) {
             return index_[*p] >= 0 && index_[*p] < own_count_;
         });
@@ -88,7 +88,7 @@ class Renumbering : public TermFilter {
     }
     /// Renumbers the particles in place; returns false if one of them is not permanently in the
     /// subset.
-    bool keep_pair(std::initializer_list<int*> particles) const {
+    bool keep_pair(std::span<int* const> particles) const {
         if (std::any_of(particles.begin(), particles.end(),
                         [&](int const* p) { return index_[*p] < 0; }))
             return false;
@@ -103,6 +103,11 @@ class Renumbering : public TermFilter {
     int own_count_;
     std::vector<int> index_;  // index in the subset; -1: not permanently in it
 };
+
+/// Renumbers the particles in place; returns false if one of them is not permanently in the subset.
+bool keep_pair(Renumbering const& subset, std::initializer_list<int*> particles) {
+    return subset.keep_pair({particles.begin(), particles.size()});
+}
 
 template <class Source>
 void copy_globals(Source const& from, Source& to) {
@@ -159,7 +164,7 @@ void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const
     auto const renumbered = [&](std::set<int> const& all) {
         std::set<int> kept;
         for (int p : all)
-            if (subset.keep_pair({&p})) kept.insert(p);
+            if (keep_pair(subset, {&p})) kept.insert(p);
         return kept;
     };
     std::set<int> one, other;
@@ -191,7 +196,7 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
     for (int i = 0; i < from.getNumExclusions(); ++i) {
         int a, b;
         from.getExclusionParticles(i, a, b);
-        if (subset.keep_pair({&a, &b})) to->addExclusion(a, b);
+        if (keep_pair(subset, {&a, &b})) to->addExclusion(a, b);
     }
     for (int const k : subset.after()) to->addExclusion(k - 1, k);
     copy_interaction_groups(from, subset, *to);
@@ -206,7 +211,7 @@ void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, Nonb
         int a, b;
         double charge, sigma, epsilon;
         from.getExceptionParameters(i, a, b, charge, sigma, epsilon);
-        if (subset.keep_pair({&a, &b})) index[i] = to.addException(a, b, charge, sigma, epsilon);
+        if (keep_pair(subset, {&a, &b})) index[i] = to.addException(a, b, charge, sigma, epsilon);
     }
     for (int const k : subset.after()) to.addException(k - 1, k, 0, 1, 0);
     std::string parameter;
@@ -240,7 +245,7 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     for (int i = 0; i < from.getNumParticleParameterOffsets(); ++i) {
         int p;
         from.getParticleParameterOffset(i, parameter, p, charge, sigma, epsilon);
-        if (subset.keep_pair({&p}))
+        if (keep_pair(subset, {&p}))
             to->addParticleParameterOffset(parameter, p, charge, sigma, epsilon);
     }
     copy_exceptions(from, subset, *to);

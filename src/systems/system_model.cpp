@@ -5,15 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
 #include "error.hpp"
+#include "scene/force_changes.hpp"
 #include "scene/node.hpp"
 #include "systems/charges.hpp"
+#include "systems/linked_bonds.hpp"
+#include "systems/links.hpp"
 #include "systems/model.hpp"
 #include "systems/pdb_topology.hpp"
 
@@ -21,60 +23,10 @@ namespace catena {
 
 namespace {
 
-using OpenMM::HarmonicBondForce;
 using OpenMM::System;
 
 double constexpr same_length = 1e-6;  // nm; covers lengths written in decimals
 double constexpr same_mass = 1e-6;    // relative; covers masses written in decimals
-/// Number of force groups that OpenMM distinguishes.
-std::size_t constexpr force_groups_of_openmm = 32;
-
-/// Lengths of the scene's links by the particles that they join.
-class LinkTable {
-  public:
-    LinkTable(BeadSystem const& beads, std::vector<int> const& particle_of_bead) {
-        for (auto const& link : beads.links)
-            lengths_[ordered(particle_of_bead[link.inboard], particle_of_bead[link.outboard])] =
-                link.length;
-    }
-    /// Returns the link's length, or nullptr if no link joins the particles.
-    double const* length(int a, int b) const {
-        auto const found = lengths_.find(ordered(a, b));
-        return found == lengths_.end() ? nullptr : &found->second;
-    }
-
-  private:
-    static std::pair<int, int> ordered(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
-    std::map<std::pair<int, int>, double> lengths_;
-};
-
-/// Statistics of the terms that rigid links replace.
-struct Savings {
-    /// Number of terms, their range of lengths, and the largest difference from a link's length,
-    /// nm.
-    int count = 0;
-    double shortest = INFINITY, longest = 0, largest_difference = 0;
-
-    void add(double length, double link) {
-        ++count;
-        shortest = std::min(shortest, length);
-        longest = std::max(longest, length);
-        largest_difference = std::max(largest_difference, std::abs(length - link));
-    }
-    /// Sentence on the terms; `what` is their plural noun.
-    std::string note(std::string const& what) const {
-        std::string text =
-            longest - shortest < same_length
-                ? fmt::format("{} {} along rigid links left out (length {:.6g} nm)", count, what,
-                              longest)
-                : fmt::format("{} {} along rigid links left out (lengths {:.6g} to {:.6g} nm)",
-                              count, what, shortest, longest);
-        if (largest_difference > same_length)
-            text += fmt::format("; their links differ from them by up to {:.3g} nm",
-                                largest_difference);
-        return text;
-    }
-};
 
 /// Throws InputError unless the System has one particle per bead.
 void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const& beads) {
@@ -85,9 +37,24 @@ void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const
                          fmt::format("make every particle of {} a bead of the scene", spec.system));
 }
 
+/// Sizes of the scene's chains.
+std::vector<std::int64_t> sizes_of(BeadSystem const& beads) {
+    std::vector<std::int64_t> sizes;
+    for (std::size_t c = 0; c < beads.chain_name.size(); ++c)
+        sizes.push_back(beads.chain_offset[c + 1] - beads.chain_offset[c]);
+    return sizes;
+}
+
+/// Sizes of the topology's chains.
+std::vector<std::int64_t> sizes_of(std::vector<PdbChain> const& chains) {
+    std::vector<std::int64_t> sizes;
+    for (PdbChain const& chain : chains) sizes.push_back(std::ssize(chain.residue));
+    return sizes;
+}
+
 /// Checks the topology against the scene. Without a map its chains must be the scene's, in the same
-/// order and of the same sizes.
-void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
+/// order and of the same sizes. The scene's may be cut as those of an import are.
+void check_topology(System const& system, OpenMmSpec const& spec, BeadSystem const& beads) {
     if (spec.topology.empty()) return;
     std::string const where = openmm_key(beads.scene_file, "topology");
     auto const chains = read_pdb_topology(spec.topology, where);
@@ -99,36 +66,35 @@ void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
                         beads.size()),
             where,
             fmt::format("give {} one atom per particle, in the System's order", spec.topology));
-    if (!spec.map.empty()) return;
-    std::size_t const count = beads.chain_name.size();
-    for (std::size_t c = 0; c < std::max(count, chains.size()); ++c) {
-        std::int64_t const in_scene =
-            c < count ? beads.chain_offset[c + 1] - beads.chain_offset[c] : 0;
-        std::int64_t const in_topology = c < chains.size() ? std::ssize(chains[c].residue) : 0;
-        if (in_scene != in_topology)
-            throw InputError(
-                fmt::format("chain {} has {} beads in the scene and {} atoms in the topology",
-                            c + 1, in_scene, in_topology),
-                where,
-                "give the chains in the topology's order, or assign the particles with "
-                "forces.openmm.map");
-    }
+    if (!chain_map(spec).empty()) return;
+    std::vector<std::int64_t> const in_scene = sizes_of(beads), in_topology = sizes_of(chains);
+    if (in_scene == in_topology ||
+        in_scene == sizes_of(cut_at_bonds(chains, Joinings(system, changes_of(spec).links, where))))
+        return;
+    std::size_t c = 0;
+    while (c < std::min(in_scene.size(), in_topology.size()) && in_scene[c] == in_topology[c]) ++c;
+    throw InputError(fmt::format("chain {} has {} beads in the scene and {} atoms in the topology",
+                                 c + 1, c < in_scene.size() ? in_scene[c] : 0,
+                                 c < in_topology.size() ? in_topology[c] : 0),
+                     where,
+                     "give the chains in the topology's order, or assign the particles with "
+                     "forces.openmm.map");
 }
 
 /// Returns the bead of each particle. `map` names the first and last particle of each chain, from 0
 /// as in OpenMM. Without it particles and beads have the same order.
 std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem const& beads) {
-    std::vector<std::int64_t> bead(static_cast<std::size_t>(beads.size()),
-                                   spec.map.empty() ? 0 : -1);
-    if (spec.map.empty()) {
+    ChainMap const map = chain_map(spec);
+    std::vector<std::int64_t> bead(static_cast<std::size_t>(beads.size()), map.empty() ? 0 : -1);
+    if (map.empty()) {
         for (std::size_t p = 0; p < bead.size(); ++p) bead[p] = static_cast<std::int64_t>(p);
         return bead;
     }
     std::string const where = openmm_key(beads.scene_file, "map");
-    std::vector<bool> used(spec.map.size(), false);
+    std::vector<bool> used(map.size(), false);
     /// Unused entries by the chain's name, the first one at the back.
     std::unordered_map<std::string_view, std::vector<std::size_t>> unused;
-    for (std::size_t i = spec.map.size(); i-- > 0;) unused[spec.map[i].first].push_back(i);
+    for (std::size_t i = map.size(); i-- > 0;) unused[map[i].first].push_back(i);
     for (std::size_t c = 0; c < beads.chain_name.size(); ++c) {
         std::string const& name = beads.chain_name[c];
         auto const entries = unused.find(name);
@@ -138,7 +104,7 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
         std::size_t const entry = entries->second.back();
         entries->second.pop_back();
         used[entry] = true;
-        auto const [first, last] = spec.map[entry].second;
+        auto const [first, last] = map[entry].second;
         std::int64_t const count = beads.chain_offset[c + 1] - beads.chain_offset[c];
         if (first < 0 || last >= beads.size() || last - first + 1 != count)
             throw InputError(
@@ -156,10 +122,9 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
     }
     auto const spare = std::find(used.begin(), used.end(), false);
     if (spare != used.end())
-        throw InputError(
-            fmt::format("the scene has no chain of beads named {}",
-                        spec.map[static_cast<std::size_t>(spare - used.begin())].first),
-            where, fmt::format("use one of {}", fmt::join(beads.chain_name, ", ")));
+        throw InputError(fmt::format("the scene has no chain of beads named {}",
+                                     map[static_cast<std::size_t>(spare - used.begin())].first),
+                         where, fmt::format("use one of {}", fmt::join(beads.chain_name, ", ")));
     return bead;
 }
 
@@ -176,89 +141,6 @@ void check_masses(System const& system, BeadSystem const& beads,
                 openmm_key(beads.scene_file, "system"),
                 "masses come from the System: give the same in the scene");
     }
-}
-
-/// Removes the constraints, which the scene's links replace. Throws InputError for a constraint
-/// that is not a link of the same length.
-std::vector<std::string> remove_constraints(System& system, LinkTable const& links,
-                                            std::string const& where) {
-    Savings left_out;
-    // The loop runs backwards, because removals shift later indices.
-    for (int i = system.getNumConstraints() - 1; i >= 0; --i) {
-        int a, b;
-        double length;
-        system.getConstraintParameters(i, a, b, length);
-        double const* link = links.length(a, b);
-        if (link == nullptr)
-            throw InputError(fmt::format("the constraint between particles {} and {} (from 0) is "
-                                         "not a link of the scene",
-                                         a, b),
-                             where, "constrain neighbours in a chain only, or make it a bond");
-        if (std::abs(*link - length) > same_length)
-            throw InputError(fmt::format("the constraint between particles {} and {} (from 0) has "
-                                         "length {}, its link {}",
-                                         a, b, length, *link),
-                             where, "give both the same length");
-        left_out.add(length, *link);
-        system.removeConstraint(i);
-    }
-    return left_out.count > 0 ? std::vector{left_out.note("constraints")}
-                              : std::vector<std::string>{};
-}
-
-/// Copies the bonds that are not along links, and counts the others in `left_out`.
-std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
-                                                 LinkTable const& links, Savings& left_out) {
-    auto kept = std::make_unique<HarmonicBondForce>();
-    kept->setUsesPeriodicBoundaryConditions(bonds.usesPeriodicBoundaryConditions());
-    kept->setName(bonds.getName());
-    kept->setForceGroup(bonds.getForceGroup());
-    for (int i = 0; i < bonds.getNumBonds(); ++i) {
-        int a, b;
-        double length, k;
-        bonds.getBondParameters(i, a, b, length, k);
-        if (double const* link = links.length(a, b))
-            left_out.add(length, *link);
-        else
-            kept->addBond(a, b, length, k);
-    }
-    return kept;
-}
-
-/// Names the forces after their terms, in the System's order. This must precede the removal of
-/// bonds, which moves forces to the end. Forces that lose all bonds to `links` get no name. Throws
-/// InputError for more forces than OpenMM has groups.
-void name_in_order(System& system, LinkTable const& links, std::string const& where) {
-    auto const vanishes = [&](OpenMM::Force const& force) {
-        auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&force);
-        Savings ignored;
-        return bonds != nullptr && without_links(*bonds, links, ignored)->getNumBonds() == 0;
-    };
-    std::vector<int> remaining;
-    for (int i = 0; i < system.getNumForces(); ++i)
-        if (!vanishes(system.getForce(i))) remaining.push_back(i);
-    if (remaining.size() > force_groups_of_openmm)
-        throw InputError(fmt::format("the System has {} forces", remaining.size()), where,
-                         fmt::format("merge forces of one kind: OpenMM distinguishes {} groups",
-                                     force_groups_of_openmm));
-    std::vector<std::string> const names = term_names(system, remaining);
-    for (std::size_t n = 0; n < names.size(); ++n) system.getForce(remaining[n]).setName(names[n]);
-}
-
-/// Removes the bonds along links, and forces that have no other term.
-std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links,
-                                             std::string const& where) {
-    Savings left_out;
-    name_in_order(system, links, where);
-    for (int i = system.getNumForces() - 1; i >= 0; --i) {
-        auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&system.getForce(i));
-        if (bonds == nullptr) continue;
-        auto kept = without_links(*bonds, links, left_out);
-        system.removeForce(i);
-        if (kept->getNumBonds() > 0) system.addForce(kept.release());
-    }
-    return left_out.count > 0 ? std::vector{left_out.note("harmonic bonds")}
-                              : std::vector<std::string>{};
 }
 
 /// Excludes nonbonded interactions between beads of one rigid body. They have no effect on the
@@ -381,11 +263,10 @@ void settle_box(System& system, BeadSystem const& beads, std::vector<std::string
 OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::string const where = openmm_key(beads.scene_file, "system");
     OpenMmModel model;
-    model.system = read_openmm_system(spec.system, where);
-    std::vector<std::string> const movers =
-        leave_movers_out(*model.system, spec.force_groups, where);
+    std::vector<std::string> left_out;
+    model.system = read_scene_system(spec, beads.scene_file, left_out);
     check_counts(*model.system, spec, beads);
-    check_topology(spec, beads);
+    check_topology(*model.system, spec, beads);
     model.bead_of_particle = beads_of_particles(spec, beads);
     check_masses(*model.system, beads, model.bead_of_particle);
 
@@ -395,10 +276,10 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
         model.notes.insert(model.notes.end(), notes.begin(), notes.end());
     };
     add({fmt::format("System {}", scene::shown_path(spec.system))});
-    add(movers);
+    add(left_out);
     add(remove_constraints(*model.system, links, where));
     add(remove_other_groups(*model.system, spec.force_groups));
-    add(remove_linked_bonds(*model.system, links, where));
+    add(remove_linked_bonds(*model.system, links, changes_of(spec).links, where));
     add(exclude_within_bodies(*model.system, beads, particle_of_bead));
     settle_box(*model.system, beads, model.notes);
     model.terms = name_terms(*model.system);

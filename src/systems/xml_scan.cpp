@@ -248,7 +248,8 @@ class Scanner {
     /// Records an element in the outline and checks its place in the parent.
     void enter(Element const& element, Attributes const& attributes) {
         if (open_.empty()) {
-            outline_.type = element.name == "System" ? value_of(attributes, "type") : string_view{};
+            outline_.root = element.name;
+            outline_.type = value_of(attributes, "type");
             outline_.version = value_of(attributes, "openmmVersion");
             return;
         }

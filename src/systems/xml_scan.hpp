@@ -8,8 +8,10 @@
 
 namespace catena {
 
-/// Types and version named in the text of a System.
+/// Types and version named in the text of a serialised object.
 struct XmlOutline {
+    /// Name of the root element: System, Force, ...
+    std::string root;
     /// Attributes `type` and `openmmVersion` of the root element.
     std::string type, version;
     /// Types of the elements in its <Forces>, in order.

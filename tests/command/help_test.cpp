@@ -32,6 +32,15 @@ TEST(Help, CommandsOnTrajectoriesExplainThemselvesWithExamples) {
     }
 }
 
+TEST(Help, ImportExplainsItselfWithExamples) {
+    EXPECT_NE(catena({"--help"}).out.find("\n  import "), std::string::npos);
+    Ended const one = catena({"import", "--help"});
+    expect_good(one);
+    EXPECT_NE(one.out.find("Examples:\n  catena import "), std::string::npos) << one.out;
+    for (std::string const option : {"--output", "--leave-out", "--links", "--overwrite", "--json"})
+        EXPECT_NE(one.out.find(option), std::string::npos) << option;
+}
+
 TEST(Help, VersionSaysWhatIsInTheBuild) {
     Ended const e = catena({"--version"});
     expect_good(e);

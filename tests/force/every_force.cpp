@@ -144,4 +144,10 @@ std::string xml_of(System const& system) {
     return text.str();
 }
 
+std::string xml_of(Force const& force) {
+    std::ostringstream text;
+    XmlSerializer::serialize(&force, "Force", text);
+    return text.str();
+}
+
 }  // namespace catena::testing

@@ -19,5 +19,6 @@ std::unique_ptr<OpenMM::System> every_force(BeadSystem const& beads);
 std::unique_ptr<OpenMM::System> bare_system(BeadSystem const& beads);
 
 std::string xml_of(OpenMM::System const& system);
+std::string xml_of(OpenMM::Force const& force);
 
 }  // namespace catena::testing

@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "scene/force_changes.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
 #include "tests/force/ranks.hpp"
@@ -318,6 +319,59 @@ TEST_F(Ranks, BondedForcesAlone) {
     for (int i = 0; i + 2 < 60; ++i) bonds->addBond(i, i + 2);
     system->addForce(bonds);
     compare(of_system(*system, "bonded.xml"), beads, 0.1, Lists::last);
+}
+
+/// Pulls the middles of groups that lie on different ranks, holds one at a place, and bends triples
+/// by a table.
+void add_bonds_of_many(OpenMM::System& system, int n, bool periodic) {
+    auto* centroids = new OpenMM::CustomCentroidBondForce(2, "k*(distance(g1,g2)-1)^2+0.1*x1^2");
+    centroids->addPerBondParameter("k");
+    std::vector<int> front, back, middle;
+    for (int i = 0; i < 10; ++i) {
+        front.push_back(i);
+        back.push_back(n - 1 - i);
+        middle.push_back(n / 2 + i);
+    }
+    centroids->addGroup(front);
+    centroids->addGroup(back, std::vector<double>(10, 0.5));
+    centroids->addGroup(middle);
+    centroids->addBond({0, 1}, {3});
+    centroids->addBond({2, 0}, {7});
+    auto* triples = new OpenMM::CustomCompoundBondForce(3, "k*bend(distance(p1,p3))+0.01*z2^2");
+    triples->addGlobalParameter("k", 4);
+    triples->addTabulatedFunction(
+        "bend", new OpenMM::Continuous1DFunction({0, 0.1, 0.4, 0.2, 0.3, 0.1, 0}, 0, 12));
+    for (int i = 0; i + 4 < n; ++i) triples->addBond({i, i + 2, i + 4});
+    centroids->setUsesPeriodicBoundaryConditions(periodic);
+    triples->setUsesPeriodicBoundaryConditions(periodic);
+    system.addForce(centroids);
+    system.addForce(triples);
+}
+
+TEST_F(Ranks, CentroidsAndBondsOfManyBeads) {
+    for (std::optional<Vec3> const& box :
+         {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{9, 10, 11}}}}) {
+        BeadSystem const beads =
+            proteins({random_sequence(40, 25), random_sequence(30, 26)}, 1, box);
+        auto const system = bare_system(beads);
+        add_bonds_of_many(*system, 70, box.has_value());
+        compare(of_system(*system, "many.xml"), beads, 0.1, Lists::last);
+    }
+}
+
+/// A force that the scene adds to a builder's is split like those of a System.
+TEST_F(Ranks, ExtraForcesOfABuilder) {
+    BeadSystem const beads =
+        proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)});
+    auto const system = bare_system(beads);
+    add_bonds_of_many(*system, 300, false);
+    OpenMmSpec spec = on_reference();
+    add_changes({{scratch_file("pull.xml", xml_of(system->getForce(0))),
+                  scratch_file("bend.xml", xml_of(system->getForce(1)))},
+                 {},
+                 {}},
+                spec);
+    compare(spec, beads, 0.1, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, WithoutACutoff) {

@@ -23,7 +23,7 @@ import tempfile
 import markdown
 
 PROGRAM = re.compile(r"^(.*/)?catena$")
-SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench", "keys", "analyse", "convert")
+SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench", "keys", "analyse", "convert", "import")
 RUN = ("check", "plan", "solve", "run", "keys")
 TUTORIALS = "tutorials"  # name of their folder
 PLOT = "jobs/plot.py"

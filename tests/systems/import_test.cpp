@@ -2,6 +2,7 @@
 
 #include <OpenMM.h>
 
+#include "scene/force_changes.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
 
@@ -135,16 +136,70 @@ TEST_F(Import, SpringsOnOnePairRestTogether) {
         << imported.notes[0];
 }
 
-TEST_F(Import, OtherBondsBetweenNeighboursAreNamed) {
+/// The chain GG is cut into two at its FENE bond, unless that is named as a link.
+TEST_F(Import, CustomBondsBetweenNeighboursStayForcesUnlessTheyAreNamed) {
     auto* fene = new OpenMM::CustomBondForce("-0.5*30*R0^2*log(1-(r/R0)^2); R0=1.5");
     fene->addBond(5, 4);
+    fene->setName("fene");
     system->addForce(fene);
-    std::string const text = complaint([&] { import(wound(beads, 1)); });
-    EXPECT_TRUE(
-        text.starts_with("particles 4 and 5 (from 0) are joined by a CustomBondForce (FENE) and by "
-                         "no harmonic bond or constraint"))
-        << text;
-    EXPECT_NE(text.find("add a constraint"), std::string::npos) << text;
+    auto const imported = import(wound(beads, 1));
+    ASSERT_EQ(imported.chains.size(), 4U);
+    EXPECT_EQ(imported.chains[1].name, "B");
+    EXPECT_EQ(imported.chains[2].name, "B-2");
+    EXPECT_EQ(imported.chains[2].mass.size(), 1U);
+    ASSERT_EQ(imported.notes.size(), 1U);
+    EXPECT_TRUE(imported.notes[0].starts_with(
+        "1 bond of a CustomBondForce (FENE) between neighbours stays a force (the first in chain "
+        "B), so 3 chains of the topology are simulated as 4 pieces of up to 4 beads on links"))
+        << imported.notes[0];
+    EXPECT_NE(imported.notes[0].find("`links: {fene: LENGTH}`"), std::string::npos);
+
+    OpenMmSpec named = spec(scratch_file("import.pdb", pdb_of(beads, wound(beads, 1))));
+    for (std::string const name : {"fene", "CustomBondForce"}) {
+        named.map.clear();
+        add_changes({{}, {}, {{name, 0.5}}}, named);
+        auto const linked = import_openmm_system(named, "scene.yaml");
+        EXPECT_TRUE(linked.notes.empty());
+        ASSERT_EQ(linked.chains.size(), 3U);
+        EXPECT_EQ(linked.chains[1].length[1], 0.5);
+    }
+    named.map.clear();
+    add_changes({{}, {}, {{"HarmonicBondForce", 0.5}}}, named);
+    EXPECT_EQ(
+        complaint([&] { import_openmm_system(named, "scene.yaml"); }),
+        "the System has no CustomBondForce `HarmonicBondForce` (scene.yaml: "
+        "forces.openmm.links): name one of its CustomBondForces (fene); constraints and stiff "
+        "harmonic bonds become links by themselves");
+}
+
+/// Across the box from 4.9 to 0.1 nm, the two beads of a bond that stays a force are 0.2 nm apart.
+TEST_F(Import, ChainsAreWholeAcrossBondsThatStayForces) {
+    auto* bond = new OpenMM::CustomBondForce("r^2");
+    bond->addBond(4, 5);
+    bond->setUsesPeriodicBoundaryConditions(true);
+    system->addForce(bond);
+    system->setDefaultPeriodicBoxVectors({5, 0, 0}, {0, 5, 0}, {0, 0, 5});
+    auto positions = wound(beads, 1);
+    positions[4] = Vec3{{4.9, 1, 1}};
+    positions[5] = Vec3{{0.1, 1, 1}};
+    auto const imported = import(positions);
+    EXPECT_NEAR(imported.chains.at(2).position[0][0], 5.1, 1e-4);
+    EXPECT_NE(imported.notes.at(0).find("made whole across the sides of the box"),
+              std::string::npos);
+}
+
+TEST_F(Import, NamedForcesAreLeftOut) {
+    join_glycines();
+    system->addForce(new OpenMM::MonteCarloBarostat(1, 300));
+    OpenMmSpec named = spec(scratch_file("import.pdb", pdb_of(beads, wound(beads, 1))));
+    add_changes({{}, {"MonteCarloBarostat"}, {}}, named);
+    EXPECT_EQ(
+        import_openmm_system(named, "scene.yaml").notes,
+        std::vector<std::string>{"The System's MonteCarloBarostat is left out by `leave_out`."});
+    add_changes({{}, {"Wall"}, {}}, named);
+    EXPECT_EQ(complaint([&] { import_openmm_system(named, "scene.yaml"); }),
+              "the System has no force `Wall` (scene.yaml: forces.openmm.leave_out): name a force "
+              "or a kind of force: HarmonicBondForce");
 }
 
 TEST_F(Import, BranchesAndRingsAreNamed) {

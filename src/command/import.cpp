@@ -1,0 +1,188 @@
+// `catena import`: a scene from the folder of another tool. The scene is read and checked like any
+// other before it is written.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "command/commands.hpp"
+#include "console/text.hpp"
+#include "error.hpp"
+#include "foreign/files.hpp"
+#include "foreign/scene_text.hpp"
+#include "foreign/settings.hpp"
+#include "foreign/start_topology.hpp"
+#include "io/output.hpp"
+#include "mpi/first_rank.hpp"
+#include "reader/load_scene.hpp"
+#include "scene/force_changes.hpp"
+#include "scene/node.hpp"
+
+namespace catena::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A scene with its text and what `check` found.
+struct Written {
+    std::string file, text;
+    std::vector<std::string> notes;
+    Json check;
+};
+
+/// Reads and checks the text of a scene. Throws InputError.
+Written checked(foreign::SceneDraft const& draft) {
+    Written written{draft.file, text_of(draft), {}, {}};
+    Scene const scene = parse_scene(written.text, draft.file);
+    written.check = check_scene(scene, *serial_communicator(), true).json;
+    written.notes = scene.notes;
+    return written;
+}
+
+/// Checks the scene. A start that is refused as it is may be relaxed, which is noted. Where
+/// relaxation does not help the first refusal is thrown.
+Written settled(foreign::SceneDraft draft) {
+    draft.relax = draft.settings.minimises;
+    if (draft.relax) return checked(draft);
+    std::string refusal;
+    try {
+        return checked(draft);
+    } catch (InputError const& error) {
+        refusal = error.what();
+    }
+    draft.relax = true;
+    try {
+        Written written = checked(draft);
+        written.notes.push_back("`relax: true`, because the start is refused as it is: " + refusal);
+        return written;
+    } catch (InputError const&) {
+        throw InputError(refusal);
+    }
+}
+
+/// Throws InputError for an existing file unless it may be replaced.
+void refuse_existing(std::string const& file, bool overwrite) {
+    std::error_code ignored;
+    if (!overwrite && fs::exists(file, ignored))
+        throw InputError("the scene exists", scene::shown_path(file),
+                         "name another one with --output, or add --overwrite");
+}
+
+/// Name of the scene of the equilibration that comes before the scene `file`.
+std::string equilibration_of(std::string const& file) {
+    fs::path path = file;
+    path.replace_filename(path.stem().string() + "-equilibration" + path.extension().string());
+    return path.string();
+}
+
+/// What the scenes of an import have in common. Writes the topology of a State.
+foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings const& settings,
+                             ImportRequest const& request) {
+    foreign::SceneDraft draft;
+    draft.title = name_of(files);
+    draft.file = request.output.empty() ? draft.title + ".yaml" : request.output;
+    refuse_existing(draft.file, request.overwrite);
+    draft.source = scene::shown_path(request.source);
+    draft.system = files.system;
+    draft.topology = files.topology;
+    draft.leave_out = request.leave_out;
+    draft.links = request.links;
+    draft.settings = settings;
+    draft.steps = settings.steps;
+    if (files.state.empty()) return draft;
+    OpenMmSpec spec;
+    spec.system = files.system;
+    add_changes({{}, request.leave_out, request.links}, spec);
+    fs::path const start = fs::path(draft.file).replace_extension().string() + "-start";
+    draft.topology = write_start(files, spec, start.string());
+    return draft;
+}
+
+/// Drafts of the scenes to write, the equilibration first.
+std::vector<foreign::SceneDraft> drafts_of(foreign::Files const& files,
+                                           foreign::Settings const& settings,
+                                           ImportRequest const& request) {
+    foreign::SceneDraft main = draft_of(files, settings, request);
+    std::vector<foreign::SceneDraft> drafts;
+    if (settings.equilibration_steps) {
+        drafts.push_back(main);
+        drafts.back().file = equilibration_of(main.file);
+        refuse_existing(drafts.back().file, request.overwrite);
+        drafts.back().title += " equilibration";
+        drafts.back().steps = *settings.equilibration_steps;
+    }
+    for (std::string const& force : settings.equilibration_forces)
+        if (std::find(main.leave_out.begin(), main.leave_out.end(), force) == main.leave_out.end())
+            main.leave_out.push_back(force);
+    drafts.push_back(std::move(main));
+    return drafts;
+}
+
+/// The commands that run the scenes one after the other.
+std::vector<std::string> next_steps(std::vector<Written> const& scenes) {
+    auto const folder = [](std::string const& scene) {
+        return fs::path(scene).stem().string() + "-run";
+    };
+    std::string const& last = scenes.back().file;
+    if (scenes.size() == 1) return {fmt::format("catena run {}", last)};
+    std::string const& first = scenes.front().file;
+    return {fmt::format("catena run {} --output {}", first, folder(first)),
+            fmt::format("catena run {} --restart {}/checkpoint.h5 --branch --output {}", last,
+                        folder(first), folder(last))};
+}
+
+/// Text of what was written.
+std::string text_of(foreign::Files const& files, foreign::SceneDraft const& draft,
+                    std::vector<Written> const& scenes, std::vector<std::string> const& notes) {
+    foreign::Settings const& run = draft.settings;
+    Json const& check = scenes.back().check;
+    Text text;
+    text.heading(draft.title);
+    for (Written const& scene : scenes)
+        text.entry(&scene == &scenes.front() ? "written" : "", scene.file);
+    if (!run.tool.empty()) text.entry("tool", run.tool);
+    text.entry("System", scene::shown_path(files.system));
+    text.entry("topology", scene::shown_path(draft.topology));
+    text.entry("chains", fmt::format("{}, {} bodies", check["chains"].size(),
+                                     check["bodies"].get<std::int64_t>()));
+    text.entry("dynamics", fmt::format("{} steps of {:.6g} ps, {:.6g} K, friction {:.6g}/ps",
+                                       draft.steps, run.step, run.temperature, run.friction));
+    bool first = true;
+    for (std::string const& command : next_steps(scenes)) {
+        text.entry(first ? "next" : "", command);
+        first = false;
+    }
+    for (std::string const& note : notes) text.note(note);
+    return text.str();
+}
+
+}  // namespace
+
+Outcome import_folder(Communicator const& communicator, ImportRequest const& request) {
+    Outcome outcome;
+    on_first_rank(communicator, [&] {
+        foreign::Files const files = foreign::find_files(request.source, request.topology);
+        foreign::Settings const settings = settings_of(files);
+        std::vector<foreign::SceneDraft> const drafts = drafts_of(files, settings, request);
+        std::vector<Written> scenes;
+        for (foreign::SceneDraft const& draft : drafts) scenes.push_back(settled(draft));
+        std::vector<std::string> notes = files.notes, written;
+        for (auto const& more : {settings.notes, scenes.back().notes})
+            notes.insert(notes.end(), more.begin(), more.end());
+        for (Written const& scene : scenes) {
+            write_text_file(scene.file, scene.text);
+            written.push_back(scene.file);
+        }
+        outcome.text = text_of(files, drafts.back(), scenes, notes);
+        outcome.json = {{"scenes", written},
+                        {"tool", settings.tool.empty() ? Json() : Json(settings.tool)},
+                        {"system", files.system},
+                        {"topology", drafts.back().topology},
+                        {"next", next_steps(scenes)},
+                        {"check", scenes.back().check},
+                        {"notes", notes}};
+    });
+    return outcome;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,181 @@
+// Implements what is known of the CALVADOS package (version 0.8, calvados/sim.py and
+// calvados/data/default_config.yaml). Its integrator is LangevinMiddle with steps of 0.01 ps.
+#include "foreign/calvados_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "error.hpp"
+#include "scene/fields.hpp"
+#include "scene/files.hpp"
+#include "scene/node.hpp"
+
+namespace catena::foreign {
+
+namespace {
+
+namespace fs = std::filesystem;
+using scene::Node;
+
+bool exists(fs::path const& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
+/// A YAML file of the package.
+class Settled {
+  public:
+    explicit Settled(std::string const& file) {
+        Node at;
+        at.text = file;
+        root_ = scene::parse_document(scene::read_text_file(file, at), file);
+    }
+    Node const& root() const { return *root_; }
+    /// Entry with a value; nullptr if it is absent, empty or null.
+    Node const* find(std::string_view key) const {
+        Node const* const node = root_->find(key);
+        bool const none = node == nullptr || node->kind == Node::Kind::null ||
+                          node->text == "null" || node->text == "~";
+        return none ? nullptr : node;
+    }
+    /// Number of that key, or the default of the package.
+    double number(std::string_view key, double otherwise) const {
+        Node const* const node = find(key);
+        return node ? scene::number(*node) : otherwise;
+    }
+    bool truth(std::string_view key) const {
+        Node const* const node = find(key);
+        return node != nullptr && scene::truth(*node);
+    }
+    std::string text(std::string_view key, char const* otherwise) const {
+        Node const* const node = find(key);
+        return node ? scene::text(*node) : otherwise;
+    }
+
+  private:
+    std::unique_ptr<Node> root_;
+};
+
+/// True if a component has restraints within its domains.
+bool has_restraints(std::string const& components) {
+    if (components.empty()) return false;
+    Settled const file(components);
+    auto const restrained = [](Node const& map) {
+        Node const* const node = map.find("restraint");
+        return node != nullptr && scene::truth(*node);
+    };
+    Node const* const defaults = file.root().find("defaults");
+    if (defaults != nullptr && restrained(*defaults)) return true;
+    Node const* const system = file.root().find("system");
+    for (std::size_t i = 0; system != nullptr && i < system->items.size(); ++i)
+        if (restrained(system->items[i])) return true;
+    return false;
+}
+
+/// Reads the friction. Version 0.8 reads `friction_coeff`; earlier ones read `friction`.
+double friction_of(Settled const& config, Settings& settings) {
+    double const friction =
+        config.number("friction_coeff", config.number("friction", settings.friction));
+    if (double const other = config.number("friction", friction); other != friction)
+        settings.notes.push_back(
+            fmt::format("config.yaml has friction {:.6g} and friction_coeff {:.6g}; the package "
+                        "reads the latter, and so does the scene.",
+                        other, friction));
+    return friction;
+}
+
+/// True if the start is a frame after the package's equilibration.
+bool is_equilibrated(Files const& files) {
+    std::string const name = fs::path(files.topology).filename().string();
+    return name == "checkpoint.pdb" || name == "equilibration_final.pdb";
+}
+
+/// True if the System holds a force of that kind.
+bool holds(std::string const& system, std::string const& kind) {
+    Node at;
+    at.text = system;
+    return scene::read_text_file(system, at).find('"' + kind + '"') != std::string::npos;
+}
+
+/// Reads `slab_eq`: a CustomExternalForce that the package removes after `steps_eq` steps. Systems
+/// that a continued run of the package has written lack it.
+void read_slab(Settled const& config, Files const& files, Settings& settings) {
+    char const* const force = "CustomExternalForce";
+    if (!config.truth("slab_eq") || !holds(files.system, force)) return;
+    settings.equilibration_forces = {force};
+    if (!is_equilibrated(files))
+        settings.equilibration_steps = static_cast<std::int64_t>(config.number("steps_eq", 1000));
+}
+
+}  // namespace
+
+void find_calvados_files(Files& files) {
+    fs::path const config = fs::path(files.folder) / "config.yaml",
+                   components = fs::path(files.folder) / "components.yaml";
+    if (!exists(config)) return;
+    try {
+        Settled const read(config.string());
+        if (!read.find("sysname") || !read.find("temp")) return;
+    } catch (InputError const& error) {  // perhaps another tool's
+        files.notes.push_back(fmt::format("config.yaml is left out: {}.", error.what()));
+        return;
+    }
+    files.config = config.string();
+    if (exists(components)) files.components = components.string();
+}
+
+std::string calvados_name(std::string const& config) { return Settled(config).text("sysname", ""); }
+
+bool take_calvados_start(Files& files) {
+    if (files.config.empty()) return false;
+    fs::path const folder = files.folder;
+    Settled const config(files.config);
+    fs::path const given = folder / config.text("frestart", "restart.chk");
+    std::vector<fs::path> starts;
+    if (config.text("restart", "checkpoint") == "pdb") starts.push_back(given);
+    for (char const* const name : {"checkpoint.pdb", "equilibration_final.pdb", "top.pdb"})
+        starts.push_back(folder / name);
+    for (fs::path const& start : starts) {
+        if (!exists(start)) continue;
+        files.topology = start.string();
+        std::string const name = scene::shown_path(start.filename().string());
+        if (start != starts.back())
+            files.notes.push_back(
+                fmt::format("The start is {}, a frame of the package's run (name top.pdb after the "
+                            "folder for its first start).",
+                            name));
+        else if (exists(folder / "restart.chk"))
+            files.notes.push_back(
+                "restart.chk is not read: OpenMM's checkpoints fit one platform and version. The "
+                "start is top.pdb.");
+        return true;
+    }
+    return false;
+}
+
+Settings calvados_settings(Files const& files) {
+    Settled const config(files.config);
+    Settings settings;
+    settings.tool = "CALVADOS package";
+    settings.temperature = config.number("temp", settings.temperature);
+    settings.friction = friction_of(config, settings);
+    settings.steps = static_cast<std::int64_t>(config.number("steps", 100000000));
+    settings.every = static_cast<std::int64_t>(config.number("wfreq", 100000));
+    settings.seed = static_cast<std::uint64_t>(config.number("random_number_seed", 1));
+    settings.minimises = fs::path(files.topology).filename() == "top.pdb";
+    if (config.number("runtime", 0) > 0)
+        settings.notes.push_back(
+            fmt::format("config.yaml ends the run after {:.6g} hours; the scene has steps instead.",
+                        config.number("runtime", 0)));
+    read_slab(config, files, settings);
+    if (has_restraints(files.components))
+        settings.notes.push_back(
+            "The package's elastic networks stay forces. To move domains as rigid bodies, write "
+            "`chains` with `rigid`.");
+    return settings;
+}
+
+}  // namespace catena::foreign

@@ -1,0 +1,37 @@
+// How the other tool moved its particles: temperature, friction, step.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foreign/files.hpp"
+
+namespace catena::foreign {
+
+/// Settings of a run, with defaults for tools that leave none.
+struct Settings {
+    /// Name of the tool in the scene and in messages; empty if it is not known.
+    std::string tool;
+    double temperature = 300;  // K
+    double friction = 0.01;    // 1/ps
+    double step = 0.01;        // ps
+    std::int64_t steps = 100000;
+    std::int64_t every = 1000;  // steps between frames
+    std::uint64_t seed = 1;
+    /// True if the tool minimises the energy of this start before its first step.
+    bool minimises = false;
+    /// Forces of the System that act during an equilibration only.
+    std::vector<std::string> equilibration_forces;
+    /// Number of steps of the equilibration that comes before; empty without one.
+    std::optional<std::int64_t> equilibration_steps;
+    /// Sentences on what was assumed or cannot be taken over.
+    std::vector<std::string> notes;
+};
+
+/// Reads the settings from the tool's own file or from a serialised Integrator. Otherwise the
+/// defaults hold, with a note. Throws InputError for files that cannot be read.
+Settings settings_of(Files const&);
+
+}  // namespace catena::foreign
