@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using scene::Node;
 
-bool exists(fs::path const& file) {
+bool is_file(fs::path const& file) {
     std::error_code ignored;
     return fs::is_regular_file(file, ignored);
 }
@@ -115,7 +115,7 @@ void read_slab(Settled const& config, Files const& files, Settings& settings) {
 void find_calvados_files(Files& files) {
     fs::path const config = fs::path(files.folder) / "config.yaml",
                    components = fs::path(files.folder) / "components.yaml";
-    if (!exists(config)) return;
+    if (!is_file(config)) return;
     try {
         Settled const read(config.string());
         if (!read.find("sysname") || !read.find("temp")) return;
@@ -124,7 +124,7 @@ void find_calvados_files(Files& files) {
         return;
     }
     files.config = config.string();
-    if (exists(components)) files.components = components.string();
+    if (is_file(components)) files.components = components.string();
 }
 
 std::string calvados_name(std::string const& config) { return Settled(config).text("sysname", ""); }
@@ -139,7 +139,7 @@ bool take_calvados_start(Files& files) {
     for (char const* const name : {"checkpoint.pdb", "equilibration_final.pdb", "top.pdb"})
         starts.push_back(folder / name);
     for (fs::path const& start : starts) {
-        if (!exists(start)) continue;
+        if (!is_file(start)) continue;
         files.topology = start.string();
         std::string const name = scene::shown_path(start.filename().string());
         if (start != starts.back())
@@ -147,7 +147,7 @@ bool take_calvados_start(Files& files) {
                 fmt::format("The start is {}, a frame of the package's run (name top.pdb after the "
                             "folder for its first start).",
                             name));
-        else if (exists(folder / "restart.chk"))
+        else if (is_file(folder / "restart.chk"))
             files.notes.push_back(
                 "restart.chk is not read: OpenMM's checkpoints fit one platform and version. The "
                 "start is top.pdb.");

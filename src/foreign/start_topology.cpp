@@ -8,6 +8,7 @@
 
 #include "error.hpp"
 #include "io/output.hpp"
+#include "io/output_file.hpp"
 #include "scene/node.hpp"
 #include "systems/import.hpp"
 #include "systems/pdb_topology.hpp"
