@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "error.hpp"
-#include "io/output_file.hpp"
+#include "io/output.hpp"
 #include "io/output_file.hpp"
 #include "scene/node.hpp"
 #include "systems/import.hpp"
