@@ -85,7 +85,7 @@ class Drawing {
             svg +=
                 fmt::format("{:.1f},{:.1f} ", at(static_cast<double>(k) + 0.5), y_of(of_.plddt[k]));
         return svg + "\"/>\n" + residue_ticks(top + curve_height) +
-               fmt::format("<text x=\"4\" y=\"{}\">pLDDT</text>\n", top + 14);
+               fmt::format("<text x=\"4\" y=\"{}\">pLDDT</text>\n", top - 6);
     }
     /// Shade of the mean error of two ranges of residues.
     int shade(std::size_t i, std::size_t i_end, std::size_t j, std::size_t j_end) const {
