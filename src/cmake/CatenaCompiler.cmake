@@ -108,42 +108,12 @@ function(catena_precompiled_options target)
     endif()
 endfunction()
 
-option(CATENA_UNITY "Compile several sources of a folder at once: half of the time of a first build, longer after each change" OFF)
-
 # catena_without_vectors(<target> folders...): sources below src/ that run once per run. -O1 takes two thirds of the time to compile.
 function(catena_without_vectors target)
     list(JOIN ARGN "|" folders)
     get_target_property(sources ${target} SOURCES)
-    list(FILTER sources INCLUDE REGEX "[.]cpp$")
-    set(others ${sources})
-    list(FILTER sources INCLUDE REGEX "/src/(${folders})/[^/]*$")
-    list(FILTER others EXCLUDE REGEX "/src/(${folders})/[^/]*$")
-    if(CATENA_UNITY)
-        # CMake compiles a source with options of its own by itself: the others get them.
-        target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
-        set_property(SOURCE ${others} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
-        catena_compile_at_once(${target} ${sources})
-    else()
-        set_property(SOURCE ${sources} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
-    endif()
-endfunction()
-
-# catena_compile_at_once(<target> sources...): up to eight sources of a folder become one.
-function(catena_compile_at_once target)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>)  # of what another source declares
-    set(number 0)
-    foreach(source IN LISTS ARGN)
-        get_filename_component(folder "${source}" DIRECTORY)
-        get_filename_component(folder "${folder}" NAME)
-        if(NOT folder STREQUAL previous)
-            set(number 0)
-        endif()
-        math(EXPR group "${number} / 8")
-        set_property(SOURCE "${source}" TARGET_DIRECTORY ${target} PROPERTY UNITY_GROUP "${folder}_${group}")
-        set(previous "${folder}")
-        math(EXPR number "${number} + 1")
-    endforeach()
+    list(FILTER sources INCLUDE REGEX "/src/(${folders})/[^/]*[.]cpp$")
+    set_property(SOURCE ${sources} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # catena_add_simd_sources(<target> parts...): avx2_<part>.cpp and avx512_<part>.cpp of the folder that calls it, or no_levels.cpp, into `target`.
