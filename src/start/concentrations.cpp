@@ -14,8 +14,10 @@
 namespace catena {
 namespace {
 
-double constexpr least_gap = 1. / 3;         // of an edge: free of beads beside a slab or region
-std::ptrdiff_t constexpr least_chains = 20;  // whose outermost beads tell a region's sides
+/// Part of an edge that is free of beads beside a slab or another region.
+double constexpr least_gap = 1. / 3;
+/// Number of chains whose outermost beads tell the sides of their region.
+std::ptrdiff_t constexpr least_chains = 20;
 
 /// Part of the box that is not empty, along one axis.
 struct Occupied {
