@@ -167,8 +167,11 @@ Outcome import_folder(Communicator const& communicator, ImportRequest const& req
         std::vector<Written> scenes;
         for (foreign::SceneDraft const& draft : drafts) scenes.push_back(settled(draft));
         std::vector<std::string> notes = files.notes, written;
-        for (auto const& more : {settings.notes, scenes.back().notes})
-            notes.insert(notes.end(), more.begin(), more.end());
+        notes.insert(notes.end(), settings.notes.begin(), settings.notes.end());
+        for (Written const& scene : scenes)
+            for (std::string const& note : scene.notes)
+                if (std::find(notes.begin(), notes.end(), note) == notes.end())
+                    notes.push_back(note);
         for (Written const& scene : scenes) {
             write_text_file(scene.file, scene.text);
             written.push_back(scene.file);

@@ -116,8 +116,11 @@ std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
 /// True if the residue lies in the chain; every residue does if none is named.
 bool Numbering::in_chain(std::size_t residue, std::string const& chain) const {
     if (chain.empty()) return true;
-    return residue < numbers_.chains.size() &&
-           (numbers_.chains[residue][0] == chain || numbers_.chains[residue][1] == chain);
+    if (residue >= numbers_.chains.size()) return false;
+    // Author names come first, as for `chain`; labels count where no author name matches.
+    bool const is_author_name = std::any_of(numbers_.chains.begin(), numbers_.chains.end(),
+                                            [&](auto const& names) { return names[0] == chain; });
+    return numbers_.chains[residue][is_author_name ? 0 : 1] == chain;
 }
 
 /// Residue (from 0) of one end. Throws InputError for unknown and ambiguous numbers.

@@ -37,7 +37,7 @@ BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name) {
     throw built_without("OpenMM", name, remedy);
 }
 
-std::vector<Vec3> read_openmm_state(std::string const&, std::string const& where) {
+OpenMmState read_openmm_state(std::string const&, std::string const& where) {
     throw built_without("OpenMM", where, remedy);
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -25,6 +26,8 @@ bool is_file(fs::path const& file) {
     return fs::is_regular_file(file, ignored);
 }
 
+constexpr double most_whole = 1e15;
+
 /// A YAML file of the package.
 class Settled {
   public:
@@ -45,6 +48,16 @@ class Settled {
     double number(std::string_view key, double otherwise) const {
         Node const* const node = find(key);
         return node ? scene::number(*node) : otherwise;
+    }
+    /// Whole number of that key, which may be written as 1e8 or 100000000.0.
+    std::int64_t whole(std::string_view key, double otherwise, std::int64_t least) const {
+        double const found = number(key, otherwise);
+        if (!(found >= static_cast<double>(least) && found <= most_whole &&
+              found == std::floor(found)))
+            scene::fail(*find(key),
+                        fmt::format("`{}` is not a whole number of {} or more", key, least),
+                        "correct it");
+        return static_cast<std::int64_t>(found);
     }
     bool truth(std::string_view key) const {
         Node const* const node = find(key);
@@ -106,8 +119,7 @@ void read_slab(Settled const& config, Files const& files, Settings& settings) {
     char const* const force = "CustomExternalForce";
     if (!config.truth("slab_eq") || !holds(files.system, force)) return;
     settings.equilibration_forces = {force};
-    if (!is_equilibrated(files))
-        settings.equilibration_steps = static_cast<std::int64_t>(config.number("steps_eq", 1000));
+    if (!is_equilibrated(files)) settings.equilibration_steps = config.whole("steps_eq", 1000, 0);
 }
 
 }  // namespace
@@ -162,9 +174,9 @@ Settings calvados_settings(Files const& files) {
     settings.tool = "CALVADOS package";
     settings.temperature = config.number("temp", settings.temperature);
     settings.friction = friction_of(config, settings);
-    settings.steps = static_cast<std::int64_t>(config.number("steps", 100000000));
-    settings.every = static_cast<std::int64_t>(config.number("wfreq", 100000));
-    settings.seed = static_cast<std::uint64_t>(config.number("random_number_seed", 1));
+    settings.steps = config.whole("steps", 100000000, 0);
+    settings.every = config.whole("wfreq", 100000, 1);
+    settings.seed = static_cast<std::uint64_t>(config.whole("random_number_seed", 1, 0));
     settings.minimises = fs::path(files.topology).filename() == "top.pdb";
     if (config.number("runtime", 0) > 0)
         settings.notes.push_back(

@@ -166,6 +166,10 @@ Files find_files(std::string const& source, std::string const& topology) {
                          how_to_write);
     files.system = is_folder ? system_in(files, contents) : source;
     if (contents.integrators.size() == 1) files.integrator = contents.integrators.front();
+    if (contents.integrators.size() > 1 && files.config.empty())
+        files.notes.push_back(
+            fmt::format("{} serialised Integrators are not read: leave one in the folder.",
+                        contents.integrators.size()));
     if (!topology.empty())
         take_named(topology, contents, files);
     else if (!take_calvados_start(files))

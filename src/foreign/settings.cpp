@@ -64,7 +64,7 @@ Settings settings_of(Files const& files) {
     if (!files.integrator.empty()) return integrator_settings(files.integrator);
     Settings settings;
     settings.notes.push_back(
-        fmt::format("No settings of the run were found (config.yaml, a serialised Integrator): "
+        fmt::format("No settings of the run were read (config.yaml, one serialised Integrator): "
                     "{:.6g} K, friction {:.6g}/ps and {} steps of {:.6g} ps are assumed.",
                     settings.temperature, settings.friction, settings.steps, settings.step));
     return settings;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -16,6 +17,8 @@
 namespace catena::foreign {
 
 namespace {
+
+constexpr double box_digits = 1e-4;  // nm
 
 /// Chains and residues of the named topology, or chains of the System's bonds.
 Topology chains_of(Files const& files, BondedChains const& bonded) {
@@ -38,6 +41,19 @@ Topology chains_of(Files const& files, BondedChains const& bonded) {
     return topology;
 }
 
+/// Throws InputError if the State's box, as a barostat leaves it, is not the System's.
+void refuse_another_box(Vec3 const& own, Vec3 const& systems, std::string const& state) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (std::abs(own[k] - systems[k]) > box_digits)
+            throw InputError(
+                fmt::format("the State's box is {:.6g} x {:.6g} x {:.6g} nm, the System's {:.6g} x "
+                            "{:.6g} x {:.6g} nm",
+                            own[0], own[1], own[2], systems[0], systems[1], systems[2]),
+                state,
+                "serialise the System again after system.setDefaultPeriodicBoxVectors("
+                "*state.getPeriodicBoxVectors())");
+}
+
 }  // namespace
 
 std::string write_start(Files const& files, OpenMmSpec const& spec, std::string const& folder) {
@@ -45,7 +61,9 @@ std::string write_start(Files const& files, OpenMmSpec const& spec, std::string 
     BondedChains const bonded = chains_by_bonds(spec, files.system);
     Topology topology = chains_of(files, bonded);
     Frame frame;
-    frame.positions = read_openmm_state(files.state, state);
+    OpenMmState const start = read_openmm_state(files.state, state);
+    if (bonded.box) refuse_another_box(start.box, *bonded.box, state);
+    frame.positions = start.positions;
     for (auto const& [count, what] :
          {std::pair{frame.positions.size(), "State"}, {topology.residue.size(), "topology"}})
         if (count != bonded.mass.size())

@@ -113,11 +113,13 @@ void DcdFile::damaged(std::string const& how) const {
     throw InputError("the DCD file is damaged: " + how, name_, "write it again");
 }
 
-/// Reads the edges of the cell A, gamma, B, beta, alpha, C in Angstrom.
-Vec3 DcdFile::edges_in(std::string const& cell) const {
+/// Reads the edges of the cell A, gamma, B, beta, alpha, C in Angstrom. Edges of zero mean that
+/// there is no box.
+std::optional<Vec3> DcdFile::edges_in(std::string const& cell) const {
     if (cell.size() != 6 * sizeof(double)) damaged("its box has another form");
     std::array<double, 6> value{};
     std::memcpy(value.data(), cell.data(), sizeof value);
+    if (value[0] == 0 && value[2] == 0 && value[5] == 0) return std::nullopt;
     Vec3 const edges{
         {nm_per_angstrom * value[0], nm_per_angstrom * value[2], nm_per_angstrom * value[5]}};
     for (double const edge : edges.data)

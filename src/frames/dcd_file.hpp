@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ class DcdFile {
     /// Reads the record at `offset` and moves `offset` to its end.
     std::string record(std::uint64_t& offset) const;
     [[noreturn]] void damaged(std::string const& how) const;
-    Vec3 edges_in(std::string const& cell) const;
+    std::optional<Vec3> edges_in(std::string const& cell) const;
 
     std::string name_;
     std::uint64_t size_ = 0, first_frame_ = 0, frame_size_ = 0;  // bytes

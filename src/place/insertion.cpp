@@ -39,9 +39,17 @@ struct Motion {
     Vec3 centre = Vec3::zero();
 };
 
+/// Longest link, without the distances from a rigid domain's centre of mass to its first and last
+/// bead.
+double longest_link(ChainSpec const& chain, Outline const& outline) {
+    if (!chain.is_linked() || chain.linked.length.empty()) return outline.link;
+    return *std::max_element(chain.linked.length.begin(), chain.linked.length.end());
+}
+
 Shape shape_of(Draft const& draft, std::size_t number) {
     Outline const outline = outline_of(draft.chain);
-    Shape shape{number, outline.points, Vec3::zero(), std::max(excluded_distance, outline.link),
+    Shape shape{number, outline.points, Vec3::zero(),
+                std::max(excluded_distance, longest_link(draft.chain, outline)),
                 is_rotatable(draft.chain)};
     for (Vec3 const& point : shape.points)
         shape.centre =

@@ -20,8 +20,9 @@ void refuse_unplaced(Draft const& draft) {
              fmt::format("chain `{}` stands where its positions put it", shown(draft.chain.name)),
              "leave `place` out, or leave its positions out");
     bool const links = draft.chain.is_beads() || draft.chain.is_linked();
+    Node const* const place = place_of(*draft.node);
     if (draft.movable && !links)
-        fail(*place_of(*draft.node),
+        fail(place ? *place : *draft.node,
              fmt::format("`place` moves chains of beads and of bodies on links, which chain `{}` "
                          "is not",
                          shown(draft.chain.name)),

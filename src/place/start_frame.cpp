@@ -184,9 +184,11 @@ class FrameStart {
         for (Draft const& draft : drafts_)
             for (std::size_t k = 0; k < draft.chain.bead_count(); ++k, ++site) {
                 if (frame_.residue.empty()) continue;
-                std::string other = frame_.residue[site];
+                std::string other = frame_.residue[site].substr(0, 3);
                 other.erase(std::remove(other.begin(), other.end(), ' '), other.end());
-                std::string const& own = residues_of(draft.chain)[k];
+                // A topology file holds three characters of a name.
+                std::string own = residues_of(draft.chain)[k].substr(0, 3);
+                own.erase(std::remove(own.begin(), own.end(), ' '), own.end());
                 if (other == own || other == "UNK" || own == "UNK") continue;
                 fail(
                     from,

@@ -100,6 +100,9 @@ Node const* cubic_of(Fields const& fields) {
     return box && box->kind == Node::Kind::map ? box->find("cubic") : nullptr;
 }
 
+/// Edges of a cube from a concentration, nm.
+constexpr double shortest_cube = 0.1, longest_cube = 1e9;
+
 /// Sets the edges of a cubic box from the chains' masses and numbers.
 void set_cube(Node const& cubic, std::vector<scene::Draft> const& drafts, Scene& frame) {
     if (frame.si)
@@ -107,7 +110,11 @@ void set_cube(Node const& cubic, std::vector<scene::Draft> const& drafts, Scene&
     if (frame.forces.openmm && !frame.forces.openmm->system.empty())
         scene::fail(cubic, "a box from a concentration for a System, which has its own box",
                     "give the System's edges by `periodic`");
-    frame.box = scene::cube_for(scene::read_cubic(cubic), drafts);
+    Vec3 const box = scene::cube_for(scene::read_cubic(cubic), drafts);
+    if (!(box[0] >= shortest_cube && box[0] <= longest_cube))
+        scene::fail(cubic, fmt::format("the concentration gives edges of {:.4g} nm", box[0]),
+                    "correct the number or the unit");
+    frame.box = box;
 }
 
 /// Places all chains: at a frame of another run, in the regions of `place`, in that of `fill`, or

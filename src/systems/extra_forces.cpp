@@ -5,8 +5,12 @@
 #include <fmt/format.h>
 #include <openmm/serialization/XmlSerializer.h>
 
+#include <algorithm>
 #include <new>
 #include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "error.hpp"
 #include "scene/force_changes.hpp"
@@ -75,6 +79,55 @@ void refuse_movers(Extra const& extra) {
                          "leave it out: Catena has its own integrators, at constant volume");
 }
 
+using Pairs = std::set<std::pair<int, int>>;
+
+/// Pairs that a pair force leaves out; nothing for other forces.
+std::optional<Pairs> left_out_by(OpenMM::Force const& force) {
+    Pairs pairs;
+    int a = 0, b = 0;
+    if (auto const* custom = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) {
+        for (int i = 0; i < custom->getNumExclusions(); ++i) {
+            custom->getExclusionParticles(i, a, b);
+            pairs.insert(std::minmax(a, b));
+        }
+        return pairs;
+    }
+    if (auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force)) {
+        double product = 0, sigma = 0, epsilon = 0;
+        for (int i = 0; i < charges->getNumExceptions(); ++i) {
+            charges->getExceptionParameters(i, a, b, product, sigma, epsilon);
+            pairs.insert(std::minmax(a, b));
+        }
+        return pairs;
+    }
+    return std::nullopt;
+}
+
+/// Gives a pair force the exclusions of the model's pair forces, which OpenMM wants to be the same
+/// in all: neighbours along links, beads of one rigid body. Throws InputError where it has others.
+void take_exclusions(Extra const& extra, OpenMM::Force& force, OpenMmModel& model) {
+    std::optional<Pairs> const own = left_out_by(force);
+    std::optional<Pairs> models;
+    for (int i = 0; own && !models && i < model.system->getNumForces(); ++i)
+        models = left_out_by(model.system->getForce(i));
+    if (!models || *models == *own) return;
+    auto* const custom = dynamic_cast<OpenMM::CustomNonbondedForce*>(&force);
+    bool const lacks_some = std::includes(models->begin(), models->end(), own->begin(), own->end());
+    if (!custom || !lacks_some)
+        throw InputError(
+            fmt::format("{} leaves out {} pairs and the model's pair forces {} others",
+                        extra.name(), own->size(), models->size()),
+            extra.where,
+            "leave out the same pairs, as OpenMM demands: neighbours along links and beads of one "
+            "rigid body");
+    for (auto const& [a, b] : *models)
+        if (!own->contains({a, b})) custom->addExclusion(a, b);
+    model.notes.push_back(
+        fmt::format("{} leaves out {} pairs more, as the model's pair forces do: neighbours along "
+                    "links and beads of one rigid body",
+                    extra.name(), models->size() - own->size()));
+}
+
 /// Names all forces and gives each a group of its own.
 void name_all(OpenMmModel& model) {
     std::vector<int> all(static_cast<std::size_t>(model.system->getNumForces()));
@@ -105,6 +158,7 @@ void add_extra_forces(OpenMmModel& model, OpenMmSpec const& spec, BeadSystem con
         refuse_without_box(extra, beads);
         refuse_misfit(extra, *model.system);
         model.notes.push_back(fmt::format("added: {}", extra.name()));
+        take_exclusions(extra, *force, model);
         model.system->addForce(force.release());
     }
     if (model.system->getNumForces() > force_groups_of_openmm)

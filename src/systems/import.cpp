@@ -16,6 +16,8 @@ namespace catena {
 
 namespace {
 
+constexpr double digits_of_cell = 2e-3;  // nm, of a PDB file's cell
+
 /// Imports one chain that begins with particle `first`, and adds its links to `links`.
 ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system,
                            Joinings const& joinings, StiffLinks& links, std::string const& where) {
@@ -133,12 +135,30 @@ BondedChains chains_by_bonds(OpenMmSpec const& spec, std::string const& name) {
     return chains;
 }
 
+namespace {
+
+/// Notes that the topology's cell, as a barostat may have left it, is not the System's box.
+void note_another_box(Vec3 const& cell, std::string const& topology, ImportedSystem& imported) {
+    Vec3 const& box = imported.box;
+    if (std::abs(cell[0] - box[0]) + std::abs(cell[1] - box[1]) + std::abs(cell[2] - box[2]) <
+        digits_of_cell)
+        return;
+    imported.notes.push_back(fmt::format(
+        "`{}` has a box of {:.6g} x {:.6g} x {:.6g} nm, the System {:.6g} x {:.6g} x {:.6g} nm, "
+        "which is taken: if a barostat has changed the box, serialise the System again with the "
+        "new one",
+        scene::shown_path(topology), cell[0], cell[1], cell[2], box[0], box[1], box[2]));
+}
+
+}  // namespace
+
 ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
     ImportedSystem imported;
     auto const system = read_scene_system(spec, scene_file, imported.notes);
-    auto whole =
-        read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"), &imported.notes);
+    std::optional<Vec3> cell;
+    auto whole = read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"),
+                                   &imported.notes, &cell);
     std::size_t atoms = 0;
     for (auto const& chain : whole) atoms += chain.size();
     if (static_cast<int>(atoms) != system->getNumParticles())
@@ -152,6 +172,7 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     OpenMM::Vec3 a, b, c;
     system->getDefaultPeriodicBoxVectors(a, b, c);
     imported.box = {{a[0], b[1], c[2]}};
+    if (imported.periodic && cell) note_another_box(*cell, spec.topology, imported);
     if (imported.periodic) make_cut_chains_whole(whole, joinings, imported);
     auto const chains = cut_at_bonds(whole, joinings, &imported.notes);
     StiffLinks links(spec.temperature, where);

@@ -72,10 +72,15 @@ struct BondedChains {
 /// takes the place of the scene file in messages.
 BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name);
 
-/// Returns the positions in a serialised State, nm. Throws InputError for another file and for a
-/// State without positions; `where` is the place in messages. A build without OpenMM throws "built
-/// without OpenMM".
-std::vector<Vec3> read_openmm_state(std::string const& file, std::string const& where);
+/// What a serialised State holds.
+struct OpenMmState {
+    std::vector<Vec3> positions;  // nm
+    Vec3 box = Vec3::zero();      // edges, nm
+    bool has_velocities = false;
+};
+/// Reads a serialised State. Throws InputError for another file and for a State without positions;
+/// `where` is the place in messages. A build without OpenMM throws "built without OpenMM".
+OpenMmState read_openmm_state(std::string const& file, std::string const& where);
 
 /// Names a key in messages: "scene.yaml: forces.openmm.system".
 inline std::string openmm_key(std::string const& scene_file, std::string const& key) {

@@ -29,7 +29,8 @@ std::string whole_text(std::string const& file, std::string const& where) {
 }  // namespace
 
 std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where,
-                                        std::vector<std::string>* notes) {
+                                        std::vector<std::string>* notes,
+                                        std::optional<Vec3>* cell) {
     scene::StructureFile const structure(whole_text(file, where), scene::shown_path(file));
     std::vector<PdbChain> chains;
     scene::PdbAtom last;
@@ -44,6 +45,7 @@ std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string con
     if (summary.atoms == 0)
         throw InputError(fmt::format("{} holds no ATOM record", scene::shown_path(file)), where,
                          "name a PDB or mmCIF file with one atom per particle");
+    if (cell && summary.cell) *cell = (1 / 10.0) * *summary.cell;
     if (notes && summary.models.size() > 1)
         notes->push_back(fmt::format("`{}`: {} models, the first is taken", scene::shown_path(file),
                                      summary.models.size()));

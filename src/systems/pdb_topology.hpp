@@ -1,6 +1,7 @@
 // Chains of a topology in a PDB or mmCIF file. This header does not need OpenMM.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ struct PdbChain {
 
 /// Returns the chains of the first model, in the file's order. A new chain begins after TER and at
 /// a change of letter or segment. Throws InputError; `where` is the scene file and key in messages.
-/// `notes`, unless nullptr, receives a sentence on further models.
+/// `notes`, unless nullptr, receives a sentence on further models, `cell` the edges of a
+/// rectangular cell in nm, if the file has one.
 std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where,
-                                        std::vector<std::string>* notes = nullptr);
+                                        std::vector<std::string>* notes = nullptr,
+                                        std::optional<Vec3>* cell = nullptr);
 
 }  // namespace catena

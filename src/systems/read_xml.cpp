@@ -151,7 +151,7 @@ std::unique_ptr<OpenMM::Force> read_openmm_force(std::string const& file,
     return force;
 }
 
-std::vector<Vec3> read_openmm_state(std::string const& file, std::string const& where) {
+OpenMmState read_openmm_state(std::string const& file, std::string const& where) {
     std::string const name = scene::shown_path(file), xml = read_text(file, where, "State");
     Wanted const wanted{"State", "write it with OpenMM's XmlSerializer.serialize(state)", where};
     XmlOutline const outline = outline_of(xml, name, wanted);
@@ -159,9 +159,14 @@ std::vector<Vec3> read_openmm_state(std::string const& file, std::string const& 
     if ((state->getDataTypes() & OpenMM::State::Positions) == 0)
         throw InputError(fmt::format("{} holds no positions", name), where,
                          "write it after getState(getPositions=True)");
-    std::vector<Vec3> positions;
-    for (OpenMM::Vec3 const& x : state->getPositions()) positions.push_back({{x[0], x[1], x[2]}});
-    return positions;
+    OpenMmState found;
+    for (OpenMM::Vec3 const& x : state->getPositions())
+        found.positions.push_back({{x[0], x[1], x[2]}});
+    OpenMM::Vec3 a, b, c;
+    state->getPeriodicBoxVectors(a, b, c);
+    found.box = {{a[0], b[1], c[2]}};
+    found.has_velocities = (state->getDataTypes() & OpenMM::State::Velocities) != 0;
+    return found;
 }
 
 }  // namespace catena

@@ -7,9 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <sstream>
 
-#include "analysis/trajectory_file.hpp"
+#include "frames/trajectory_file.hpp"
 #include "io/observables_table.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -86,10 +87,9 @@ std::vector<std::pair<std::string, double>> terms_of(std::string const& run) {
         auto const end = name.find("_energy [");
         if (end == std::string::npos) continue;
         std::string const term = name.substr(0, end);
-        for (char const* const own : {"gravity", "springs", "potential", "kinetic", "total"})
-            if (term == own) goto next;
-        terms.emplace_back(term, table.columns[i].at(0));
-    next:;
+        static std::set<std::string> const own{"gravity", "springs", "potential", "kinetic",
+                                               "total"};
+        if (!own.contains(term)) terms.emplace_back(term, table.columns[i].at(0));
     }
     return terms;
 }
