@@ -102,8 +102,8 @@ void expect_openmms_energies(TemporaryFolder const& folder, std::string const& s
                             "--set", "forces.openmm.platform=Reference"},
                            folder.path());
     ASSERT_EQ(e.status, 0) << e.err;
-    analysis::TrajectoryFile const trajectory(folder / "none");
-    analysis::Snapshot start;
+    TrajectoryFile const trajectory(folder / "none");
+    Snapshot start;
     trajectory.read(0, start);
     auto const whole = system_in(system);
     auto const expected = energies_by_openmm(*whole, start.position);

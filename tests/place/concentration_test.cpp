@@ -22,7 +22,7 @@ std::string const box = "box: {periodic: [20, 20, 30]}\n";  // 12,000 nm^3
 
 TEST(Concentration, of_a_chain_gives_its_number) {
     double const mg = 40 * mass_of_ten * amu_per_nm3 / 12000, mmol = 40 * 1e3 * amu_per_nm3 / 12000;
-    for (std::string const written :
+    for (std::string const& written :
          {std::to_string(mg) + " mg/ml", std::to_string(mg) + " g/l",
           std::to_string(mmol) + " mmol/l", std::to_string(1e3 * mmol) + " uM",
           std::to_string(1e-3 * mmol) + " mol/l"}) {

@@ -59,7 +59,7 @@ Refusal const keys_cases[] = {
     {"unknown_far_from_all", "wallpaper: []",
      "unknown key `wallpaper` (s.yaml: wallpaper, line 1): use one of `title`, `units`, `chains`, "
      "`box`, `forces`, `dynamics`, `solver`, "
-     "`output`, `relax`"},
+     "`output`, `relax`, `place`, `start`"},
     {"unknown_in_chain", "chains: [{sequnce: GGG, model: calvados2}]",
      "unknown key `sequnce` (s.yaml: chains[0].sequnce, line 1): did you mean `sequence`?"},
     {"unknown_in_body", R"y(chains:
@@ -104,7 +104,8 @@ forces: {openmm: {bilder: calvados2}})y",
      "key `chains` has no value (s.yaml: chains, line 1): give one or leave the key out"},
     {"chain_is_text", "chains: [GGG]",
      "`GGG` is not a map (s.yaml: chains[0], line 1): give a map with keys among `name`, `count`, "
-     "`sequence`, `fasta`, `record`, `pdb`, `chain`, `conformer`, `gaps`, `sites`, "
+     "`concentration`, `place`, `sequence`, `fasta`, `record`, `pdb`, `chain`, `conformer`, "
+     "`gaps`, `sites`, "
      "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, "
      "`conformation`, `rigid`, `charge_termini`, "
      "`velocities`"},

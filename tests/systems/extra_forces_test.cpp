@@ -17,6 +17,7 @@ class ExtraForces : public ::testing::Test {
     OpenMmSpec spec = on_reference();
     std::vector<Vec3> positions = wound(beads, 4);
 
+    std::unique_ptr<Communicator> communicator = serial_communicator();  // outlives the forces
     int files = 0;
 
     void name(std::string const& file) { add_changes({{file}, {}, {}}, spec); }
@@ -26,7 +27,7 @@ class ExtraForces : public ::testing::Test {
         name(scratch_file(fmt::format("extra{}.xml", files++), xml_of(*owned)));
     }
     std::unique_ptr<OpenMmForce> make() const {
-        return make_openmm_force(spec, beads, *serial_communicator());
+        return make_openmm_force(spec, beads, *communicator);
     }
     std::string refusal() const {
         return complaint([&] { make(); });
