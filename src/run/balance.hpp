@@ -40,7 +40,8 @@ struct RankShares {
     bool are_stored = false;  // taken from a checkpoint, not from a measurement
 };
 /// Returns the stored shares if they fit the ranks, else those of agree_on_shares() for the costs
-/// that `measure` returns. A restart must equal the uninterrupted run, also with OpenMM. Collective.
+/// that `measure` returns. A restart must equal the uninterrupted run, also with OpenMM.
+/// Collective.
 RankShares rank_shares(Communicator const&, std::vector<double> const& stored,
                        std::function<std::vector<OwnCost>()> const& measure);
 /// Returns {"shares", "shares_from", "bodies_of_rank"} for summary.json.

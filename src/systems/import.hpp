@@ -72,7 +72,7 @@ struct BondedChains {
 /// takes the place of the scene file in messages.
 BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name);
 
-/// What a serialised State holds.
+/// Holds what is read of a serialised State.
 struct OpenMmState {
     std::vector<Vec3> positions;  // nm
     Vec3 box = Vec3::zero();      // edges, nm
