@@ -78,7 +78,8 @@ void become_silent(TrialLimits const& limits) {
     become_silent(limits);
     try {
         action();
-    } catch (...) {  // the process itself will fail alike and report it
+    } catch (...) {
+        ::_exit(0);  // the process itself will fail alike and report it
     }
     ::_exit(0);
 }

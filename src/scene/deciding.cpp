@@ -63,7 +63,8 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     ForceChanges const changes = changes_of(o);
     if (!changes.leave_out.empty())
         add(values, at + "leave_out", fmt::format("{}", fmt::join(changes.leave_out, ", ")));
-    for (auto const& [force, length] : changes.links) add(values, at + "links." + force, length);
+    for (auto const& [force, length] : changes.links)
+        add(values, fmt::format("{}links.{}", at, force), length);
     for (std::size_t i = 0; i < changes.extra.size(); ++i)
         add(values, fmt::format("{}extra[{}]", at, i),
             "content " + content_print(changes.extra[i]));
