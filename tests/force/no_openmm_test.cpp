@@ -30,8 +30,8 @@ TEST(WithoutOpenMm, EveryUseSaysSo) {
     expect_built_without([&] { make_openmm_force({}, beads, *serial); });
     expect_built_without([&] { import_openmm_system({}, "scene.yaml"); });
     expect_built_without([&] { read_system_links({}, "scene.yaml"); });
-    expect_built_without([&] { read_openmm_state("state.xml", "scene.yaml"); });
-    expect_built_without([&] { chains_by_bonds({}, "scene.yaml"); });
+    expect_built_without([&] { read_openmm_state("state.xml", "scene.yaml: forces.openmm"); });
+    expect_built_without([&] { chains_by_bonds({}, "scene.yaml: forces.openmm"); });
 }
 
 }  // namespace
