@@ -74,8 +74,8 @@ files=("${tree[@]}" src/scene/files.cpp src/scene/fields.cpp)
 read_hdf5=(src/io/hdf5_handle.cpp src/io/output_file.cpp)
 target scene -lyaml-cpp "${tree[@]}"
 target table -lyaml-cpp "${files[@]}"
-target pdb -lyaml-cpp "${files[@]}" src/scene/{pdb_file,pdb_sites,structure_file,structure_residues}.cpp \
-    src/scene/{atom_masses,residue_names,no_gemmi}.cpp
+target pdb -lyaml-cpp "${files[@]}" src/structure/{pdb_file,pdb_sites,structure_file,structure_residues}.cpp \
+    src/structure/{atom_masses,residue_names,no_gemmi}.cpp
 target fasta -lyaml-cpp "${files[@]}" src/structure/fasta.cpp src/structure/residue_names.cpp src/structure/residue_table.cpp
 target residues -lyaml-cpp "${files[@]}" src/structure/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
