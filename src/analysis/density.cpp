@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/concentration_units.hpp"
+
 namespace catena::analysis {
 namespace {
-
-constexpr double mg_per_ml = 1.66053906892;  // 1 amu / nm^3 (CODATA 2022)
 
 /// Returns the circular mean of coordinates in a periodic edge, weighted with masses.
 double middle_of(std::vector<Vec3> const& x, std::vector<double> const& mass, int axis,

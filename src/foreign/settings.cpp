@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string_view>
 
 #include "foreign/calvados_folder.hpp"
+#include "io/output_file.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 
@@ -36,10 +35,7 @@ bool take(std::string_view tag, char const* name, double& value) {
 
 /// Reads temperature, friction and step of a Langevin integrator, the step of another one.
 Settings integrator_settings(std::string const& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    std::string const xml = text.str();
+    std::string const xml = read_text_file(file);
     auto const begin = xml.find("<Integrator");
     std::string_view const tag =
         std::string_view(xml).substr(std::min(begin, xml.size()), xml.find('>', begin) - begin);

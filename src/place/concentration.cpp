@@ -8,16 +8,15 @@
 #include <numeric>
 #include <string_view>
 
+#include "math/concentration_units.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-double constexpr mg_per_ml = 1.66053906892;     // 1 amu/nm^3 (CODATA 2022)
-double constexpr mmol_per_l = 1e3 * mg_per_ml;  // 1 chain/nm^3
-double constexpr noted_miss = 0.02;             // relative
-double constexpr grid = 1e-4;                   // nm: resolution of derived edges
+double constexpr noted_miss = 0.02;  // relative
+double constexpr grid = 1e-4;        // nm: resolution of derived edges
 double constexpr most_copies = 1e9;
 
 /// A unit's factor to mg/ml or mmol/l.

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <system_error>
 
+#include "math/concentration_units.hpp"
 #include "page/observable_statistics.hpp"
 #include "run/force_summary.hpp"
 #include "scene/alike_chains.hpp"
@@ -18,9 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double seconds_per_day = 86400;
-/// Mass density of 1 amu/nm^3 in g/l, and concentration of one molecule per nm^3 in mol/l (CODATA
-/// 2018).
-constexpr double amu_per_nm3 = 1.66053906660, molecule_per_nm3 = 1 / 0.602214076;
 
 double mass_of(ChainSpec const& chain) {
     std::vector<double> const& mass = chain.is_beads()    ? chain.beads.mass
@@ -42,10 +40,10 @@ void add_concentration(Json& system, Scene const& scene) {
     double const volume = edges[0] * edges[1] * edges[2];
     double mass = 0;
     for (ChainSpec const& chain : scene.chains) mass += mass_of(chain);
-    system["mass_concentration"] = mass / volume * (scene.si ? 1 : amu_per_nm3);
+    system["mass_concentration"] = mass / volume * (scene.si ? 1 : mg_per_ml);
     if (!scene.si)
         system["chain_concentration"] =
-            static_cast<double>(scene.chains.size()) / volume * molecule_per_nm3;
+            static_cast<double>(scene.chains.size()) / volume * (1e-3 * mmol_per_l);
 }
 
 Json system_of(Scene const& scene) {

@@ -147,14 +147,20 @@ bool keep_all(TermFilter& filter, std::vector<int>& particles) {
     return !pointers.empty() && filter.keep(std::span<int* const>(pointers));
 }
 
+/// Copies all of a force with energy function and tables but its terms.
+template <class Source>
+void copy_all_but_terms(Source const& from, Source& to) {
+    copy_periodicity(from, to);
+    copy_globals(from, to);
+    copy_tables(from, to);
+    for (int i = 0; i < from.getNumPerBondParameters(); ++i)
+        to.addPerBondParameter(from.getPerBondParameterName(i));
+}
+
 std::unique_ptr<Force> copy_terms(CustomCompoundBondForce const& from, TermFilter& filter) {
     auto to = std::make_unique<CustomCompoundBondForce>(from.getNumParticlesPerBond(),
                                                         from.getEnergyFunction());
-    copy_periodicity(from, *to);
-    copy_globals(from, *to);
-    copy_tables(from, *to);
-    for (int i = 0; i < from.getNumPerBondParameters(); ++i)
-        to->addPerBondParameter(from.getPerBondParameterName(i));
+    copy_all_but_terms(from, *to);
     std::vector<int> particles;
     std::vector<double> parameters;
     for (int i = 0; i < from.getNumBonds(); ++i) {
@@ -168,11 +174,7 @@ std::unique_ptr<Force> copy_terms(CustomCompoundBondForce const& from, TermFilte
 std::unique_ptr<Force> copy_terms(CustomCentroidBondForce const& from, TermFilter& filter) {
     auto to = std::make_unique<CustomCentroidBondForce>(from.getNumGroupsPerBond(),
                                                         from.getEnergyFunction());
-    copy_periodicity(from, *to);
-    copy_globals(from, *to);
-    copy_tables(from, *to);
-    for (int i = 0; i < from.getNumPerBondParameters(); ++i)
-        to->addPerBondParameter(from.getPerBondParameterName(i));
+    copy_all_but_terms(from, *to);
     std::vector<int> groups, members, all;
     std::vector<double> parameters, weights;
     for (int i = 0; i < from.getNumBonds(); ++i) {
