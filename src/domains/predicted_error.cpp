@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-char const* const remedy =
+char const* const ways_out =
     "give the file of predicted aligned errors that belongs to the structure (AlphaFold database: "
     "AF-...-predicted_aligned_error_v4.json)";
 
@@ -33,7 +33,7 @@ Json parsed(std::string const& path, Node const& at) {
         return Json::parse(read_text_file(path, at));
     } catch (Json::exception const& error) {
         fail(at, fmt::format("`{}` is not JSON ({})", shown_path(path), shown(error.what(), 120)),
-             remedy);
+             ways_out);
     }
 }
 
@@ -45,7 +45,7 @@ PredictedError read_predicted_error(std::string const& path, Node const& at) {
     if (!rows || rows->empty())
         fail(at,
              fmt::format("`{}` has no list `predicted_aligned_error` or `pae`", shown_path(path)),
-             remedy);
+             ways_out);
     PredictedError made;
     made.residues = rows->size();
     made.value.assign(made.residues * made.residues, 0);
@@ -55,14 +55,14 @@ PredictedError read_predicted_error(std::string const& path, Node const& at) {
             fail(at,
                  fmt::format("row {} of `{}` does not have {} numbers, as many as there are rows",
                              i + 1, shown_path(path), made.residues),
-                 remedy);
+                 ways_out);
         for (std::size_t j = 0; j < made.residues; ++j) {
             double const value = row[j].is_number() ? row[j].get<double>() : NAN;
             if (!(value >= 0 && std::isfinite(value)))
                 fail(at,
                      fmt::format("row {}, column {} of `{}` is not an error in angstrom", i + 1,
                                  j + 1, shown_path(path)),
-                     remedy);
+                     ways_out);
             made.value[i * made.residues + j] += static_cast<float>(value / 2);
             made.value[j * made.residues + i] += static_cast<float>(value / 2);
         }

@@ -14,7 +14,7 @@ double constexpr patience = 1e8, end_of_patience = 10 * patience;
 /// Largest number of cells along an edge of a grid without a box.
 std::int64_t constexpr widest = 4096;
 /// Relative rounding of distances; cells within it are tested one by one.
-double constexpr rounding = 1e-9;
+double constexpr relative_rounding = 1e-9;
 
 /// Returns the smallest n >= `least` with `wanted` cells in a grid of n along each edge, limited to
 /// `limit`. If there is none, returns the largest of the limits. A long or flat box has far fewer
@@ -79,9 +79,8 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
         double const sum = std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]);
         double const under = sum * sum - 3 * (dot(c, c) - reach_[i] * reach_[i]);
         if (under <= sum * sum) continue;
-        double const half =
-            (std::sqrt(under) - sum) / 3 *
-            (1 - rounding);  // half the edge of a cube whose farthest corner the sphere reaches
+        // Half the edge of a cube whose farthest corner the sphere reaches.
+        double const half = (std::sqrt(under) - sum) / 3 * (1 - relative_rounding);
         n = std::max(n, std::floor(2 * half / width_) + 1);
     }
     return static_cast<std::int64_t>(std::min(n, 1e15));
@@ -106,7 +105,7 @@ void PlaceGrid::add_layer(std::int64_t z, Counts const& n, std::size_t wanted,
                 box_ ? 0.5 * (*box_)[i] : std::abs(centre[i]) + std::abs(coordinate(0, i, n));
             square += farthest * farthest;
         }
-        if (std::sqrt(square) < reach_[near.sphere] * (1 - rounding))
+        if (std::sqrt(square) < reach_[near.sphere] * (1 - relative_rounding))
             return;  // the sphere covers the layer
     }
     for (std::int64_t y = 0; y < n[1] && cells.size() < wanted && work_ <= end_of_patience; ++y)
@@ -138,7 +137,7 @@ void PlaceGrid::select(std::vector<Near> const& among, double at, int axis,
     for (Near const& near : among) {
         double const distance = apart(at, placed_[near.sphere].centre[axis], axis);
         double const square = near.square + distance * distance;
-        if (std::sqrt(square) < reach_[near.sphere] * (1 + rounding))
+        if (std::sqrt(square) < reach_[near.sphere] * (1 + relative_rounding))
             reaching.push_back({near.sphere, square});
     }
 }
@@ -147,13 +146,14 @@ void PlaceGrid::select(std::vector<Near> const& among, double at, int axis,
 /// left to the exact test.
 void PlaceGrid::add_surely_full(Near const& near, std::int64_t count) {
     double const reach = reach_[near.sphere],
-                 half = std::sqrt(std::max(0.0, reach * reach - near.square)) * (1 - rounding);
+                 half = std::sqrt(std::max(0.0, reach * reach - near.square)) *
+                        (1 - relative_rounding);
     double const centre = placed_[near.sphere].centre[0], n = static_cast<double>(count);
     if (!box_)
         return add_run((centre - half) / width_ + 0.5 * (n - 1),
                        (centre + half) / width_ + 0.5 * (n - 1), count);
     double const edge = (*box_)[0], a_cell = edge / n;
-    if (2 * half > edge * (1 + rounding)) return add_run(-2, n + 1, count);
+    if (2 * half > edge * (1 + relative_rounding)) return add_run(-2, n + 1, count);
     double const wrapped = centre - edge * std::floor(centre / edge);
     for (int image = -1; image <= 1; ++image)
         add_run((wrapped + image * edge - half) / a_cell - 0.5,

@@ -19,7 +19,7 @@ namespace catena::scene {
 
 namespace {
 
-using Names = std::vector<std::string>;
+using ResidueNames = std::vector<std::string>;
 
 /// Length of a linker's links, nm: the distance of neighbouring alpha carbons. The start is fitted
 /// to the model's own lengths afterwards.
@@ -31,7 +31,7 @@ bool same_residue(std::string const& a, std::string const& b) {
            (!meaning_of(a).parent.empty() && meaning_of(a).parent == meaning_of(b).parent);
 }
 
-std::string joined_names(Names const& names) {
+std::string joined_names(ResidueNames const& names) {
     std::string text;
     for (std::string const& name : names) text += (text.empty() ? "" : " ") + shown(name);
     return text;
@@ -40,7 +40,7 @@ std::string joined_names(Names const& names) {
 /// One gap of a chain.
 struct Gap {
     std::size_t site = 0;  // first site behind the gap
-    Names missing;
+    ResidueNames missing;
 };
 
 /// Finds the names of the missing residues.
@@ -85,7 +85,7 @@ class SequenceSearch {
         if (!inside)
             refuse(k, "no residue of the sequence is missing there",
                    "correct the file, or write `gaps: split`");
-        Gap gap{k, Names(listed_.begin() + first, listed_.begin() + last)};
+        Gap gap{k, ResidueNames(listed_.begin() + first, listed_.begin() + last)};
         if (std::any_of(gap.missing.begin(), gap.missing.end(),
                         [](std::string const& name) { return name.empty(); }))
             refuse(k, "the sequence does not name all residues",
@@ -118,11 +118,11 @@ class SequenceSearch {
     std::vector<Gap> by_search() const {
         std::vector<std::int64_t> const place = steps();
         std::vector<Gap> found;
-        std::set<Names> different;
+        std::set<ResidueNames> different;
         for (std::int64_t start = 0; start + place.back() < std::ssize(listed_); ++start) {
             if (!fits(place, start)) continue;
             found.clear();
-            Names all;
+            ResidueNames all;
             for (std::size_t const k : gaps_) {
                 found.push_back(between(k, start + place[k - 1] + 1, start + place[k]));
                 all.insert(all.end(), found.back().missing.begin(), found.back().missing.end());
@@ -141,7 +141,7 @@ class SequenceSearch {
     PdbSites const& from_;
     std::vector<std::size_t> const& gaps_;
     Node const& at_;
-    Names const& listed_;
+    ResidueNames const& listed_;
 };
 
 /// Numbers of the missing residues: those between both ends if they fit, else the number before the
