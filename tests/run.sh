@@ -111,6 +111,7 @@ cluster_tests() {
     check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 --steps 3000 || true
     check killed-at-writes "$python" tests/cluster/killed_at_write.py --stride 1 || true
     check killed-with-openmm "$python" tests/cluster/killed_rank.py --times 30 --steps 200 --ranks 1,2,3,4 --all 0.3 --openmm 1 --folder /dev/shm || true
+    check rank-without-room "$python" tests/cluster/rank_without_room.py --hdf5 collective || true
     for script in stopped_run full_disk many_ranks one_folder; do check "${script//_/-}" "$python" "tests/cluster/$script.py" || true; done
     check two-hosts as_root "$python" tests/cluster/two_hosts.py || true
     check slurm as_root tests/cluster/slurm.sh || true
