@@ -1,18 +1,21 @@
 #!/usr/bin/env python3
-"""Writes the tables of tests/bench/README.md from tests/bench/results/*.json, between their markers.
+"""Writes the tables of tests/bench/README.md and tests/bench/walks.md from tests/bench/results/*.json, between their markers.
 
 usage: tables.py [--check]      (--check: changes nothing, ends with status 1 where a table is not current)
 
 A table named NAME stands between `<!-- table NAME -->` and `<!-- end -->`. All of its figures must be VALID in their files.
 """
+import glob
 import json
 import os
 import re
 import sys
 
+from walks import WALKS
+
 HERE = os.path.dirname(os.path.abspath(__file__))
-PAGE = os.path.join(HERE, "README.md")
-PLATFORM = {"amd-epyc": "AMD EPYC (Zen 5)", "intel-xeon": "Intel Xeon", "nvidia-h200": "NVIDIA H200", "nvidia-h100": "NVIDIA H100"}
+PAGES = ("README.md", "walks.md")
+PLATFORM = {"amd-epyc": "AMD EPYC (Zen 5)", "amd-zen3": "AMD EPYC (Zen 3)", "intel-xeon": "Intel Xeon", "nvidia-h200": "NVIDIA H200", "nvidia-h100": "NVIDIA H100"}
 SIX_SIZES = (100, 500, 2048, 16384, 131072, 1048576)
 
 
@@ -254,10 +257,59 @@ def plan():
     return ["file", "cases", "bodies", "predicted over measured", "slower than the best choice, at most"], rows, list(files), ["catena bench plan --json plan.json"]
 
 
+EARNS = 1.1  # times as long without a walk that is worth its code
+
+
+def walks_measured():
+    """(walk, file, its rows) of every walk, in the order of walks.py and by length; without those that were not measured."""
+    files = sorted(os.path.basename(path)[:-len(".json")] for path in glob.glob(os.path.join(HERE, "results", "walks-*.json")))
+    for walks in WALKS.values():
+        for name in walks:
+            for file in files:
+                if found := rows_of(file, walk=name):
+                    yield name, file, found
+
+
+def earned(row):
+    return row["microseconds_without"] / row["microseconds_with"]
+
+
+def length(row):
+    return bodies(row["bodies"]) if row["chains"] == 1 else f"{bodies(row['chains'])} x {bodies(row['bodies'])}"
+
+
+def commands_of_walks(files):
+    sets = sorted({file.split("-")[1] for file in files}, reverse=True)
+    return [f"python3 tests/bench/walks.py measure {s} walks --catena build/release/catena" for s in sets]
+
+
+def walks():
+    """One row for each walk and machine: where it earns least and most."""
+    rows, files = [], []
+    for name, file, found in walks_measured():
+        files += [file] if file not in files else []
+        least, most = min(found, key=earned), max(found, key=earned)
+        does, instead = next(w[name].does for w in WALKS.values() if name in w).split("; ")
+        worth = sum(earned(r) >= EARNS for r in found)
+        rows.append([name, does, instead] + [f"{earned(r):.2f} ({r['joint']}, {length(r)})" for r in (least, most)] + [f"{worth} of {len(found)}"])
+    return ["walk", "what it does", "otherwise", "least", "most", "1.1 or more"], rows, files, commands_of_walks(files)
+
+
+def every_walk():
+    """One row for each walk, joint and length."""
+    rows, files = [], []
+    for name, file, found in walks_measured():
+        files += [file] if file not in files else []
+        for r in found:
+            rows.append([name, r["joint"], length(r), time(r["microseconds_with"]), time(r["microseconds_without"]), f"{earned(r):.2f}",
+                         next(PLATFORM[p] for p in PLATFORM if p in file)])
+    return ["walk", "joints", "bodies", "with it", "without it", "ratio", "on"], rows, files, commands_of_walks(files)
+
+
 TABLES = {"one core": one_core, "two threads": two_threads, "sixteen cores": sixteen_cores, "scaling": scaling, "peers": peers, "peers' errors": peer_errors,
           "one GPU": one_gpu,
           "one GPU, joints": one_gpu_joints, "two GPUs": two_gpus, "four GPUs": four_gpus, "OpenMM on a GPU": openmm_gpu,
-          "OpenMM on two threads": openmm_cpu, "a million beads": million_beads, "plan": plan}
+          "OpenMM on two threads": openmm_cpu, "a million beads": million_beads, "plan": plan, "walks": walks, "every walk": every_walk}
 
 
 def markdown(name):
@@ -277,21 +329,25 @@ def current(text):
 
 
 def main():
-    with open(PAGE, encoding="utf-8") as file:
-        text = file.read()
-    made = current(text)
-    missing = [name for name in TABLES if f"<!-- table {name} -->" not in text]
+    texts = {}
+    for page in PAGES:
+        with open(os.path.join(HERE, page), encoding="utf-8") as file:
+            texts[page] = file.read()
+    missing = [name for name in TABLES if not any(f"<!-- table {name} -->" in text for text in texts.values())]
     if missing:
-        print(f"tests/bench/README.md has no table {', '.join(missing)}")
+        print(f"{' and '.join(PAGES)} of tests/bench have no table {', '.join(missing)}")
         return 1
+    made = {page: current(text) for page, text in texts.items()}
     if "--check" in sys.argv[1:]:
-        if made != text:
-            print("tables of tests/bench/README.md are not current: run tests/bench/tables.py")
-            return 1
+        for page in PAGES:
+            if made[page] != texts[page]:
+                print(f"tables of tests/bench/{page} are not current: run tests/bench/tables.py")
+                return 1
         print(f"{len(TABLES)} tables are current")
         return 0
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(made)
+    for page in PAGES:
+        with open(os.path.join(HERE, page), "w", encoding="utf-8") as file:
+            file.write(made[page])
     return 0
 
 
