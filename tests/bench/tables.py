@@ -279,8 +279,8 @@ def length(row):
 
 
 def commands_of_walks(files):
-    sets = sorted({file.split("-")[1] for file in files}, reverse=True)
-    return [f"python3 tests/bench/walks.py measure {s} walks --catena build/release/catena" for s in sets]
+    return [f"python3 tests/bench/walks.py measure {file.split('-')[1]} walks --catena build/release/catena" + (" --cpu-time" if load(file)["cpu_time"] else "")
+            for file in files]
 
 
 def walks():
