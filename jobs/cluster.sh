@@ -59,3 +59,17 @@ run_to_the_end() {
     scontrol requeue "$SLURM_JOB_ID"
     sleep 60  # Slurm ends this script
 }
+
+# choose_task SCENE|SCENES FOLDER NUMBER: sets scene, folder and seed of this task of an array, which are counted from 1.
+choose_task() {
+    local number=$3 scenes
+    [ "$number" -ge 1 ] || fail "tasks of an array are counted from 1 (task $number): submit with --array=1-N"
+    scene=$1 folder=$2-$number seed=$number
+    [ -d "$scene" ] || return 0
+    scenes=("$scene"/*.yaml)
+    [ -e "${scenes[0]}" ] || fail "no scenes in this folder ($scene): it needs files *.yaml"
+    seed=$(((number - 1) / ${#scenes[@]} + 1))
+    scene=${scenes[(number - 1) % ${#scenes[@]}]}
+    folder=$2/$(basename "$scene" .yaml)-$seed
+    mkdir -p "$2"
+}

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The same scene many times, each with a seed and a folder of its own: FOLDER-1, FOLDER-2, ...
-# Submit from Catena's folder: sbatch jobs/slurm-array.sh SCENE FOLDER [options of catena run but --output, --restart and --overwrite]
+# One scene many times, or a folder of scenes, as an array: each task has a seed and a folder of its own.
+# Submit from Catena's folder: sbatch --array=1-N jobs/slurm-array.sh SCENE|SCENES FOLDER [options of catena run but --output, --restart and --overwrite]
+# SCENE: FOLDER-1, FOLDER-2, ... A folder SCENES of S scenes: tasks 1 to S run them with seed 1 into FOLDER/NAME-1, the next S with seed 2, ...
 #SBATCH --job-name=catena-array
 #SBATCH --array=1-10
 #SBATCH --nodes=1
@@ -13,6 +14,7 @@
 set -euo pipefail
 # shellcheck source=jobs/cluster.sh
 source "${CATENA_ROOT:-$SLURM_SUBMIT_DIR}/jobs/cluster.sh"
-scene=$1 folder=$2
+[ $# -ge 2 ] || fail "usage: sbatch --array=1-N jobs/slurm-array.sh SCENE|SCENES FOLDER [options]"
+choose_task "$1" "$2" "$SLURM_ARRAY_TASK_ID"
 shift 2
-run_to_the_end "$scene" "$folder-$SLURM_ARRAY_TASK_ID" --set "dynamics.seed=$SLURM_ARRAY_TASK_ID" "$@"
+run_to_the_end "$scene" "$folder" --set "dynamics.seed=$seed" "$@"
