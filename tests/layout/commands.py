@@ -4,9 +4,9 @@
 usage: commands.py --catena PROGRAM [--mpirun WORD,WORD,...] [PAGE ...]
 
 Of every command in code, also within a line, the options must be in the help of its program. Commands of fenced blocks are run too, those
-of a block one after the other in a folder of its own: `check`, `plan`, `solve` and `run`, whose steps are made few, and jobs/plot.py where its
-packages are there. What needs a GPU, a cluster, a network or minutes (bench, report, calibration) is only looked at. Fenced YAML that has
-`chains` is read by `catena check`, and is the `my.yaml` of the blocks that follow it.
+of a block one after the other in a folder of its own: `check`, `plan`, `solve` and `run`, whose steps are made few, jobs/replicas.py with one
+short run of each protein, and jobs/plot.py where its packages are there. What needs a GPU, a cluster, a network or minutes (bench, report,
+calibration) is only looked at. Fenced YAML that has `chains` is read by `catena check`, and is the `my.yaml` of the blocks that follow it.
 
 The blocks of a tutorial (inputs/tutorials) share one folder, and its Python programs are run there. A `text` block that begins with a prompt
 (`$ command`) quotes the command's answer: each quoted line must be in it, `...` stands for anything.
@@ -26,7 +26,7 @@ PROGRAM = re.compile(r"^(.*/)?catena$")
 SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench", "keys", "analyse", "convert", "import")
 RUN = ("check", "plan", "solve", "run", "keys")
 TUTORIALS = "tutorials"  # name of their folder
-PLOT = "jobs/plot.py"
+PLOT, REPLICAS = "jobs/plot.py", "jobs/replicas.py"
 PLACEHOLDERS = {"SCENE", "scene.yaml", "DIR", "FILE", "OTHER"}
 FEW_STEPS = 4
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -171,6 +171,8 @@ class Blocks:
         """The command line that stands for a page's; None for what is only looked at."""
         if self.plots and PLOT in words:
             return [sys.executable, *words[words.index(PLOT):]]
+        if REPLICAS in words and (self.plots or "--picture" not in words):
+            return [sys.executable, *words[words.index(REPLICAS):], "--replicas", "1", "--steps", str(FEW_STEPS)]
         if not self.can_run(words):
             return None
         command = [self.catena, *self.shortened(catena_words(words), runs)]
@@ -178,7 +180,8 @@ class Blocks:
 
     def answer(self, command, work):
         self.run_commands += 1
-        return subprocess.run(command, cwd=work, env={**os.environ, **AS_ROOT}, capture_output=True, text=True, timeout=250, check=False)
+        environment = {**os.environ, **AS_ROOT, "CATENA_PROGRAM": self.catena}
+        return subprocess.run(command, cwd=work, env=environment, capture_output=True, text=True, timeout=250, check=False)
 
     def run(self, block, parent):
         work, runs = self.work(parent), 0

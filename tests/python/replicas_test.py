@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""jobs/replicas.py: writes a scene of each protein with its conditions, means the runs that are VALID, and refuses a sequence of another
+length. With --catena PROGRAM also: two proteins of inputs/saxs-radii.csv are simulated with two seeds each, and runs that are there are kept.
+
+Exit status 0: all as it should be; 1: not."""
+import argparse
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+SCRIPT = os.path.join(ROOT, "jobs", "replicas.py")
+HEAD = "name,ionic,temperature,ph,rg,rg_error,n,doi,sequence\n"
+
+
+def call(words, **environment):
+    return subprocess.run([sys.executable, SCRIPT, *words], env={**os.environ, **environment}, capture_output=True, text=True, check=False)
+
+
+def write(path, text):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def summary(mean, valid):
+    return json.dumps({"valid": valid, "run": {"last_step": 10, "time": 500.0},
+                       "observables": {"radius_of_gyration": {"mean": mean, "standard_error": 0.01, "converged": True}}})
+
+
+def table(folder):
+    with open(os.path.join(folder, "radii.csv"), encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def made_up(folder):
+    """Of runs that the test wrote."""
+    proteins = write(os.path.join(folder, "p.csv"), "# a comment\n" + HEAD + "gly,0.2,280,7,1.5,0.1,6,10.1/x,GGGGSG\n")
+    out = os.path.join(folder, "out")
+    call([proteins, out, "--only", "scenes", "--steps", "10"])
+    with open(os.path.join(out, "scenes", "gly.yaml"), encoding="utf-8") as file:
+        scene = file.read()
+    for words in ("sequence: GGGGSG", "ionic_strength: 0.2, ph: 7", "temperature: 280", "steps: 10"):
+        if words not in scene:
+            yield f"the scene does not say `{words}`: {scene}"
+    for seed, mean, valid in ((1, 1.0, True), (2, 1.2, True), (3, 9.0, False)):
+        write(os.path.join(out, f"gly-{seed}", "summary.json"), summary(mean, valid))
+    done = call([proteins, out, "--only", "table"])
+    found = table(out)[0]
+    if (found["simulated_nm"], found["simulated_error_nm"], found["runs"], found["time_ns"]) != ("1.1", "0.1", "2", "1.0"):
+        yield f"means of two runs: {found} {done.stderr}"
+    wrong = write(os.path.join(folder, "w.csv"), HEAD + "gly,0.2,280,7,1.5,0.1,7,10.1/x,GGGGSG\n")
+    done = call([wrong, out])
+    if done.returncode != 2 or "6 residues, not 7" not in done.stderr:
+        yield f"a sequence of another length: status {done.returncode}: {done.stderr}"
+
+
+def simulated(folder, catena):
+    """Of runs of the program."""
+    with open(os.path.join(ROOT, "inputs", "saxs-radii.csv"), encoding="utf-8") as file:
+        lines = [line for line in file if not line.startswith("#")]
+    first, proteins, out = None, write(os.path.join(folder, "two.csv"), "".join(lines[:3])), os.path.join(folder, "simulated")
+    for turn in range(2):
+        done = call([proteins, out, "--replicas", "2", "--steps", "4"], CATENA_PROGRAM=catena)
+        written = [os.stat(os.path.join(out, name, "summary.json")).st_mtime_ns for name in ("Hst5-1", "Hst5-2", "Hst52-1", "Hst52-2")]
+        if done.returncode != 0 or done.stdout.count("| 2 |") != 2:
+            yield f"turn {turn + 1}: status {done.returncode}: {done.stdout}{done.stderr}"
+        if turn == 1 and written != first:
+            yield "finished runs are run again"
+        first = written
+
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--catena", help="the program; without it no run is made")
+asked = parser.parse_args()
+with tempfile.TemporaryDirectory() as parent:
+    faults = list(made_up(parent)) + (list(simulated(parent, os.path.abspath(asked.catena))) if asked.catena else [])
+print("\n".join(faults) if faults else "passed")
+sys.exit(1 if faults else 0)
