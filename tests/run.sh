@@ -10,8 +10,8 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/cuda/run.sh runs it)
-  fuzz        damaged files for the readers of scenes, tables, PDB, FASTA, System XML, HDF5 bodies and checkpoints, 5 seconds each (libFuzzer,
-              where clang has it); a minute of changed scenes from outside the process
+  fuzz        damaged files for the readers of scenes, tables, PDB, FASTA, System XML, HDF5 bodies, checkpoints, DCD, domains, predicted errors and
+              other tools' settings, 5 seconds each (libFuzzer, where clang has it); a minute of changed scenes from outside the process
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the tests of readers, writers, commands, dynamics and restarts
   minimal     build without any optional package, the tests of what differs there
   tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)

@@ -20,9 +20,10 @@ Node const& protein_in(Node const& file, Node const& at, std::string const& want
                        std::string const& chain) {
     if (Node const* const named = file.find(wanted.empty() ? chain : wanted)) return *named;
     if (wanted.empty() && file.items.size() == 1) return file.items[0];
-    std::vector<std::string_view> names;
-    for (Node const& item : file.items) names.push_back(item.key);
-    if (names.size() > 8) names.resize(8);
+    std::vector<std::string> keys;
+    for (std::size_t k = 0; k < std::min<std::size_t>(file.items.size(), 8); ++k)
+        keys.push_back(shown(file.items[k].key));
+    std::vector<std::string_view> const names(keys.begin(), keys.end());
     fail(at,
          fmt::format("`{}` has no protein `{}`", shown_path(file.text),
                      shown(wanted.empty() ? chain : wanted)),

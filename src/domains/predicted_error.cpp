@@ -14,6 +14,9 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Largest error that is read, angstrom. The networks that predict errors end at 32.
+constexpr double largest_error = 1000;
+
 char const* const ways_out =
     "give the file of predicted aligned errors that belongs to the structure (AlphaFold database: "
     "AF-...-predicted_aligned_error_v4.json)";
@@ -28,13 +31,37 @@ Json const* matrix_in(Json const& file) {
     return nullptr;
 }
 
+/// True for the keys of a matrix.
+bool names_matrix(Json const& key) { return key == "predicted_aligned_error" || key == "pae"; }
+
+/// Throws InputError for text that is not JSON, and for more than one matrix.
 Json parsed(std::string const& path, Node const& at) {
+    int matrices = 0;
+    auto const count = [&](int depth, Json::parse_event_t event, Json const& value) {
+        matrices += event == Json::parse_event_t::key && depth <= 2 && names_matrix(value);
+        return true;
+    };
     try {
-        return Json::parse(read_text_file(path, at));
+        Json file = Json::parse(read_text_file(path, at), count);
+        if (matrices > 1)
+            fail(at, fmt::format("`{}` has {} matrices of errors", shown_path(path), matrices),
+                 "keep the one that belongs to the structure");
+        return file;
     } catch (Json::exception const& error) {
         fail(at, fmt::format("`{}` is not JSON ({})", shown_path(path), shown(error.what(), 120)),
              ways_out);
     }
+}
+
+/// Throws InputError unless the matrix is square. This precedes any memory for it: a list of a
+/// million zeros is a short file.
+void refuse_unequal_rows(Json const& rows, std::string const& path, Node const& at) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (!rows[i].is_array() || rows[i].size() != rows.size())
+            fail(at,
+                 fmt::format("row {} of `{}` does not have {} numbers, as many as there are rows",
+                             i + 1, shown_path(path), rows.size()),
+                 ways_out);
 }
 
 }  // namespace
@@ -46,19 +73,15 @@ PredictedError read_predicted_error(std::string const& path, Node const& at) {
         fail(at,
              fmt::format("`{}` has no list `predicted_aligned_error` or `pae`", shown_path(path)),
              ways_out);
+    refuse_unequal_rows(*rows, path, at);
     PredictedError made;
     made.residues = rows->size();
     made.value.assign(made.residues * made.residues, 0);
     for (std::size_t i = 0; i < made.residues; ++i) {
         Json const& row = (*rows)[i];
-        if (!row.is_array() || row.size() != made.residues)
-            fail(at,
-                 fmt::format("row {} of `{}` does not have {} numbers, as many as there are rows",
-                             i + 1, shown_path(path), made.residues),
-                 ways_out);
         for (std::size_t j = 0; j < made.residues; ++j) {
             double const value = row[j].is_number() ? row[j].get<double>() : NAN;
-            if (!(value >= 0 && std::isfinite(value)))
+            if (!(value >= 0 && value <= largest_error))
                 fail(at,
                      fmt::format("row {}, column {} of `{}` is not an error in angstrom", i + 1,
                                  j + 1, shown_path(path)),

@@ -18,7 +18,7 @@ struct PredictedError {
 
 /// Reads `[{"predicted_aligned_error": [[...], ...]}]` (AlphaFold database), the same map without
 /// the list, or with the key `pae` (ColabFold, AlphaFold 3). Throws InputError for other contents,
-/// for a matrix that is not square, and for errors below 0.
+/// for a matrix that is not square, for several matrices, and for errors outside of 0 to 1000.
 PredictedError read_predicted_error(std::string const& path, Node const& at);
 
 }  // namespace catena::scene

@@ -98,7 +98,7 @@ void refuse_overlaps(std::vector<RigidSet> const& sets) {
                 if (range.first <= other->last && other->first <= range.last)
                     fail(*set.at,
                          fmt::format("{} overlap the domain{}", range.name,
-                                     other->name.substr(std::string("residues").size())),
+                                     other->name.substr(other->name.find(' '))),
                          "assign each residue to one domain");
             taken.push_back(&range);
         }

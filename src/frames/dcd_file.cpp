@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -27,6 +28,14 @@ Value value_at(std::string const& bytes, std::size_t offset) {
     return value;
 }
 
+/// The first word of a head, whose bytes may be anything, as text.
+std::string word_in(std::string const& head) {
+    std::string word = head.substr(0, 4);
+    for (char& c : word)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '?';
+    return word;
+}
+
 /// True for a right angle, in degrees or as a cosine.
 bool is_right(double angle) {
     return std::abs(angle - 90) < right_within || std::abs(angle) < right_within;
@@ -47,7 +56,7 @@ DcdFile::DcdFile(std::string const& file) : name_(file) {
                          "convert it, for example with MDAnalysis");
     std::string const head = record(offset);
     if (head.compare(0, 4, "CORD") != 0)
-        throw InputError("it holds no positions: its head says `" + head.substr(0, 4) + "`", file,
+        throw InputError("it holds no positions: its head says `" + word_in(head) + "`", file,
                          "give a DCD file of coordinates");
     std::array<std::int32_t, 20> control{};
     std::memcpy(control.data(), head.data() + 4, sizeof control);

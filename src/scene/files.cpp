@@ -80,7 +80,9 @@ std::string resolved(std::string const& path, std::string const& scene_file) {
 std::vector<Vec3> read_position_table(std::string const& path, Node const& at) {
     std::vector<Vec3> positions;
     bool first = true;
-    for (auto const& [n, line] : lines_of(read_text_file(path, at), '#')) {
+    std::string text = read_text_file(path, at);
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte order mark
+    for (auto const& [n, line] : lines_of(text, '#')) {
         std::vector<std::string> const cells = cells_of(line);
         if (std::exchange(first, false) && is_header(cells)) continue;
         if (cells.size() != 3)

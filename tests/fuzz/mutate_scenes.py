@@ -1,6 +1,7 @@
-"""Damaged scenes from outside the process: takes the scenes of inputs/ and tests/data/cases, changes keys, values, blocks and the files
-they name, and runs check, solve, plan, run and a restart on each. A finding is a signal, an undocumented status, a refusal without its one
-line, control characters, no end, or more than 1 GB. Every case depends on --seed and its number alone: --only NUMBER repeats it.
+"""Damaged scenes from outside the process: takes the scenes of inputs/, tests/data/cases and tests/fuzz/scenes, changes keys, values, blocks
+and the files they name, and runs check, solve, plan, run, a restart and a start from a frame on each. Folders of other tools are changed and
+imported. A finding is a signal, an undocumented status, a refusal without its one line, control characters, no end, more than 1 GB, or an
+imported scene that the program itself refuses. Every case depends on --seed and its number alone: --only NUMBER repeats it.
 Usage: mutate_scenes.py [SECONDS] [--catena PROGRAM] [--seed S] [--only NUMBER] [--keep FOLDER]"""
 import argparse
 import collections
@@ -29,9 +30,43 @@ WARNING = b"catena: warning: "
 
 
 def sources():
-    """Scenes as they are, each a path; those of inputs/, which are right, more than once."""
-    right, cases = (sorted(glob.glob(os.path.join(ROOT, *folder, "*.yaml"))) for folder in (["inputs"], ["tests", "data", "cases", "*"]))
-    return [path for path in 3 * right + cases if os.path.getsize(path) < LARGE_FILE]
+    """Scenes as they are, each a path; those of inputs/ and those made for this, which are right, more than once."""
+    places = (["inputs"], ["tests", "fuzz", "scenes", "*"], ["tests", "data", "cases", "*"])
+    right, made, cases = (sorted(glob.glob(os.path.join(ROOT, *folder, "*.yaml"))) for folder in places)
+    return [path for path in 3 * right + 12 * made + cases if os.path.getsize(path) < LARGE_FILE]
+
+
+PACKAGES = os.path.join(ROOT, "tests", "data", "cases", "calvados-folders")
+SCRIPT = os.path.join(ROOT, "tests", "fuzz", "scenes", "script")
+CONFIG = """sysname: {name}
+temp: 293.15
+friction_coeff: 0.02
+random_number_seed: null
+restart: checkpoint
+frestart: restart.chk
+runtime: 0
+steps: 7000
+wfreq: 70
+slab_eq: {slab}
+steps_eq: 100
+box: [50, 50, 50]
+"""
+
+
+def make_folder(draw, folder):
+    """A folder of the CALVADOS package, or of a script of OpenMM."""
+    name = draw.choice(["idr", "slab", "two-domains", "script"])
+    if name == "script":
+        shutil.copytree(SCRIPT, folder)
+        return
+    os.mkdir(folder)
+    shutil.copy(os.path.join(PACKAGES, name + ".xml"), folder)
+    shutil.copy(os.path.join(PACKAGES, name + ".pdb"), os.path.join(folder, draw.choice(["top.pdb", "checkpoint.pdb"])))
+    contents = {"config.yaml": CONFIG.format(name=name, slab="true" if name == "slab" else "false"),
+                "components.yaml": f"defaults: {{restraint: false}}\nsystem:\n  {name}: {{restraint: true, nmol: 1}}\n"}
+    for file, text in contents.items():
+        with open(os.path.join(folder, file), "w", encoding="ascii") as to:
+            to.write(text)
 
 
 def copy_case(path, folder):
@@ -75,11 +110,11 @@ def execute(words, folder):
         return Ended(child.returncode, out.read(10**6), err.read(10**6), used.ru_maxrss, late)
 
 
-def fault(ended, asks_for_many):
+def fault(ended, many):
     """What is wrong with how a command ended; empty where nothing is."""
     said = ended.out + ended.err
     if ended.late:
-        return "" if asks_for_many else f"no end within {SECONDS} s"
+        return "" if many else f"no end within {SECONDS} s"
     if ended.status not in (0, 1, 2, 3):
         return f"signal {-ended.status}" if ended.status < 0 else f"status {ended.status}"
     try:
@@ -95,7 +130,15 @@ def fault(ended, asks_for_many):
         return f"{len(lines)} lines for a refusal"
     if len(lines) > 1:
         return f"{len(lines)} lines on standard error"
-    return f"{ended.kilobytes // 1000} MB" if ended.kilobytes > GIGABYTE and not asks_for_many else ""
+    return f"{ended.kilobytes // 1000} MB" if ended.kilobytes > GIGABYTE and not many else ""
+
+
+def asks_for_many(scene):
+    """Whether a number in the scene excuses long times and much memory."""
+    if not os.path.isfile(scene):
+        return False
+    with open(scene, "rb") as file:
+        return any(float(value) >= MANY for value in re.findall(rb"\d+(?:\.\d+)?(?:[eE]\+?\d+)?", file.read()) if len(value) < 30)
 
 
 def outcome(ended):
@@ -113,6 +156,8 @@ class Campaign:
         """One changed scene, under one or two commands."""
         draw = random.Random(f"{self.options.seed} {number}")
         with tempfile.TemporaryDirectory(prefix="catena-mutated-") as folder:
+            if draw.random() < 0.2:
+                return self.import_folder(draw, number, folder)
             scene = copy_case(draw.choice(self.sources), folder)
             if draw.random() < 0.15:
                 return self.restart(draw, number, folder)
@@ -134,16 +179,35 @@ class Campaign:
         name = draw.choice(["checkpoint.h5", "checkpoint.h5", "trajectory.h5md", "trajectory.h5md", "observables.csv", "summary.json", "timeline.json"])
         if os.path.exists(os.path.join(made, name)):
             damage.file(draw, os.path.join(made, name))
+        if name.startswith("trajectory") and draw.random() < 0.5:
+            self.judge(number, folder, "start", ["run", "scene.yaml", "--steps", "2", "--quiet", "--output", "p", "--set", "start={from: o}"])
+            return
         self.judge(number, folder, "restart", ["run", "scene.yaml", "--steps", "4", "--quiet", "--restart", "o/checkpoint.h5"])
+
+    def import_folder(self, draw, number, folder):
+        """A changed folder of another tool. A scene that was written must be one that the program accepts."""
+        made = os.path.join(folder, "tool")
+        make_folder(draw, made)
+        settings = [name for name in ("config.yaml", "components.yaml") if os.path.exists(os.path.join(made, name))]
+        if settings and draw.random() < 0.6:
+            scene_text.mutate(draw, os.path.join(made, draw.choice(settings)), self.sources)
+        if not settings or draw.random() < 0.5:
+            damage.file(draw, os.path.join(made, draw.choice(sorted(os.listdir(made)))))
+        ended = self.judge(number, folder, "import", ["import", "tool", "--output", "scene.yaml"])
+        if ended.status == 0 and not ended.late:
+            again = self.judge(number, folder, "check", ["check", "scene.yaml"])
+            if again.status == 2:
+                self.find(number, folder, "import", "a scene that `check` refuses", again)
 
     def judge(self, number, folder, command, words):
         ended = execute([self.options.catena, *words], folder)
         self.counts[command, outcome(ended)] += 1
-        with open(os.path.join(folder, "scene.yaml"), "rb") as file:
-            many = any(float(value) >= MANY for value in re.findall(rb"\d+(?:\.\d+)?(?:[eE]\+?\d+)?", file.read()) if len(value) < 30)
-        wrong = fault(ended, many)
-        if not wrong:
-            return
+        wrong = fault(ended, asks_for_many(os.path.join(folder, "scene.yaml")))
+        if wrong:
+            self.find(number, folder, command, wrong, ended)
+        return ended
+
+    def find(self, number, folder, command, wrong, ended):
         self.findings.append(f"case {number}, {command}: {wrong}")
         print(f"FINDING  {self.findings[-1]}: {ended.err[:300]!r}", flush=True)
         if self.options.keep:

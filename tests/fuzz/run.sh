@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Feeds readers with damaged files: libFuzzer with the address and undefined-behaviour sanitizers, 1 GB at most for a file of 100 kB, 10 s an
-# input. usage: tests/fuzz/run.sh [SECONDS a target, 60] [--minutes M a target] [--jobs PROCESSES a target] [--pack FOLDER]
+# input. usage: tests/fuzz/run.sh [SECONDS a target, 60] [--minutes M a target] [--jobs PROCESSES a target] [--only NAME[,NAME]...] [--pack FOLDER]
 # --pack: puts the targets, their corpora and libraries into FOLDER, for any Linux with glibc 2.36 or later: FOLDER/campaign.sh runs them.
 # Prints the inputs that each target took. Exit status 0: no crash, no report, no hang; 1: a finding, whose input stays in build/fuzz/work;
 # 77: no clang with libFuzzer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-seconds=60 jobs=1 pack=
+seconds=60 jobs=1 only= pack=
 while [ $# -gt 0 ]; do
     case $1 in
         --minutes) seconds=$((60 * $2)); shift ;;
         --jobs) jobs=$2; shift ;;
+        --only) only=$2; shift ;;
         --pack) pack=$2; shift ;;
         *[!0-9]* | '') echo "unknown option: $1 (see the head of tests/fuzz/run.sh)" >&2; exit 2 ;;
         *) seconds=$1 ;;
@@ -55,6 +56,7 @@ compile() {
 target() {
     local name=$1 libraries=$2 objects=() source
     shift 2
+    case ,${only:-$name}, in *",$name,"*) ;; *) return ;; esac
     for source in tests/fuzz/entry.cpp "tests/fuzz/$name.cpp" "$@"; do
         objects+=("$made/${source//\//_}.o")
         while [ "$(jobs -rp | wc -l)" -ge 2 ]; do wait -n; done
@@ -79,6 +81,11 @@ target pdb -lyaml-cpp "${files[@]}" src/structure/{pdb_file,pdb_sites,structure_
 target fasta -lyaml-cpp "${files[@]}" src/structure/fasta.cpp src/structure/residue_names.cpp src/structure/residue_table.cpp
 target residues -lyaml-cpp "${files[@]}" src/structure/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
+domains=(src/domains/{assembly,confident_domains,domain_file,predicted_error,residue_numbers,rigid_entry}.cpp src/keys/chain_keys.cpp)
+target dcd -lyaml-cpp "${tree[@]}" src/frames/dcd_file.cpp
+target domains -lyaml-cpp "${files[@]}" "${domains[@]}"
+target pae -lyaml-cpp "${files[@]}" "${domains[@]}"
+target settings -lyaml-cpp "${files[@]}" src/foreign/{calvados_folder,scene_text,settings}.cpp src/io/output_file.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/freedom.cpp \
         src/io/{memory_limit,trial}.cpp
@@ -106,4 +113,4 @@ pack() {
 }
 
 if [ -n "$pack" ]; then pack "$pack"; exit; fi
-exec tests/fuzz/campaign.sh --targets "$made/targets" --work "$made/work" --seconds "$seconds" --jobs "$jobs"
+exec tests/fuzz/campaign.sh --targets "$made/targets" --work "$made/work" --seconds "$seconds" --jobs "$jobs" ${only//,/ }
