@@ -42,14 +42,14 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
     return others;
 }
 
-/// The termini that the chain's entry or the whole scene charges.
-calvados2::ChargedTermini written_termini(ChainRequest const& request) {
+/// The termini that the chain's entry charges, else the whole scene among those of `protein`.
+calvados2::ChargedTermini written_termini(ChainRequest const& request,
+                                          calvados2::ChargedTermini const& protein) {
     if (Node const* const here = request.fields.find("charge_termini"))
         return read_charged_termini(*here);
     // The entry for all chains is the first one. Entries of preceding chains need no search.
     auto const& openmm = request.scene.forces.openmm;
     bool const said = openmm && !openmm->map.empty() && openmm->map.front().first.empty();
-    calvados2::ChargedTermini const& protein = request.protein_ends;
     if (!said) return protein;
     auto const& ends = openmm->map.front().second;
     return {ends.first != 0 && protein.n, ends.second != 0 && protein.c};
@@ -104,7 +104,7 @@ bool ChainRequest::links_as_given() const {
 bool ChainRequest::is_cut() const { return part != nullptr && (part->cut_front || part->cut_back); }
 
 calvados2::ChargedTermini ChainRequest::termini() const {
-    calvados2::ChargedTermini ends = written_termini(*this);
+    calvados2::ChargedTermini ends = written_termini(*this, protein_ends);
     if (part != nullptr) {
         ends.n = ends.n && !part->cut_front;
         ends.c = ends.c && !part->cut_back;
@@ -115,10 +115,12 @@ calvados2::ChargedTermini ChainRequest::termini() const {
 std::vector<calvados2::InnerTerminus> ChainRequest::inner_termini() const {
     std::vector<calvados2::InnerTerminus> found;
     if (part == nullptr) return found;
-    calvados2::ChargedTermini const charged = written_termini(*this);
-    for (ComplexEnd const& end : part->ends)
+    for (ComplexEnd const& end : part->ends) {
+        bool const protein = is_amino_acid(residues[end.bead]);
+        calvados2::ChargedTermini const charged = written_termini(*this, {protein, protein});
         if (end.n ? charged.n : charged.c)
             found.push_back({static_cast<std::int64_t>(end.bead), {end.n, !end.n}});
+    }
     return found;
 }
 

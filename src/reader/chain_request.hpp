@@ -58,7 +58,8 @@ struct ChainRequest {
     /// Value of the chain's `charge_termini`, by default that of the whole scene for the ends that
     /// are amino acids. Ends that were cut at a gap are no termini.
     calvados2::ChargedTermini termini() const;
-    /// Charged termini of a complex, by bead; empty for other chains.
+    /// Charged termini of a complex, by bead; empty for other chains. Each end of a member counts
+    /// by its own residue, and `residues` must be known.
     std::vector<calvados2::InnerTerminus> inner_termini() const;
     /// Sets the lengths of links, entry k that to bead k, and moves the beads accordingly. Where
     /// the System joins the two beads its length counts, unless the chain has `links: as_given`.

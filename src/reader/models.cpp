@@ -2,6 +2,7 @@
 #include "reader/models.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "keys/maps.hpp"
+#include "reader/structure_entry.hpp"
 #include "scene/files.hpp"
 #include "structure/residue_names.hpp"
 
@@ -64,10 +66,24 @@ void note_phosphate(ChainRequest const& request, ResidueType const& type, double
             request.table->name(), type.name, type.charge, ph, charge, known->pka));
 }
 
-/// True if the residue is an amino acid, also a modified one.
-bool is_amino_acid(ResidueType const& type) {
-    ResidueKind const kind = meaning_of(type.name).kind;
-    return kind == ResidueKind::amino_acid || kind == ResidueKind::charged;
+/// Names the ends of a chain that are not amino acids, with a verb. Returns an empty text if there
+/// are none.
+std::string other_ends(ChainRequest const& request, Residues const& residues) {
+    auto const& [n, c] = request.protein_ends;
+    if (n && c) return "";
+    std::string const first = residues.front()->name, last = residues.back()->name;
+    if (n) return last + " at its last end is";
+    return first + (c ? " at its first end is" : " at its ends is");
+}
+
+/// The same for a complex, whose ends are those of its members.
+std::string other_ends_of_complex(StructurePart const& part, Residues const& residues) {
+    std::vector<std::string> named;
+    for (ComplexEnd const& end : part.ends)
+        if (std::string const& name = residues[end.bead]->name; !is_amino_acid(name))
+            named.push_back(fmt::format("{} at bead {}", name, end.bead + 1));
+    if (named.empty()) return "";
+    return fmt::format("{}{} is", named.size() > 1 ? "each of " : "", fmt::join(named, " and "));
 }
 
 }  // namespace
@@ -102,18 +118,18 @@ void hand_to_forces(ChainRequest const& request, Residues const& residues) {
 }
 
 void find_ends(ChainRequest& request, Residues const& residues) {
-    request.protein_ends = {is_amino_acid(*residues.front()), is_amino_acid(*residues.back())};
+    request.protein_ends = {is_amino_acid(residues.front()->name),
+                            is_amino_acid(residues.back()->name)};
     std::optional<OpenMmSpec> const& openmm = request.scene.forces.openmm;
-    if (request.fields.find("charge_termini") || !openmm || openmm->builder.empty() ||
-        request.protein_ends == calvados2::ChargedTermini{})
-        return;
-    auto const& [n, c] = request.protein_ends;
+    if (request.fields.find("charge_termini") || !openmm || openmm->builder.empty()) return;
+    bool const complex = request.part != nullptr && !request.part->members.empty();
+    std::string const others =
+        complex ? other_ends_of_complex(*request.part, residues) : other_ends(request, residues);
+    if (others.empty()) return;
     request.scene.note(
         fmt::format("chain `{}`: {} not an amino acid and carries no charge of a terminus: write "
                     "`charge_termini: none` or `both`",
-                    shown(request.name()),
-                    n ? residues.back()->name + " at its last end is"
-                      : residues.front()->name + (c ? " at its first end is" : " at its ends is")));
+                    shown(complex ? request.part->name : request.name()), others));
 }
 
 std::vector<double> link_lengths(Residues const& residues) {

@@ -95,4 +95,9 @@ ResidueMeaning meaning_of(std::string_view name) {
                                                                                : ResidueMeaning{};
 }
 
+bool is_amino_acid(std::string_view name) {
+    ResidueKind const kind = meaning_of(name).kind;
+    return kind == ResidueKind::amino_acid || kind == ResidueKind::charged;
+}
+
 }  // namespace catena::scene

@@ -29,4 +29,7 @@ struct ResidueMeaning {
 /// map to their residue.
 ResidueMeaning meaning_of(std::string_view name);
 
+/// True if the name is that of an amino acid, also of a modified one.
+bool is_amino_acid(std::string_view name);
+
 }  // namespace catena::scene

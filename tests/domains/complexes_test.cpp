@@ -80,6 +80,38 @@ TEST_F(Complexes, have_the_charges_of_all_termini) {
     for (auto const& entry : none.forces.openmm->map) EXPECT_LT(entry.second.first, 2);
 }
 
+/// The serial chain of 22 beads begins in A and ends in B, whose residues are no amino acids.
+TEST_F(Complexes, charge_the_termini_of_each_member_by_its_own_ends) {
+    std::vector<AtomLine> other = helix(10, "B", 1, 12);
+    for (AtomLine& atom : other) atom.residue = "PEG";
+    write("a.pdb", pdb_text(helix(12, "A") + other));
+    write("t.csv",
+          "one,three,MW,lambdas,sigmas,q,bondlength\nG,GLY,57.05,0.7,0.45,0,0.38\n"
+          "J,PEG,44.05,0.2,0.4,0,0.38\n");
+    auto const scene = [&](std::string const& more) {
+        return read(
+            "chains: [{pdb: a.pdb, model: {residues: t.csv}, chain: all, rigid: "
+            "[[\"A:5-12\", \"B:1-6\"]]" +
+            more + "}]" + builder_);
+    };
+    auto const charged = [](Scene const& s) {
+        std::vector<std::pair<std::int64_t, bool>> found;
+        calvados2::ChainEnds const all(*s.forces.openmm);
+        for (auto const& [bead, ends] : all.inside("A+B")) found.emplace_back(bead, ends.n);
+        return found;
+    };
+    using Ends = std::vector<std::pair<std::int64_t, bool>>;
+    Scene const s = scene("");
+    EXPECT_EQ(charged(s), (Ends{{0, true}, {11, false}}));
+    EXPECT_NEAR(s.chains[0].linked.mass[0], 57.05 + 2, 1e-9);
+    EXPECT_NEAR(s.chains[0].linked.mass[8], 44.05, 1e-9);
+    EXPECT_EQ(notes_of(s).back(),
+              "chain `A+B`: each of PEG at bead 13 and PEG at bead 22 is not an amino acid and "
+              "carries no charge of a terminus: write `charge_termini: none` or `both`");
+    EXPECT_EQ(charged(scene(", charge_termini: both")),
+              (Ends{{0, true}, {11, false}, {12, true}, {21, false}}));
+}
+
 TEST_F(Complexes, may_run_backwards_along_a_chain) {
     Scene const s = read(scene_of("[[\"A:5-12\", \"B:4-10\"]]", ", name: pair"));
     EXPECT_EQ(s.chains.at(0).name, "pair");

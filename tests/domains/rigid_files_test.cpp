@@ -98,6 +98,13 @@ TEST_F(RigidFiles, of_the_package_with_other_contents) {
     EXPECT_EQ(refused("TIA1: [[2, 5], [5, 8]]\n"),
               "residues 5 to 8 overlap the domain 2 to 5 (s.yaml: chains[0].rigid, line 1): assign "
               "each residue to one domain");
+    EXPECT_EQ(refused("TIA1: [[[2, 4], [8, 8]], [7, 9]]\n"),
+              "residues 7 to 9 overlap the domain 8 (s.yaml: chains[0].rigid, line 1): assign each "
+              "residue to one domain");
+    // Names are shown without the bytes that a terminal would obey.
+    EXPECT_EQ(refused("\"a\\e[31m\\n\": [[2, 5]]\nb: [[2, 5]]\n"),
+              "`domains.yaml` has no protein `TIA1`" + at_domains_ +
+                  "name one as `protein`: `a [31m `, `b`");
 }
 
 TEST_F(RigidFiles, grown_residues_are_said_or_refused) {
@@ -205,7 +212,24 @@ TEST_F(RigidFiles, predictions_come_in_several_forms) {
               "row 2 of `pae.json` does not have 2 numbers, as many as there are rows" + remedy);
     EXPECT_EQ(refused("{\"pae\": [[0, -1], [1, 0]]}"),
               "row 1, column 2 of `pae.json` is not an error in angstrom" + remedy);
+    EXPECT_EQ(refused("{\"pae\": [[0, 1e300], [1, 0]]}"),
+              "row 1, column 2 of `pae.json` is not an error in angstrom" + remedy);
     EXPECT_EQ(refused("data").substr(0, 23), "`pae.json` is not JSON ");
+    EXPECT_EQ(refused("{\"pae\": [[0, 1e400], [1, 0]]}").substr(0, 23), "`pae.json` is not JSON ");
+    for (std::string const second : {"pae", "predicted_aligned_error"})
+        EXPECT_EQ(refused("{\"pae\": [[0]], \"" + second + "\": [[1]]}"),
+                  "`pae.json` has 2 matrices of errors" + at_pae_ +
+                      "keep the one that belongs to the structure");
+}
+
+/// A matrix of as many rows would need 160 GB.
+TEST_F(RigidFiles, predictions_need_memory_only_for_what_is_a_matrix) {
+    write_prediction(20);
+    std::string zeros = "{\"pae\": [0";
+    for (int k = 1; k < 200000; ++k) zeros += ",0";
+    write("pae.json", zeros + "]}");
+    EXPECT_EQ(refusal(scene_of("pae: pae.json")).substr(0, 48),
+              "row 1 of `pae.json` does not have 200000 numbers");
 }
 
 TEST_F(RigidFiles, keys_belong_to_their_source) {
