@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <exception>
@@ -190,21 +191,35 @@ class AtomRows {
     int part_ = 0;
 };
 
-/// Reads the sequence of each chain from `_entity_poly_seq`.
+/// Largest number of a residue in `_entity_poly_seq`; rows with larger ones are left out.
+constexpr std::int64_t most_numbered = 1'000'000;
+/// Largest number of residues of all chains together that `_entity_poly_seq` may list. It stops
+/// small files that are made to fill memory; the capsid of HIV has 300,000.
+constexpr std::int64_t most_listed = 10'000'000;
+
+/// Reads the sequence of each chain from `_entity_poly_seq`. Throws InputError for too many.
 void read_sequences(cif::Block const& block, std::map<std::string, std::string> const& entity_of,
-                    PdbSummary& summary) {
+                    std::string const& path, PdbSummary& summary) {
     Category<3> const table(block, "_entity_poly_seq.", {"entity_id", "num", "mon_id"});
     std::map<std::string, std::map<std::int64_t, std::string>, std::less<>> residues;
     for (std::size_t row = 0; row < table.rows(); ++row)
         if (auto const at = whole_number(table.at(row, 1)))
             residues[std::string(table.at(row, 0))].try_emplace(*at, table.at(row, 2));
+    std::int64_t all = 0;
     for (auto const& [label, entity] : entity_of) {
         auto const found = residues.find(entity);
         if (found == residues.end()) continue;
+        if (!found->second.empty())
+            all += std::clamp<std::int64_t>(found->second.rbegin()->first, 0, most_numbered);
+        if (all > most_listed)
+            throw InputError(
+                fmt::format("`_entity_poly_seq` lists more than {} residues for the chains",
+                            most_listed),
+                path, "correct its numbers, or leave chains out");
         ListedSequence& listed = summary.sequence[label];
         for (auto const& [at, name] : found->second) {
             // A number that the table leaves out stays a residue without a name.
-            if (at < 1 || at > 1000000) continue;
+            if (at < 1 || at > most_numbered) continue;
             listed.names.resize(std::max(listed.names.size(), static_cast<std::size_t>(at)));
             listed.names[static_cast<std::size_t>(at) - 1] = name;
         }
@@ -234,6 +249,7 @@ std::shared_ptr<void const> parse_mmcif(std::string_view text, std::string const
     tao::pegtl::memory_input<> input(text.data(), text.size(), path);
     cif::parse_input(*document, input);
     cif::check_for_missing_values(*document);
+    cif::check_for_duplicates(*document);
     return document;
 } catch (std::bad_alloc const&) {
     throw;
@@ -255,7 +271,7 @@ PdbSummary for_each_mmcif_atom(std::shared_ptr<void const> const& tables, std::s
         if (++summary.blocks > 1) continue;
         std::map<std::string, std::string> entity_of;
         AtomRows(block, path).read(model, summary, take, entity_of);
-        read_sequences(block, entity_of, summary);
+        read_sequences(block, entity_of, path, summary);
         read_cell(block, summary);
     }
     return summary;

@@ -64,6 +64,8 @@ TEST_F(DcdFiles, are_refused_with_what_is_wrong) {
     EXPECT_NE(refusal(std::string(200, 'x')).find("byte order"), std::string::npos);
     EXPECT_NE(refusal(dcd_bytes(two_frames, box, {"VELD"})).find("no positions"),
               std::string::npos);
+    EXPECT_NE(refusal(dcd_bytes(two_frames, box, {"A\x1b\n\xff"})).find("its head says `A???`"),
+              std::string::npos);
     EXPECT_NE(refusal(dcd_bytes(two_frames, box, {"CORD", 1})).find("fixed atoms"),
               std::string::npos);
     EXPECT_NE(refusal(dcd_bytes(two_frames, box, {"CORD", 0, 60})).find("not rectangular"),

@@ -6,7 +6,7 @@
 # 77: no clang with libFuzzer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-seconds=60 jobs=1 only= pack=
+seconds=60 jobs=1 only='' pack=''
 while [ $# -gt 0 ]; do
     case $1 in
         --minutes) seconds=$((60 * $2)); shift ;;
@@ -113,4 +113,5 @@ pack() {
 }
 
 if [ -n "$pack" ]; then pack "$pack"; exit; fi
-exec tests/fuzz/campaign.sh --targets "$made/targets" --work "$made/work" --seconds "$seconds" --jobs "$jobs" ${only//,/ }
+read -r -a names <<<"${only//,/ }"
+exec tests/fuzz/campaign.sh --targets "$made/targets" --work "$made/work" --seconds "$seconds" --jobs "$jobs" "${names[@]}"

@@ -166,6 +166,21 @@ TEST_F(Mmcif, damaged_files_are_refused_with_their_line) {
     EXPECT_EQ(refused(replaced(text, "_atom_site.Cartn_y", "_atom_site.other")),
               "`_atom_site` lacks Cartn_y (a.cif): write an mmCIF file with coordinates");
     EXPECT_NE(refused("data_x\n_entry.id x\n").find("no atoms in `a.cif`"), std::string::npos);
+    EXPECT_NE(refused(replaced(text, "_atom_site.occupancy", "_atom_site.Cartn_x"))
+                  .find("duplicate tag _atom_site.Cartn_x"),
+              std::string::npos);
+}
+
+/// One row would make a million residues of each chain.
+TEST_F(Mmcif, few_rows_cannot_ask_for_much_memory) {
+    std::vector<AtomLine> atoms;
+    for (char chain = 'A'; chain < 'A' + 11; ++chain)
+        atoms = atoms + strand(gas_, {chain}, 1, 0, 10 * (chain - 'A'));
+    write("a.cif", replaced(cif_text(atoms, {"GLY"}), "1 1 GLY", "1 1000000 GLY"));
+    EXPECT_EQ(
+        refusal(scene_of("a.cif", "chain: A")),
+        "`_entity_poly_seq` lists more than 10000000 residues for the chains (a.cif): correct "
+        "its numbers, or leave chains out");
 }
 
 TEST_F(Mmcif, positions_may_come_from_mmcif) {
