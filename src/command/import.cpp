@@ -94,7 +94,10 @@ foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings cons
     spec.system = files.system;
     add_changes({{}, request.leave_out, request.links}, spec);
     fs::path const start = fs::path(draft.file).replace_extension().string() + "-start";
-    draft.topology = write_start(files, spec, start.string());
+    foreign::WrittenStart const written = write_start(files, spec, start.string());
+    draft.topology = written.topology;
+    draft.settings.notes.insert(draft.settings.notes.end(), written.notes.begin(),
+                                written.notes.end());
     return draft;
 }
 
@@ -167,7 +170,8 @@ Outcome import_folder(Communicator const& communicator, ImportRequest const& req
         std::vector<Written> scenes;
         for (foreign::SceneDraft const& draft : drafts) scenes.push_back(settled(draft));
         std::vector<std::string> notes = files.notes, written;
-        notes.insert(notes.end(), settings.notes.begin(), settings.notes.end());
+        std::vector<std::string> const& told = drafts.back().settings.notes;
+        notes.insert(notes.end(), told.begin(), told.end());
         for (Written const& scene : scenes)
             for (std::string const& note : scene.notes)
                 if (std::find(notes.begin(), notes.end(), note) == notes.end())

@@ -49,6 +49,11 @@ class Settled {
         Node const* const node = find(key);
         return node ? scene::number(*node) : otherwise;
     }
+    /// The same for a number of 0 or more.
+    double non_negative(std::string_view key, double otherwise) const {
+        Node const* const node = find(key);
+        return node ? scene::non_negative(*node) : otherwise;
+    }
     /// Whole number of that key, which may be written as 1e8 or 100000000.0.
     std::int64_t whole(std::string_view key, double otherwise, std::int64_t least) const {
         double const found = number(key, otherwise);
@@ -91,8 +96,8 @@ bool has_restraints(std::string const& components) {
 /// Reads the friction. Version 0.8 reads `friction_coeff`; earlier ones read `friction`.
 double friction_of(Settled const& config, Settings& settings) {
     double const friction =
-        config.number("friction_coeff", config.number("friction", settings.friction));
-    if (double const other = config.number("friction", friction); other != friction)
+        config.non_negative("friction_coeff", config.non_negative("friction", settings.friction));
+    if (double const other = config.non_negative("friction", friction); other != friction)
         settings.notes.push_back(
             fmt::format("config.yaml has friction {:.6g} and friction_coeff {:.6g}; the package "
                         "reads the latter, and so does the scene.",
@@ -172,7 +177,7 @@ Settings calvados_settings(Files const& files) {
     Settled const config(files.config);
     Settings settings;
     settings.tool = "CALVADOS package";
-    settings.temperature = config.number("temp", settings.temperature);
+    settings.temperature = config.non_negative("temp", settings.temperature);
     settings.friction = friction_of(config, settings);
     settings.steps = config.whole("steps", 100000000, 0);
     settings.every = config.whole("wfreq", 100000, 1);

@@ -25,7 +25,8 @@ bool is_reserved(std::string word) {
     return std::find(std::begin(reserved), std::end(reserved), word) != std::end(reserved);
 }
 
-/// Writes a text as a YAML scalar; quoted unless it is a plain word or path.
+/// Writes a text as a YAML scalar; quoted unless it is a plain word or path. Control characters,
+/// which file names may have, are escaped.
 std::string quoted(std::string const& text) {
     auto const is_plain = [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '/';
@@ -35,6 +36,11 @@ std::string quoted(std::string const& text) {
     if (plain && !is_reserved(text)) return text;
     std::string escaped;
     for (char const c : text) {
+        auto const byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7F) {
+            escaped += fmt::format("\\x{:02x}", byte);
+            continue;
+        }
         if (c == '"' || c == '\\') escaped += '\\';
         escaped += c;
     }

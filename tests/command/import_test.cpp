@@ -167,6 +167,20 @@ TEST(Import, ASlabIsEquilibratedFirst) {
     EXPECT_EQ(terms_of(here / "s-run").size(), 2U);
 }
 
+TEST(Import, ASettingThatIsNoneIsRefusedWithItsLine) {
+    TemporaryFolder const here;
+    for (char const* const line : {"temp: 293.15", "friction_coeff: 0.02"}) {
+        std::string const folder = package_folder(here, "idr"),
+                          key(line, std::string(line).find(':'));
+        std::string config = text_in(folder + "/config.yaml");
+        config.replace(config.find(line), std::string(line).size(), key + ": -3");
+        write(folder + "/config.yaml", config);
+        expect_refused(catena({"import", "idr"}, here.path()), 2,
+                       key + " -3 is negative (idr/config.yaml: " + key);
+        fs::remove_all(folder);
+    }
+}
+
 TEST(Import, ElasticNetworksStayForces) {
     TemporaryFolder const here;
     package_folder(here, "two-domains");
@@ -233,7 +247,7 @@ class OwnScript : public ::testing::Test {
             system.addForce(force);
     }
     /// Writes the files. Positions are put into the box if `wrapped`.
-    void write_files(bool wrapped) {
+    void write_files(bool wrapped, int parts = OpenMM::State::Positions) {
         if (wrapped)
             for (OpenMM::Vec3& x : positions)
                 for (int i = 0; i < 3; ++i) x[i] -= edge * std::floor(x[i] / edge);
@@ -242,7 +256,7 @@ class OwnScript : public ::testing::Test {
                                 OpenMM::Platform::getPlatformByName("Reference"));
         context.setPositions(positions);
         write_xml(system, "System", here / "mine/system.xml");
-        write_xml(context.getState(OpenMM::State::Positions), "State", here / "mine/state.xml");
+        write_xml(context.getState(parts), "State", here / "mine/state.xml");
         write_xml(integrator, "Integrator", here / "mine/integrator.xml");
     }
     Ended import(Words more = {}) {
@@ -268,6 +282,46 @@ TEST_F(OwnScript, BondsThatCannotBecomeLinksStayForces) {
     Ended const run =
         catena({"run", "mine.yaml", "--steps", "200", "--output", "out"}, here.path());
     EXPECT_EQ(run.status, 0) << run.err << run.out;
+}
+
+TEST_F(OwnScript, WhatAStateLosesIsNoted) {
+    write_files(false, OpenMM::State::Positions | OpenMM::State::Velocities);
+    Ended const e = import();
+    ASSERT_EQ(e.status, 0) << e.err;
+    std::string const velocities =
+                          "The velocities of state.xml are not used: chains start with thermal "
+                          "velocities.",
+                      rounded =
+                          "The positions of state.xml are rounded to the digits of a PDB file, by "
+                          "at most 5.0e-05 nm.";
+    EXPECT_NE(e.out.find(velocities), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find(rounded), std::string::npos) << e.out;
+    EXPECT_NE(text_in(here / "mine.yaml").find("# " + velocities + "\n# " + rounded),
+              std::string::npos);
+    for (OpenMM::Vec3& x : positions)
+        for (int i = 0; i < 3; ++i) x[i] = std::round(1e4 * x[i]) / 1e4;
+    write_files(false);
+    Ended const exact = import({"--overwrite"});
+    ASSERT_EQ(exact.status, 0) << exact.err;
+    EXPECT_EQ(exact.out.find("velocities of"), std::string::npos) << exact.out;
+    EXPECT_EQ(exact.out.find("rounded"), std::string::npos) << exact.out;
+}
+
+TEST_F(OwnScript, NamesOfFoldersMayHoldAnyCharacter) {
+    write_files(false);
+    std::string const odd = "a\n\x1b[31m\"b";
+    fs::rename(here / "mine", here / odd);
+    Ended const e = catena({"import", odd, "--output", "s.yaml"}, here.path());
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_EQ(catena({"check", "s.yaml"}, here.path()).status, 0) << text_in(here / "s.yaml");
+    EXPECT_EQ((e.out + e.err).find('\x1b'), std::string::npos);
+}
+
+/// The columns of a PDB file would make 0 of them.
+TEST_F(OwnScript, PositionsThatNoTopologyHoldsAreRefused) {
+    positions[3][0] = 2e7;
+    write_files(false);
+    expect_refused(import(), 2, "the position of particle 4 does not fit into a PDB file");
 }
 
 TEST_F(OwnScript, NamedBondsBecomeLinks) {

@@ -26,6 +26,9 @@ TEST_F(SceneFiles, table_of_positions) {
         EXPECT_NEAR(norm(beads.position[k] - beads.position[k - 1]), 0.38, 1e-15);
     EXPECT_NEAR(beads.position[0][0], 0.01, 1e-3);  // the link's ends share what it has too much
     EXPECT_NEAR(beads.position[2][1], 0.37, 1e-3);
+    std::string const mark = "\xEF\xBB\xBF";  // of the byte order, which spreadsheets write
+    write("start.csv", mark + "0,0,0\n0.38,0,0\n0.76,0,0\n");
+    EXPECT_EQ(read(with_table_).chains.at(0).beads.position[1][0], 0.38);
 }
 
 TEST_F(SceneFiles, bad_tables) {
