@@ -27,6 +27,7 @@ COMMANDS = {"check": [], "solve": [], "plan": [], "run": ["--steps", "2", "--qui
 MANY = 10**4  # what a scene asks for from here on may take its time and memory
 WRONG_START = b"catena: "
 WARNING = b"catena: warning: "
+PROGRESS = b"catena: relaxation, "  # of a start, every 5 s
 
 
 def sources():
@@ -125,7 +126,7 @@ def fault(ended, many):
         return "control characters"
     if ended.status == 1 and not said.strip():
         return "status 1 without a word"
-    lines = [line for line in ended.err.splitlines() if not line.startswith(WARNING)]
+    lines = [line for line in ended.err.splitlines() if not line.startswith((WARNING, PROGRESS))]
     if ended.status == 2 and (len(lines) != 1 or not lines[0].startswith(WRONG_START)):
         return f"{len(lines)} lines for a refusal"
     if len(lines) > 1:
