@@ -12,7 +12,7 @@
 namespace catena {
 namespace {
 
-char const* const where = "own force";
+char const* const own_force = "own force";
 /// Number of points of a rigid body.
 constexpr std::int64_t points_of_body = 4;
 
@@ -105,15 +105,16 @@ void add_couples(ChainGroup const& group, View<3> forces, std::int64_t first, Ma
 
 Scene with_force_points(Scene scene) {
     if (uses_gpu(scene.solver.backend))
-        throw InputError("own forces are computed on the host",
-                         where + (": solver.backend " + std::string(name_of(scene.solver.backend))),
-                         "use auto, segments, openmp or serial");
+        throw InputError(
+            "own forces are computed on the host",
+            own_force + (": solver.backend " + std::string(name_of(scene.solver.backend))),
+            "use auto, segments, openmp or serial");
     for (ChainSpec& chain : scene.chains) {
         if (chain.is_beads()) continue;
         if (scene.forces.openmm)
             throw InputError(
                 "own forces on rigid bodies and forces of OpenMM exclude each other",
-                where + (": chain `" + chain.name + "`"),
+                own_force + (": chain `" + chain.name + "`"),
                 "add the force to OpenMM (forces.openmm.extra), or use chains of beads alone");
         chain.bodies.carried = chain.bodies.size() > 0 ? points_of(chain.bodies) : CarriedBeads{};
         chain.linked.carried = chain.is_linked() ? points_of(chain.linked) : CarriedBeads{};
@@ -168,7 +169,7 @@ void OwnForces::write(BeadHost& host) {
         if (is_zero(on_torque_[body])) continue;
         if (count != points_of_body)
             throw InputError("a bead takes no torque",
-                             where + (": body " + std::to_string(body + 1) + " of the scene"),
+                             own_force + (": body " + std::to_string(body + 1) + " of the scene"),
                              "set forces on beads alone");
         add_couples(group, forces, first, axes_of_points(group, points, first),
                     as_vec(on_torque_[body]));
