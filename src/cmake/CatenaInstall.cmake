@@ -10,14 +10,10 @@ if(TARGET catena_hdf5)
 endif()
 install(EXPORT catenaTargets NAMESPACE catena:: DESTINATION "${catena_config_dir}")
 
-foreach(folder IN ITEMS src mpi)
-    if(folder STREQUAL "src")
-        set(destination "${CMAKE_INSTALL_INCLUDEDIR}/catena")
-    else()
-        set(destination "${CMAKE_INSTALL_INCLUDEDIR}/catena/${folder}")
-    endif()
-    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}/" DESTINATION "${destination}" FILES_MATCHING PATTERN "*.hpp" PATTERN cmake EXCLUDE PATTERN command EXCLUDE)
-endforeach()
+# The public headers include only the standard library and each other (src/catena/README.md). The others stay inside.
+set(catena_headers catena errors forces scene simulation solver types version)
+list(TRANSFORM catena_headers REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/src/catena/\\1.hpp")
+install(FILES ${catena_headers} DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/catena")
 
 if(OpenMM_LIBRARY)
     get_filename_component(CATENA_OPENMM_DIR "${OpenMM_INCLUDE_DIR}" DIRECTORY)

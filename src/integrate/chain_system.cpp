@@ -191,6 +191,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
     if (openmm_) finish_openmm();
+    if (added_forces_) added_forces_();
     for (auto const& group : absolute_) group->take_bead_forces();
     for (auto const& group : joint_) group->take_bead_forces();
     double const finished = seconds_now();
@@ -232,6 +233,7 @@ void ChainSystem::solve_joint_groups() {
     if (openmm_) wait();
     double const assembled = seconds_now();
     if (openmm_) finish_openmm();
+    if (added_forces_) added_forces_();
     for (auto const& group : joint_) group->take_bead_forces();
     double const finished = seconds_now();
     for (auto const& group : joint_) {

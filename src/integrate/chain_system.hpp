@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chain/scene_windows.hpp"
@@ -160,6 +161,13 @@ class ChainSystem {
     bool solves_once() const { return !openmm_ && scene_.solver.refine == 0 && !keeps_matrices_; }
     /// Makes the system keep its matrices from now on, so that solves_once() is false.
     void keep_matrices() { keeps_matrices_ = true; }
+    /// Calls `add` at every evaluation from now on, after OpenMM's forces. It adds to
+    /// BeadHost::bead_forces() of absolute() and joint(). Precondition: one rank, a backend without
+    /// GPU.
+    void add_forces_by(std::function<void()> add) {
+        added_forces_ = std::move(add);
+        keep_matrices();
+    }
     /// Computes the accelerations of the groups in joint coordinates at their states, and refines
     /// them `solver.refine` times. OpenMM computes while matrices are assembled. Collective.
     void solve_joint_groups();
@@ -310,6 +318,8 @@ class ChainSystem {
     static constexpr std::int64_t evaluations_a_clock = 8;
     bool clock_is_due_ = false, timed_before_ = false;
     std::int64_t evaluations_since_clock_ = 0;
+    /// Adds forces that are computed outside the library; may be empty.
+    std::function<void()> added_forces_;
 };
 
 }  // namespace catena

@@ -1,7 +1,6 @@
 // Implements runs: the loop over time steps.
 #include "run/simulation.hpp"
 
-#include <bit>
 #include <cmath>
 #include <future>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 
 #include "cuda/device/gpu.hpp"
 #include "error.hpp"
+#include "integrate/checked_steps.hpp"
 #include "integrate/step_failure.hpp"
 #include "mpi/first_rank.hpp"
 #include "run/frame_writer.hpp"
@@ -25,17 +25,6 @@ namespace {
 /// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
 constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
-/// Interval of constraint checks. The constraint error is also checked with every output and
-/// checkpoint and at the last step. Further checks follow after 1, 2, 4, ... steps, while bodies
-/// that started at rest accelerate.
-constexpr std::int64_t check_every = 100;
-
-/// True if the constraint error is checked at step n, whatever else happens there.
-bool is_checked(std::int64_t n) {
-    return n % check_every == 0 ||
-           (n < check_every && std::has_single_bit(static_cast<std::uint64_t>(n)));
-}
-
 /// State of one run on one rank.
 class Run {
   public:
@@ -142,13 +131,7 @@ class Run {
     /// Makes the stepper. Throws InputError if the scene asks for refinement that the integrator
     /// does not have. Collective.
     std::unique_ptr<Stepper> stepper_of_scene() {
-        Integrator const integrator = scene_.dynamics.integrator;
-        if (scene_.solver.refine > 0 && !is_refined(integrator))
-            throw InputError("solutions with integrator " + std::string(name_of(integrator)) +
-                                 " are not refined",
-                             "solver.refine",
-                             "leave it out, or use rk4, dormand-prince or velocity-verlet if the "
-                             "chains allow it");
+        refuse_refinement(scene_);
         return make_stepper(system_, scene_.dynamics);
     }
 

@@ -1,17 +1,17 @@
-// A program that uses the installed library: says what a scene holds.
-#include <catena/error.hpp>
-#include <catena/reader/load_scene.hpp>
+// A program that uses the installed library: says what a scene file holds.
+#include <catena/catena.hpp>
 #include <cstdio>
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
+    if (catena::version() != FOUND_VERSION) return 3;
     try {
-        catena::Scene const scene = catena::load_scene(argv[1]);
-        std::printf("%s: %zu chains, %lld bodies\n", scene.title.c_str(), scene.chains.size(),
-                    static_cast<long long>(scene.bodies()));
+        auto const model = catena::Model::from_file(argv[1]);
+        std::printf("%lld bodies, %zu notes\n", static_cast<long long>(model.bodies()),
+                    model.notes().size());
         return 0;
-    } catch (catena::InputError const& error) {
+    } catch (catena::Error const& error) {
         std::fprintf(stderr, "%s\n", error.what());
-        return 2;
+        return error.reason() == catena::Error::Reason::input ? 2 : 1;
     }
 }
