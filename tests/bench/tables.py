@@ -15,7 +15,7 @@ from walks import WALKS
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PAGES = ("README.md", "walks.md")
-PLATFORM = {"amd-epyc": "AMD EPYC (Zen 5)", "amd-zen3": "AMD EPYC (Zen 3)", "intel-xeon": "Intel Xeon", "nvidia-h200": "NVIDIA H200", "nvidia-h100": "NVIDIA H100"}
+PLATFORM = {"amd-epyc": "AMD EPYC (Zen 5)", "intel-xeon": "Intel Xeon", "nvidia-h200": "NVIDIA H200", "nvidia-h100": "NVIDIA H100"}
 SIX_SIZES = (100, 500, 2048, 16384, 131072, 1048576)
 
 
