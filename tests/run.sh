@@ -161,11 +161,11 @@ cat "$logs/fuzz.log" "$logs/changed-scenes.log"
 # the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.
 mathematics=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics)
 runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
-      bench_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
+      trajectory bench_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
 unbuilt=("${mathematics[@]}" "${runs[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then
-    slow='^trajectory.(ranks_[13-6]|together)|^gpu'
+    slow='^gpu'
     slow+='|Report.(Quick|TheStability)|AThousandRandom|ChainsOf2000|OnLinks.*/(openmp|serial|segments_full)'
     slow+='|RandomChainsAgree.*/(serial_full|openmp_projected|segments_projected)'
     slow+='|Staggered.(Samples|IsStable|IsOfSecondOrder)|HaveTheirOrder|ErrorsAreInProportion|Sampling.TheTemperatures'  # many steps of the same
