@@ -8,6 +8,7 @@ import argparse
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -33,7 +34,8 @@ def parse_arguments():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="The program is build/release/catena, or what CATENA_PROGRAM names.\n\nexamples:\n"
                "  python3 jobs/replicas.py inputs/saxs-radii.csv saxs --replicas 4 --steps 2000000\n"
-               "  python3 jobs/replicas.py inputs/saxs-radii.csv saxs --only scenes && sbatch --array=1-40 jobs/slurm-array.sh saxs/scenes saxs")
+               "  python3 jobs/replicas.py inputs/saxs-radii.csv saxs --steps 2000000 --only scenes && \\\n"
+               "    sbatch --array=1-40 --ntasks=1 jobs/slurm-array.sh saxs/scenes saxs")
     parser.add_argument("proteins", metavar="PROTEINS.csv", help="table of proteins")
     parser.add_argument("folder", metavar="FOLDER", help="where scenes, runs and the table go")
     parser.add_argument("--replicas", type=int, default=1, metavar="R", help="runs of each protein (default: 1)")
@@ -44,33 +46,87 @@ def parse_arguments():
     return parser.parse_args()
 
 
-def read_proteins(path):
-    """The lines of the table, as dictionaries with numbers where they belong."""
+def number_of(row, name, where):
+    """A number of a line that is finite and above 0 (the pH: 0 to 14)."""
     try:
-        with open(path, encoding="utf-8") as file:
-            rows = list(csv.DictReader(line for line in file if line.strip() and not line.startswith("#")))
+        value = float(row[name])
+    except ValueError:
+        value = float("nan")
+    if not (0 <= value <= 14 if name == "ph" else 0 < value < 1e6):
+        raise UserError(f"`{name}` of {row['name']} is not {'a pH' if name == 'ph' else 'a number above 0'}: {row[name]} ({where})")
+    return value
+
+
+def checked_protein(row, path, line):
+    """A line of the table with numbers where they belong."""
+    where = f"{path}, line {line}"
+    for name in COLUMNS:
+        if not row.get(name):
+            raise UserError(f"a protein has no `{name}` ({where}): the columns are {', '.join(COLUMNS)}")
+    if not re.fullmatch(r"[A-Za-z0-9_.+-]+", row["name"]):
+        raise UserError(f"a name has letters, digits and _ . + - alone, for it names files: {row['name']!r} ({where})")
+    if not row["sequence"].isalpha():
+        raise UserError(f"the sequence of {row['name']} has more than letters ({where})")
+    for name in ("ionic", "temperature", "ph"):
+        number_of(row, name, where)
+    row.update({name: number_of(row, name, where) for name in ("rg", "rg_error", "n")})
+    if len(row["sequence"]) != row["n"]:
+        raise UserError(f"the sequence has {len(row['sequence'])} residues, not {row['n']:g} ({where}, {row['name']}): correct one of them")
+    return row
+
+
+def read_proteins(path):
+    """The lines of the table, as dictionaries."""
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            lines = [(k, line) for k, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
     except OSError as error:
         raise UserError(f"cannot read the proteins ({path}): {error.strerror}") from None
-    for row in rows:
-        missing = [name for name in COLUMNS if not row.get(name)]
-        if missing:
-            raise UserError(f"a protein has no `{missing[0]}` ({path}, {row.get('name')}): the columns are {', '.join(COLUMNS)}")
-        row.update({name: float(row[name]) for name in ("rg", "rg_error")})
-        if len(row["sequence"]) != int(row["n"]):
-            raise UserError(f"the sequence has {len(row['sequence'])} residues, not {row['n']} ({path}, {row['name']}): correct one of them")
+    except UnicodeDecodeError:
+        raise UserError(f"the proteins are not UTF-8 text ({path}): save them as such") from None
+    missing = [name for name in COLUMNS if lines and name not in lines[0][1].strip().split(",")]
+    if missing:
+        raise UserError(f"there is no column `{missing[0]}` ({path}, line {lines[0][0]}): the columns are {', '.join(COLUMNS)}")
+    rows, names = [], {}
+    for row, (k, _) in zip(csv.DictReader(line for _, line in lines), lines[1:]):
+        rows.append(checked_protein(row, path, k))
+        if row["name"] in names:
+            raise UserError(f"the name {row['name']} occurs twice ({path}, lines {names[row['name']]} and {k})")
+        names[row["name"]] = k
     if not rows:
         raise UserError(f"there are no proteins ({path}): give one a line")
     return rows
 
 
+def scene_path(name, folder):
+    return os.path.join(folder, "scenes", name + ".yaml")
+
+
+def without_steps(text):
+    return re.sub(r"\bsteps: \d+", "steps:", text)
+
+
+def refuse_other_scene(row, asked):
+    """Refuses a scene of the folder that has another model, sequence or condition: its runs would be taken for those asked for."""
+    path = scene_path(row["name"], asked.folder)
+    try:
+        with open(path, encoding="utf-8") as file:
+            there = file.read()
+    except OSError:
+        return
+    if without_steps(there) != without_steps(SCENE.format(**row, model=asked.model, steps=asked.steps)):
+        raise UserError(f"a scene of this folder differs from the table or --model ({path}): name another FOLDER, or delete this one")
+
+
 def write_scenes(proteins, asked):
     """A scene of each protein in FOLDER/scenes; returns their paths by name."""
-    folder = os.path.join(asked.folder, "scenes")
-    os.makedirs(folder, exist_ok=True)
-    paths = {}
+    try:
+        os.makedirs(os.path.join(asked.folder, "scenes"), exist_ok=True)
+    except OSError as error:
+        raise UserError(f"cannot make the folder ({asked.folder}): {error.strerror}") from None
+    paths = {row["name"]: scene_path(row["name"], asked.folder) for row in proteins}
     for row in proteins:
-        paths[row["name"]] = path = os.path.join(folder, row["name"] + ".yaml")
-        with open(path, "w", encoding="utf-8") as file:
+        with open(paths[row["name"]], "w", encoding="utf-8") as file:
             file.write(SCENE.format(**row, model=asked.model, steps=asked.steps))
     return paths
 
@@ -102,15 +158,30 @@ def run(scene, seed, asked):
         raise UserError(f"a run ended with status {status} ({folder}): see the line above")
 
 
+def steps_of(name, folder):
+    """Number of steps that the scene of a protein asks for; 0 without one."""
+    try:
+        with open(scene_path(name, folder), encoding="utf-8") as file:
+            found = re.search(r"\bsteps: (\d+)", file.read())
+    except OSError:
+        found = None
+    return int(found.group(1)) if found else 0
+
+
 def runs_of(name, folder):
-    """Radii of gyration of the protein's runs that are VALID: mean, standard error, and whether that error is only a lower limit."""
-    found = []
-    for seed in range(1, 1 + sum(each.startswith(name + "-") for each in os.listdir(folder))):
-        summary = summary_of(os.path.join(folder, f"{name}-{seed}"))
-        if summary and summary["valid"]:
+    """Radii of gyration of the protein's finished runs that are VALID: mean, standard error, whether that error is only a lower limit, and the
+    time; then the number of folders whose runs are left out."""
+    found, left_out, steps = [], 0, steps_of(name, folder)
+    for each in sorted(os.listdir(folder)):
+        if not re.fullmatch(re.escape(name) + r"-\d+", each):
+            continue
+        summary = summary_of(os.path.join(folder, each))
+        if summary and summary["valid"] and summary["run"]["last_step"] >= steps:
             radius = summary["observables"]["radius_of_gyration"]
             found.append((radius["mean"], radius["standard_error"] or 0.0, not radius.get("converged", True), summary["run"]["time"]))
-    return found
+        else:
+            left_out += 1
+    return found, left_out
 
 
 def combine(runs):
@@ -126,7 +197,11 @@ def table_of(proteins, folder):
     """A line of each protein that has runs."""
     lines = []
     for row in proteins:
-        runs = runs_of(row["name"], folder)
+        runs, left_out = runs_of(row["name"], folder)
+        if left_out:
+            print(f"jobs/replicas.py: {left_out} of {left_out + len(runs)} runs of {row['name']} are unfinished or INVALID and left out", file=sys.stderr)
+        elif not runs:
+            print(f"jobs/replicas.py: there are no runs of {row['name']}", file=sys.stderr)
         if runs:
             mean, error, at_least = combine(runs)
             lines.append({"name": row["name"], "residues": int(row["n"]), "measured_nm": row["rg"], "measured_error_nm": row["rg_error"],
@@ -154,7 +229,7 @@ def draw(lines, path):
     try:
         import matplotlib
     except ImportError:
-        raise UserError("a Python package is missing (matplotlib): pip install matplotlib") from None
+        raise UserError("a Python package is missing (matplotlib): use build/venv/bin/python, or install it there") from None
     matplotlib.use("Agg")
     matplotlib.rcParams["svg.hashsalt"] = "catena"
     from matplotlib import pyplot
@@ -169,19 +244,34 @@ def draw(lines, path):
     figure.savefig(path, dpi=110, metadata={"Date": None} if path.endswith(".svg") else None)
 
 
+def check_picture(asked):
+    """Refuses a picture that could not be written, before hours of runs."""
+    if asked.only == "scenes":
+        raise UserError("--only scenes draws no picture: leave --picture out")
+    if not asked.picture.endswith((".png", ".svg")):
+        raise UserError(f"a picture ends in .png or .svg: {asked.picture}")
+    if not os.path.isdir(os.path.dirname(asked.picture) or "."):
+        raise UserError(f"there is no folder for the picture ({asked.picture}): make it first")
+
+
 def main():
     asked = parse_arguments()
     if asked.replicas < 1 or asked.steps < 1:
         raise UserError("--replicas and --steps are 1 at least")
+    if asked.picture:
+        check_picture(asked)
     proteins = read_proteins(asked.proteins)
+    for row in proteins:
+        refuse_other_scene(row, asked)
     if asked.only != "table":
         scenes = write_scenes(proteins, asked)
     if asked.only == "scenes":
-        print(f"{len(scenes)} scenes in {asked.folder}/scenes")
+        print(f"{len(scenes)} scene{'s' if len(scenes) > 1 else ''} in {asked.folder}/scenes")
         return
     if asked.only is None:
         for seed in range(1, asked.replicas + 1):
-            for scene in scenes.values():
+            for name, scene in scenes.items():
+                print(f"{name}, run {seed} of {asked.replicas}", file=sys.stderr, flush=True)
                 run(scene, seed, asked)
     lines = table_of(proteins, asked.folder) if os.path.isdir(asked.folder) else []
     if not lines:

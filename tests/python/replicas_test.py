@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""jobs/replicas.py: writes a scene of each protein with its conditions, means the runs that are VALID, and refuses a sequence of another
-length. With --catena PROGRAM also: two proteins of inputs/saxs-radii.csv are simulated with two seeds each, and runs that are there are kept.
+"""jobs/replicas.py: writes a scene of each protein with its conditions, means the finished runs that are VALID, and refuses wrong tables and
+folders of other scenes. With --catena PROGRAM also: two proteins of inputs/saxs-radii.csv are simulated with two seeds each, and runs that are there are kept.
 
 Exit status 0: all as it should be; 1: not."""
 import argparse
@@ -59,6 +59,30 @@ def made_up(folder):
         yield f"a sequence of another length: status {done.returncode}: {done.stderr}"
 
 
+def refused(folder):
+    """Of wrong tables and folders: one line and status 2 each."""
+    line = "gly,0.2,280,7,1.5,0.1,6,10.1/x,GGGGSG\n"
+    tables = {"rg": (HEAD + line.replace("1.5", "abc"), "`rg` of gly"), "n": (HEAD + line.replace(",6,", ",6.5,"), "not 6.5"),
+              "name": (HEAD + line.replace("gly,", "a/b,"), "names files"), "twice": (HEAD + line + line, "occurs twice"),
+              "cold": (HEAD + line.replace("280", "cold"), "`temperature` of gly"), "error": (HEAD + line.replace("0.1,6", "-0.1,6"), "`rg_error` of gly"),
+              "column": (HEAD.replace("rg_error,", "") + line, "no column `rg_error`")}
+    for name, (text, words) in tables.items():
+        done = call([write(os.path.join(folder, name + ".csv"), text), os.path.join(folder, "not"), "--only", "scenes"])
+        if done.returncode != 2 or words not in done.stderr or done.stderr.count("\n") != 1:
+            yield f"{name}: status {done.returncode}: {done.stderr}"
+    proteins, out = write(os.path.join(folder, "good.csv"), HEAD + line), os.path.join(folder, "kept")
+    call([proteins, out, "--only", "scenes", "--steps", "10"])
+    for words in (["--model", "calvados3"], ["--picture", "a.xyz"], ["--picture", "no/a.png"]):
+        done = call([proteins, out, "--only", "table", *words])
+        if done.returncode != 2 or done.stderr.count("\n") != 1:
+            yield f"{words}: status {done.returncode}: {done.stderr}"
+    write(os.path.join(out, "gly-4", "summary.json"), summary(1.0, True))
+    write(os.path.join(out, "gly-7", "summary.json"), summary(3.0, True).replace('"last_step": 10', '"last_step": 9'))
+    done = call([proteins, out, "--only", "table"])
+    if table(out)[0]["simulated_nm"] != "1.0" or "1 of 2 runs of gly" not in done.stderr:
+        yield f"an unfinished run counts: {done.stdout}{done.stderr}"
+
+
 def simulated(folder, catena):
     """Of runs of the program."""
     with open(os.path.join(ROOT, "inputs", "saxs-radii.csv"), encoding="utf-8") as file:
@@ -78,6 +102,6 @@ parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.R
 parser.add_argument("--catena", help="the program; without it no run is made")
 asked = parser.parse_args()
 with tempfile.TemporaryDirectory() as parent:
-    faults = list(made_up(parent)) + (list(simulated(parent, os.path.abspath(asked.catena))) if asked.catena else [])
+    faults = list(made_up(parent)) + list(refused(parent)) + (list(simulated(parent, os.path.abspath(asked.catena))) if asked.catena else [])
 print("\n".join(faults) if faults else "passed")
 sys.exit(1 if faults else 0)
