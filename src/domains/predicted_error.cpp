@@ -36,9 +36,14 @@ bool names_matrix(Json const& key) { return key == "predicted_aligned_error" || 
 
 /// Throws InputError for text that is not JSON, and for more than one matrix.
 Json parsed(std::string const& path, Node const& at) {
-    int matrices = 0;
+    int matrices = 0, depth_of_keys = 1;
+    bool is_named = false;
     auto const count = [&](int depth, Json::parse_event_t event, Json const& value) {
-        matrices += event == Json::parse_event_t::key && depth <= 2 && names_matrix(value);
+        bool const begins = event == Json::parse_event_t::array_start;
+        if (begins && depth == 0) depth_of_keys = 2;  // a list that holds the map
+        matrices += begins && is_named;
+        is_named =
+            event == Json::parse_event_t::key && depth == depth_of_keys && names_matrix(value);
         return true;
     };
     try {

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <exception>
 #include <gemmi/cif.hpp>
+#include <gemmi/util.hpp>
 #include <gemmi/version.hpp>
+#include <set>
 #include <unordered_map>
 
 #include "scene/fields.hpp"
@@ -248,6 +250,11 @@ std::shared_ptr<void const> parse_mmcif(std::string_view text, std::string const
     auto document = std::make_shared<cif::Document>();
     tao::pegtl::memory_input<> input(text.data(), text.size(), path);
     cif::parse_input(*document, input);
+    document->source = path;
+    // Blocks may share a name: the first one with atoms is read.
+    std::set<std::string> names;
+    for (cif::Block& block : document->blocks)
+        while (!names.insert(gemmi::to_lower(block.name)).second) block.name += '\'';
     cif::check_for_missing_values(*document);
     cif::check_for_duplicates(*document);
     return document;

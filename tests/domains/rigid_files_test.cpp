@@ -220,6 +220,10 @@ TEST_F(RigidFiles, predictions_come_in_several_forms) {
         EXPECT_EQ(refused("{\"pae\": [[0]], \"" + second + "\": [[1]]}"),
                   "`pae.json` has 2 matrices of errors" + at_pae_ +
                       "keep the one that belongs to the structure");
+    for (std::string const beside :
+         {"\"summary\": {\"pae\": 3.2}", "\"predicted_aligned_error\": 3.2"})
+        EXPECT_EQ(refused("{\"pae\": [[0, 1], [1]], " + beside + "}").substr(0, 21),
+                  "row 2 of `pae.json` d");
 }
 
 /// A matrix of as many rows would need 160 GB.

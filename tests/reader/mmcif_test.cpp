@@ -171,6 +171,15 @@ TEST_F(Mmcif, damaged_files_are_refused_with_their_line) {
               std::string::npos);
 }
 
+TEST_F(Mmcif, blocks_may_share_a_name) {
+    std::string const text = cif_text(strand(gas_, "A", 1, 0));
+    write("a.cif", text);
+    Scene const once = read(scene_of("a.cif"));
+    write("a.cif", text + text);
+    EXPECT_TRUE(test::same_bits(once.chains.at(0).beads.position,
+                                read(scene_of("a.cif")).chains.at(0).beads.position));
+}
+
 /// One row would make a million residues of each chain.
 TEST_F(Mmcif, few_rows_cannot_ask_for_much_memory) {
     std::vector<AtomLine> atoms;
