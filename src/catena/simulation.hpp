@@ -54,9 +54,9 @@ class Simulation {
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
 
-    /// Takes steps, whatever `dynamics.steps` says. The states equal those of `catena run`
-    /// with the same backend. Throws Error that names the step if one fails, or if the state is not
-    /// finite.
+    /// Takes steps, whatever `dynamics.steps` says. The states equal those of `catena run` with the
+    /// same backend and without `output.checkpoint_every`. Throws Error that names the step if one
+    /// fails, or if the state is not finite.
     void run(std::int64_t steps);
     /// Returns the present state.
     SimulationState state();
