@@ -123,8 +123,8 @@ std::optional<std::size_t> middle_of_straight(BeadSystem const& beads,
 }
 
 [[noreturn]] void refuse_straight(Scene const& scene, BeadSystem const& beads, std::size_t middle) {
-    throw InputError(fmt::format("forces at the start are not finite: {} and its neighbours lie on "
-                                 "a line, where torsions are undefined",
+    throw InputError(fmt::format("forces at the start are not finite, perhaps because {} and its "
+                                 "neighbours lie on a line, where torsions are undefined",
                                  name_of(beads, middle)),
                      scene.file,
                      "write `relax: true`, which bends the chain, or give other positions");

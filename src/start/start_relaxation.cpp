@@ -46,20 +46,22 @@ double contact_reach(Scene const& scene, std::size_t beads) {
                     std::sqrt(widest / std::max(most_columns, static_cast<double>(beads))));
 }
 
-/// Passes a line to the callback every few seconds.
+/// Passes a line to the callback every few seconds of the whole relaxation.
 class Teller {
   public:
-    Teller(RelaxationSays const& say, char const* forces) : say_(say), forces_(forces) {}
-    void operator()(std::int64_t evaluations, double energy) {
-        if (!say_ || seconds_now() - last_ < seconds_between_lines) return;
-        last_ = seconds_now();
-        say_(fmt::format("relaxation, {}: {} evaluations, {:.0f} s, energy {:.6g} kJ/mol", forces_,
-                         evaluations, last_ - start_, energy));
+    explicit Teller(RelaxationSays const& say) : say_(say) {}
+    /// Callback of a descent along those forces.
+    Descent::ProgressCallback of(char const* forces) {
+        return [this, forces](std::int64_t evaluations, double energy) {
+            if (!say_ || seconds_now() - last_ < seconds_between_lines) return;
+            last_ = seconds_now();
+            say_(fmt::format("relaxation, {}: {} evaluations, {:.0f} s, energy {:.6g} kJ/mol",
+                             forces, evaluations, last_ - start_, energy));
+        };
     }
 
   private:
     RelaxationSays const& say_;
-    char const* forces_;
     double start_ = seconds_now(), last_ = start_;
 };
 
@@ -76,14 +78,15 @@ class Relaxation {
     Relaxation(Scene const& scene, std::vector<MovingChain>& chains, RelaxationSays const& say)
         : scene_(scene),
           chains_(chains),
-          say_(say),
+          teller_(say),
           all_(scene),
           at_(bead_positions_of(scene)),
           large_force_(large_force * scene.boltzmann() * scene.forces.openmm->temperature) {}
 
     /// Separates overlaps by forces between near beads, which cost little, then minimises the
     /// energy of all forces. Beads that are caught between links, or in a balance of large forces,
-    /// are knocked out of it and relaxed again, a few times. Throws InputError if that fails.
+    /// are knocked out of it and relaxed again, a few times, or once if the energy stays infinite
+    /// or NaN. Throws InputError if that fails.
     StartRelaxation run() {
         std::vector<Vec3> const given = at_;
         StartRelaxation found;
@@ -91,7 +94,8 @@ class Relaxation {
         for (int knocks = 0;; ++knocks) {
             descend(found);
             found.to = look();
-            if (!found.to.is_absurd() || knocks == most_knocks) break;
+            bool const hopeless = knocks > 0 && !std::isfinite(found.to.energy);
+            if (!found.to.is_absurd() || hopeless || knocks == most_knocks) break;
             knock(knocks);
         }
         found.moved = furthest(given, at_);
@@ -114,7 +118,7 @@ class Relaxation {
             Descent descent(chains_, near, at_);
             found.steps += descent
                                .run({most_of_contacts, window_of_contacts, fall, large_force_, kt},
-                                    Teller(say_, "forces between near beads"))
+                                    teller_.of("forces between near beads"))
                                .evaluations;
         }
         auto const affordable =
@@ -122,7 +126,7 @@ class Relaxation {
         Descent descent(chains_, all_, at_);
         Descent::Ended const ended = descent.run({std::clamp(affordable, least_of_all, most_of_all),
                                                   window_of_all, fall, large_force_, kt},
-                                                 Teller(say_, "all forces"));
+                                                 teller_.of("all forces"));
         found.steps += ended.evaluations;
         found.at_rest = ended.at_rest;
     }
@@ -134,7 +138,7 @@ class Relaxation {
             std::vector<UnitMotion> by(chains_[c].units());
             scene::Draws draws(static_cast<std::uint64_t>(number), static_cast<std::int64_t>(c));
             for (std::size_t u = 0; u < by.size(); ++u)
-                if (norm(chains_[c].acceleration(u, forces_).shift) > large_force_)
+                if (!(norm(chains_[c].acceleration(u, forces_).shift) <= large_force_))
                     by[u].shift = way * draws.on_sphere();
             chains_[c].move(by);  // leaves the chain as it is if its links cannot be closed
             chains_[c].put_beads(at_);
@@ -143,7 +147,7 @@ class Relaxation {
 
     Scene const& scene_;
     std::vector<MovingChain>& chains_;
-    RelaxationSays const& say_;
+    Teller teller_;
     SingleRankForces all_;
     /// Positions of all beads and the forces there.
     std::vector<Vec3> at_, forces_;

@@ -39,6 +39,14 @@ bool is_number(string_view text) {
     return !copy.empty() && !is_blank(copy[0]) && *end == '\0' && end == copy.c_str() + copy.size();
 }
 
+/// True for NaN as any C++ or Python program writes it, and with a sign.
+bool is_nan(string_view number) {
+    if (number.starts_with('-') || number.starts_with('+')) number.remove_prefix(1);
+    auto const lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    return number.size() >= 3 && lower(number[0]) == 'n' && lower(number[1]) == 'a' &&
+           lower(number[2]) == 'n';
+}
+
 /// True if the text begins with a sign, point or digit of a number.
 bool begins_as_number(string_view text) {
     if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
@@ -229,13 +237,16 @@ class Scanner {
         return {key, value};
     }
 
-    /// Throws InputError for numbers with other characters in them. OpenMM would use the part
-    /// before the first letter, or 0.
+    /// Throws InputError for numbers with other characters in them, of which OpenMM would use the
+    /// part before the first letter, or 0. NaN is refused too, except as an entry of a table, which
+    /// may be one that no beads use.
     void check_numbers(Element const& element, Attributes const& attributes) const {
-        bool const all = is_one_of(element.name, records);
-        for (auto const& [key, value] : attributes)
-            if (!is_one_of(key, words) && (all || begins_as_number(value)) && !is_number(value))
+        bool const all = is_one_of(element.name, records), entry = element.name == "Value";
+        for (auto const& [key, value] : attributes) {
+            if (is_one_of(key, words) || !(all || begins_as_number(value))) continue;
+            if (!is_number(value) || (!entry && is_nan(value)))
                 fail(element.at, fmt::format("`{}` of {} is no number", shown(value), shown(key)));
+        }
     }
 
     /// Value of an attribute; empty if the attribute is absent.

@@ -75,6 +75,8 @@ TEST(XmlScan, NamesTheFaultAndItsLine) {
     expect_fault(in_system("<Bond d=\"1\" d=\"2\"/>"), "attribute d is given twice");
     expect_fault(in_system("<Bond d=\"0.3x8\"/>"), "`0.3x8` of d is no number");
     expect_fault(in_system("<Bond d=\"x\"/>"), "`x` of d is no number");
+    for (std::string const nan : {"nan", "NaN", "-nan", "nan(1)"})
+        expect_fault(in_system("<Particle q=\"" + nan + "\"/>"), "`" + nan + "` of q is no number");
     expect_fault(in_system("<Force cutoff=\"2n\"/>"), "`2n` of cutoff is no number");
     expect_fault(in_system("<Forces/><Forces/>"), "<Forces> is there twice in <System>");
     expect_fault(in_system("<Forces><Force type=\"A\"><Bonds/><Bonds/></Force></Forces>"),
