@@ -14,7 +14,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
               other tools' settings, 5 seconds each (libFuzzer, where clang has it); a minute of changed scenes from outside the process
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the tests of readers, writers, commands, dynamics and restarts
   minimal     build without any optional package, the tests of what differs there
-  tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
+  tidy        clang-tidy on the library's own sources, for a minute at most (what was left out is named)
 
   --quick  format and release alone
   --slow-device-code  the GPU's code is compiled in half the time, and slower: for where nobody will run what is in build/release
@@ -91,7 +91,7 @@ format() {
 }
 
 tidy() {
-    local until=$(($(date +%s) + 120)) sources folder=build/tidy
+    local until=$(($(date +%s) + 60)) sources folder=build/tidy
     # Each source by itself, without precompiled headers, which clang cannot read.
     cmake -B $folder -G Ninja -DCMAKE_BUILD_TYPE=Release -DCATENA_PRECOMPILE=OFF -DCATENA_WITH_CUDA=OFF >/dev/null || return 1
     # Sources changed since the last commit come first. Clang does not compile what mmcif_file.cpp includes of gemmi 0.5.7.
@@ -156,13 +156,14 @@ check fuzz fuzz "$([ $long = yes ] && echo 3600 || echo 5)" || true
 changed_scenes() { "$python" tests/fuzz/mutate_scenes.py "$1" || [ $? -eq 77 ]; }
 check changed-scenes changed_scenes "$([ $long = yes ] && echo 7200 || echo 60)" || true
 cat "$logs/fuzz.log" "$logs/changed-scenes.log"
-# What takes half of the tests' time under sanitizers. Vectors' kernels have none, and shared chains run on 2 ranks.
 # What the sanitizers and other builds leave to the release build: mathematics and whole runs, which take most of their time. Readers, writers,
 # the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.
-mathematics=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics)
+mathematics=(dca dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics)
 runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
       trajectory bench_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
-unbuilt=("${mathematics[@]}" "${runs[@]}")
+# What neither build can run, and what reads no input.
+without_input=(gpu gpu_quick gpu_run gpu_exchange bench measure math physics page outcome generate)
+unbuilt=("${mathematics[@]}" "${runs[@]}" "${without_input[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then
     slow='^gpu'
@@ -172,7 +173,7 @@ if build asan-ubsan "${unbuilt[@]}"; then
     if [ $long = yes ]; then slow='^gpu|ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
-unbuilt+=(dca restart cases_hardening cases_structures cases_systems)
+unbuilt+=(restart bodies dynamics cases_hardening cases_structures cases_systems)
 same_anywhere='^physics_(order|trimer|energy)'
 presets=(minimal)
 if [ $long = yes ]; then unbuilt=() same_anywhere='^$' presets=(no-mpi minimal); fi
