@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Compares radii of gyration of many proteins on Catena's rigid links with plain OpenMM's harmonic bonds, and with measured radii.
+
+Reads the table of proteins that jobs/replicas.py reads. Samples copies of each protein side by side in one system, first by Catena, then by
+OpenMM's own integrator with harmonic bonds (`catena bench sampling`). Writes FOLDER/NAME.json for each protein, prints the table, and writes it
+to FOLDER/beside-openmm.csv. Proteins whose file is there are not sampled again."""
+import argparse
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import replicas
+from replicas import ROOT, UserError
+
+MODEL = "calvados2"
+KNOWN = -0.012  # of the radius: what rigid links in place of stiff bonds change, by `catena bench sampling` of alpha-synuclein
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="The program is build/release/catena, or what CATENA_PROGRAM names. A GPU is used where there is one.\n\nexample:\n"
+               "  python3 jobs/beside_openmm.py inputs/saxs-radii.csv beside --copies 71 --duration 2000 --picture beside.svg")
+    parser.add_argument("proteins", metavar="PROTEINS.csv", help="table of proteins")
+    parser.add_argument("folder", metavar="FOLDER", help="where scenes, results and the table go")
+    parser.add_argument("--copies", type=int, default=71, metavar="N", help="copies of each protein (default: 71)")
+    parser.add_argument("--duration", type=float, default=2000, metavar="PS", help="sampled time of each copy, ps (default: 2000)")
+    parser.add_argument("--discard", type=float, default=500, metavar="PS",
+                        help="time before sampling, ps (default: 500); another two times that on rigid links before both")
+    parser.add_argument("--step", type=float, default=0.01, metavar="PS", help="time step of both, ps (default: 0.01)")
+    parser.add_argument("--only", metavar="NAME,...", help="only these proteins of the table")
+    parser.add_argument("--picture", metavar="FILE", help="also draw the table (PNG or SVG; needs matplotlib)")
+    return parser.parse_args()
+
+
+def result_path(name, folder):
+    return os.path.join(folder, name + ".json")
+
+
+def sample(name, asked):
+    """Samples a protein unless its file is there, and is of the same conditions. Returns what the program wrote."""
+    path = result_path(name, asked.folder)
+    conditions = {"copies": asked.copies, "discard_ps": asked.discard}
+    if not os.path.exists(path):
+        program = os.environ.get("CATENA_PROGRAM", os.path.join(ROOT, "build", "release", "catena"))
+        words = [program, "bench", "sampling", replicas.scene_path(name, asked.folder), "--methods", "rigid,bonds", "--copies", str(asked.copies),
+                 "--steps", f"{asked.step:g}", "--duration", f"{asked.duration:g}", "--discard", f"{asked.discard:g}",
+                 "--equilibrate", f"{2 * asked.discard:g}", "--json", path + ".part"]
+        print(name, file=sys.stderr, flush=True)
+        try:
+            status = subprocess.run(words, check=False, stdout=subprocess.DEVNULL).returncode
+        except OSError as error:
+            raise UserError(f"cannot start the program ({program}): {error.strerror}; build it, or name it by CATENA_PROGRAM") from None
+        if status != 0:
+            raise UserError(f"sampling of {name} ended with status {status} ({path}.part): see the line above")
+        os.replace(path + ".part", path)
+    try:
+        with open(path, encoding="utf-8") as file:
+            found = json.load(file)
+    except (OSError, ValueError):
+        raise UserError(f"a result cannot be read ({path}): delete it") from None
+    other = [key for key, value in conditions.items() if found.get(key) != value]
+    steps = {row["step_ps"] for row in found["results"]}
+    times = {round(row["ps_per_copy"], 3) for row in found["results"]}
+    if other or steps != {asked.step} or times != {round(asked.duration, 3)}:
+        raise UserError(f"a result is of other copies, times or steps ({path}): name another FOLDER, or delete it")
+    return found
+
+
+def line_of(row, found):
+    """A line of the table. The difference is in standard errors, as it is and with the known difference of rigid links taken out."""
+    catena, openmm = (next(each for each in found["results"] if each["method"] == method) for method in ("rigid", "bonds"))
+    (a, a_error), (b, b_error) = ((each["radius_of_gyration"]["mean"], each["radius_of_gyration"]["error"]) for each in (catena, openmm))
+    error = (a_error**2 + b_error**2) ** 0.5
+    return {"name": row["name"], "residues": int(row["n"]), "measured_nm": row["rg"], "measured_error_nm": row["rg_error"],
+            "simulated_nm": round(a, 4), "simulated_error_nm": round(a_error, 4), "openmm_nm": round(b, 4), "openmm_error_nm": round(b_error, 4),
+            "difference_percent": round(100 * (a - b) / b, 2), "standard_errors": round((a - b) / error, 2),
+            "standard_errors_without_known": round((a - b - KNOWN * b) / error, 2), "valid": found["valid"],
+            "plateau": catena["radius_of_gyration"]["plateau"] and openmm["radius_of_gyration"]["plateau"],
+            "ns_in_all": round(catena["total_ns"], 1), "doi": row["doi"]}
+
+
+def print_table(lines):
+    print("| protein | residues | measured (nm) | Catena (nm) | OpenMM (nm) | difference | standard errors | with the known -1.2 % | ns |\n"
+          "| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    for each in lines:
+        print(f"| {each['name']} | {each['residues']} | {each['measured_nm']:.2f} +- {each['measured_error_nm']:.2f} | "
+              f"{each['simulated_nm']:.3f} +- {each['simulated_error_nm']:.3f} | {each['openmm_nm']:.3f} +- {each['openmm_error_nm']:.3f} | "
+              f"{each['difference_percent']:.1f} % | {each['standard_errors']:.1f} | {each['standard_errors_without_known']:.1f} | "
+              f"{each['ns_in_all']:g} |")
+
+
+def draw(lines, path):
+    try:
+        import matplotlib
+    except ImportError:
+        raise UserError("a Python package is missing (matplotlib): use build/venv/bin/python, or install it there") from None
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "catena"
+    from matplotlib import pyplot
+    figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
+    places = range(len(lines))
+    for shift, key, label, colour in ((-0.2, "measured", "measured", "#5b6773"), (0, "openmm", "OpenMM, harmonic bonds", "#d9822b"),
+                                      (0.2, "simulated", "Catena, rigid links", "#0b6bcb")):
+        axes.errorbar([k + shift for k in places], [each[key + "_nm"] for each in lines], [each[key + "_error_nm"] for each in lines], fmt="o",
+                      markersize=4, color=colour, label=label)
+    axes.set_xticks(list(places), [each["name"] for each in lines], rotation=30, ha="right")
+    axes.set_ylabel("radius of gyration (nm)")
+    axes.legend(frameon=False)
+    figure.savefig(path, dpi=110, metadata={"Date": None} if path.endswith(".svg") else None)
+
+
+def chosen(proteins, only):
+    """The proteins of the table that --only names."""
+    if not only:
+        return proteins
+    names = only.split(",")
+    unknown = [name for name in names if name not in {row["name"] for row in proteins}]
+    if unknown:
+        raise UserError(f"the table has no protein {unknown[0]} (--only): it has {', '.join(row['name'] for row in proteins)}")
+    return [row for row in proteins if row["name"] in names]
+
+
+def main():
+    asked = parse_arguments()
+    if asked.copies < 2 or not (asked.duration > 0 and asked.discard >= 0 and asked.step > 0):
+        raise UserError("--copies is 2 at least; --duration and --step are above 0, --discard is not below")
+    if asked.picture:
+        replicas.check_picture(asked)
+    proteins = chosen(replicas.read_proteins(asked.proteins), asked.only)
+    asked.model, asked.steps = MODEL, 1
+    for row in proteins:
+        replicas.refuse_other_scene(row, asked)
+    replicas.write_scenes(proteins, asked)
+    lines = [line_of(row, sample(row["name"], asked)) for row in proteins]
+    with open(os.path.join(asked.folder, "beside-openmm.csv"), "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(lines[0]))
+        writer.writeheader()
+        writer.writerows(lines)
+    print_table(lines)
+    if asked.picture:
+        draw(lines, asked.picture)
+    wrong = [each["name"] for each in lines if not each["valid"] or abs(each["standard_errors_without_known"]) > 3]
+    if wrong:
+        print(f"INVALID: {', '.join(wrong)}: more than 3 standard errors from OpenMM with the known difference, or INVALID")
+        sys.exit(1)
+    print("VALID: all within 3 standard errors of OpenMM with the known difference")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except UserError as error:
+        print(f"jobs/beside_openmm.py: {error}", file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""A slab of 100 chains by Catena on rigid links beside plain OpenMM with harmonic bonds: density profiles of runs of the same length.
+
+Runs `catena run` on inputs/hnrnpa1-slab.yaml, builds the same system in OpenMM from the published model (CALVADOS 2) without Catena's code, runs it
+with LangevinMiddleIntegrator from the same start, and analyses both trajectories by `catena analyse`. The first half is left out. VALID: energies
+of the start agree to 1e-4, and the profiles' mean squared difference is what their errors by blocking explain (chi^2 per bin below 2).
+Needs OpenMM; the comparison needs h5py, numpy and matplotlib. --only splits the work between machines."""
+import argparse
+import array
+import csv
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+SCENE = os.path.join(ROOT, "inputs", "hnrnpa1-slab.yaml")
+TABLE = os.path.join(ROOT, "inputs", "residues_CALVADOS2.csv")
+TEMPERATURE, IONIC, PH, FRICTION, STEP = 293.0, 0.15, 7.0, 0.01, 0.01  # of the scene: K, mol/l, -, 1/ps, ps
+STIFFNESS, LENGTH = 8033.0, 0.38  # of a bond: kJ/mol/nm^2, nm
+EPSILON, SHORT_CUTOFF, LONG_CUTOFF = 0.8368, 2.0, 4.0  # kJ/mol, nm, nm
+BOX = (15.0, 15.0, 100.0)
+BINS = 100
+
+
+def residues():
+    """Mass, stickiness, diameter and charge of each residue, by its three letters."""
+    with open(TABLE, encoding="utf-8") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        return {row["three"]: tuple(float(row[key]) for key in ("MW", "lambdas", "sigmas", "q")) for row in rows}
+
+
+def beads_of(topology):
+    """Chain (index), residue and position in nm of each bead of Catena's topology.pdb. Chains end where numbers begin again."""
+    beads, chain, before = [], -1, 10**9
+    with open(topology, encoding="utf-8") as file:
+        for line in file:
+            if line.startswith(("ATOM", "HETATM")):
+                number = int(line[22:26])
+                if number <= before:
+                    chain += 1
+                before = number
+                beads.append((chain, line[17:20], [0.1 * float(line[k : k + 8]) for k in (30, 38, 46)]))
+    return beads
+
+
+def screening():
+    """Prefactor of the Yukawa force in kJ nm/mol and inverse Debye length in 1/nm."""
+    t = TEMPERATURE
+    permittivity = 5321 / t + 233.76 - 0.9297 * t + 0.1417e-2 * t**2 - 0.8292e-6 * t**3
+    prefactor = 1.6021766**2 / (4 * math.pi * 8.854188 * permittivity) * 6.02214076 * 1000
+    bjerrum = prefactor / (8.3145e-3 * t)
+    return prefactor, math.sqrt(8 * math.pi * bjerrum * IONIC * 6.02214076 / 10)
+
+
+def make_system(openmm, beads):
+    """Masses, bonds and pair forces of CALVADOS 2."""
+    table, (prefactor, kappa) = residues(), screening()
+    system = openmm.System()
+    system.setDefaultPeriodicBoxVectors((BOX[0], 0, 0), (0, BOX[1], 0), (0, 0, BOX[2]))
+    bonds = openmm.HarmonicBondForce()
+    sticky = openmm.CustomNonbondedForce(
+        "select(step(r-2^(1/6)*s), l*(w-edge), w-l*edge+eps*(1-l)); w=4*eps*((s/r)^12-(s/r)^6);"
+        "edge=4*eps*((s/r_short)^12-(s/r_short)^6); s=0.5*(s1+s2); l=0.5*(l1+l2)")
+    charged = openmm.CustomNonbondedForce("q1*q2*a*(exp(-kappa*r)/r-exp(-kappa*r_long)/r_long)")
+    for force, cutoff, constants, names in ((sticky, SHORT_CUTOFF, {"eps": EPSILON, "r_short": SHORT_CUTOFF}, "sl"), (charged, LONG_CUTOFF, {"a": prefactor, "kappa": kappa, "r_long": LONG_CUTOFF}, "q")):
+        for name, value in constants.items():
+            force.addGlobalParameter(name, value)
+        for name in names:
+            force.addPerParticleParameter(name)
+        force.setNonbondedMethod(force.CutoffPeriodic)
+        force.setCutoffDistance(cutoff)
+    bonds.setUsesPeriodicBoundaryConditions(True)
+    last = len(beads) - 1
+    for k, (chain, residue, _) in enumerate(beads):
+        mass, stickiness, diameter, charge = table[residue]
+        first_of_chain, last_of_chain = k == 0 or beads[k - 1][0] != chain, k == last or beads[k + 1][0] != chain
+        if residue == "HIS":
+            charge = 1 / (1 + 10 ** (PH - 6))
+        system.addParticle(mass + 2 * first_of_chain + 16 * last_of_chain)
+        sticky.addParticle([diameter, stickiness])
+        charged.addParticle([charge + first_of_chain - last_of_chain])
+        if not first_of_chain:
+            bonds.addBond(k - 1, k, LENGTH, STIFFNESS)
+            sticky.addExclusion(k - 1, k)
+            charged.addExclusion(k - 1, k)
+    for group, force in enumerate((bonds, sticky, charged)):
+        force.setForceGroup(group)
+        system.addForce(force)
+    return system
+
+
+def run_catena(asked):
+    """The run of the scene; returns the potential energy of its start."""
+    folder = os.path.join(asked.output, "catena")
+    if not os.path.exists(os.path.join(folder, "summary.json")):
+        words = [asked.catena, "run", SCENE, "--output", folder, "--steps", str(asked.steps), "--quiet", "--set", f"output.every={asked.every}",
+                 "--set", f"output.checkpoint_every={asked.steps}"]
+        subprocess.run(words + (["--backend", asked.backend] if asked.backend else []), check=True)
+    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    return summary["start"]["potential_energy"], summary["speed"], summary["valid"]
+
+
+def run_openmm(asked):
+    """The same by OpenMM alone. Writes frames as 32-bit floats, and returns the non-bonded energy of the start."""
+    import openmm
+    if os.environ.get("OPENMM_PLUGIN_DIR"):
+        openmm.Platform.loadPluginsFromDirectory(os.environ["OPENMM_PLUGIN_DIR"])
+    beads = beads_of(os.path.join(asked.output, "catena", "topology.pdb"))
+    system = make_system(openmm, beads)
+    integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, FRICTION, STEP)
+    integrator.setRandomNumberSeed(1)
+    context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(asked.platform))
+    context.setPositions([openmm.Vec3(*at) for _, _, at in beads])
+    energy = context.getState(getEnergy=True, groups={1, 2}).getPotentialEnergy()._value
+    context.setVelocitiesToTemperature(TEMPERATURE, 1)
+    begun, frames = time.monotonic(), []
+    with open(os.path.join(asked.output, "openmm.f32"), "wb") as to:
+        for step in range(0, asked.steps + 1, asked.every):
+            if step:
+                integrator.step(asked.every)
+            state = context.getState(getPositions=True)
+            array.array("f", [x for at in state.getPositions()._value for x in at]).tofile(to)
+            frames.append(step)
+            if len(frames) % 50 == 0:
+                print(f"OpenMM, step {step} of {asked.steps}, {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
+    found = {"energy": energy, "seconds": time.monotonic() - begun, "platform": asked.platform, "openmm": openmm.version.version, "frames": len(frames)}
+    with open(os.path.join(asked.output, "openmm.json"), "w", encoding="utf-8") as to:
+        json.dump(found, to)
+
+
+def as_run(asked):
+    """A copy of Catena's run whose positions are OpenMM's frames."""
+    import h5py
+    import numpy
+    source, folder = (os.path.join(asked.output, name) for name in ("catena", "openmm-run"))
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(source, folder, ignore=shutil.ignore_patterns("analysis", "checkpoint.h5"))
+    with h5py.File(os.path.join(folder, "trajectory.h5md"), "r+") as file:
+        positions = file["particles/trajectory/position/value"]
+        frames = numpy.fromfile(os.path.join(asked.output, "openmm.f32"), dtype=numpy.float32).reshape(positions.shape)
+        positions[...] = frames
+    return folder
+
+
+def profile(asked, folder):
+    """Density profile of a run's second half as rows of z, value and error; then concentrations."""
+    where, words = os.path.join(folder, "analysis"), ["--slab", "z", "--bins", str(BINS), "--cutoff", "0", "--discard", "0.5", "--quiet"]
+    subprocess.run([asked.catena, "analyse", folder, *words, "--output", where, "--json", os.path.join(folder, "analysis.json")], check=True)
+    with open(os.path.join(where, "density.csv"), encoding="utf-8") as file:
+        rows = [(float(row["z [nm]"]), float(row["value [mg/ml]"]), float(row["error_by_blocking"] or 0)) for row in csv.DictReader(file)]
+    with open(os.path.join(folder, "analysis.json"), encoding="utf-8") as file:
+        return rows, json.load(file)["quantities"]
+
+
+def draw(curves, path):
+    import matplotlib
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "catena"
+    from matplotlib import pyplot
+    figure, axes = pyplot.subplots(figsize=(6, 3.5), layout="constrained")
+    for (name, rows), colour in zip(curves.items(), ("#0b6bcb", "#d9822b")):
+        z, value, error = zip(*rows)
+        axes.plot(z, value, color=colour, linewidth=1.2, label=name)
+        axes.fill_between(z, [v - e for v, e in zip(value, error)], [v + e for v, e in zip(value, error)], color=colour, alpha=0.25, linewidth=0)
+    axes.set(xlabel="z (nm)", ylabel="protein (mg/ml)", xlim=(-25, 25), ylim=(0, None))
+    axes.legend(frameon=False)
+    figure.savefig(path, dpi=110, metadata={"Date": None} if path.endswith(".svg") else None)
+
+
+def compare(asked):
+    """Analyses both runs, writes the comparison, and returns whether it is VALID."""
+    start, speed, valid = run_catena(asked)
+    with open(os.path.join(asked.output, "openmm.json"), encoding="utf-8") as file:
+        other = json.load(file)
+    ours, quantities = profile(asked, os.path.join(asked.output, "catena"))
+    theirs, their_quantities = profile(asked, as_run(asked))
+    squares = [(a - b) ** 2 / (e**2 + f**2) for (_, a, e), (_, b, f) in zip(ours, theirs) if e > 0 and f > 0]
+    chi = sum(squares) / len(squares)
+    energy = abs(other["energy"] / start - 1)
+    found = {"bench": "slab beside OpenMM", "scene": "inputs/hnrnpa1-slab.yaml", "steps": asked.steps, "step_ps": STEP, "frames_every": asked.every,
+             "energy_of_start": {"catena": start, "openmm": other["energy"], "relative": energy}, "bins_compared": len(squares), "chi2_per_bin": chi,
+             "catena": {"profile": ours, "quantities": quantities, "speed": speed},
+             "openmm": {"profile": theirs, "quantities": their_quantities, **other}, "valid": bool(valid and energy < 1e-4 and chi < 2)}
+    if asked.json:
+        with open(asked.json, "w", encoding="utf-8") as to:
+            json.dump(found, to)
+    if asked.picture:
+        draw({"Catena, rigid links": ours, "OpenMM, harmonic bonds": theirs}, asked.picture)
+    print(f"energy of the start: {start:.6g} kJ/mol, OpenMM {other['energy']:.6g} ({energy:.1e} apart)\n"
+          f"profiles: {len(squares)} bins, chi^2 per bin {chi:.2f}\n{'VALID' if found['valid'] else 'INVALID'}")
+    return found["valid"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--catena", default=os.path.join(ROOT, "build", "release", "catena"), help="the program (default: build/release/catena)")
+    parser.add_argument("--steps", type=int, default=500000, help="steps of 10 fs of each run (default: 500000)")
+    parser.add_argument("--every", type=int, default=1000, help="steps between frames (default: 1000)")
+    parser.add_argument("--backend", default="", help="of Catena (default: auto)")
+    parser.add_argument("--platform", default="CUDA", help="of OpenMM (default: CUDA)")
+    parser.add_argument("--output", default="slab-beside-openmm", help="folder of both runs")
+    parser.add_argument("--only", choices=("catena", "openmm", "compare"), help="only one of the three parts")
+    parser.add_argument("--json", help="file for the comparison")
+    parser.add_argument("--picture", help="file for the profiles")
+    asked = parser.parse_args()
+    asked.steps -= asked.steps % asked.every
+    os.makedirs(asked.output, exist_ok=True)
+    if asked.only in (None, "catena"):
+        run_catena(asked)
+    if asked.only in (None, "openmm"):
+        run_openmm(asked)
+    if asked.only in (None, "compare"):
+        sys.exit(0 if compare(asked) else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""jobs/beside_openmm.py: compares both methods with the known difference taken out, keeps results that are there, and refuses those of other times.
+
+The program is a stand-in that writes what `catena bench sampling` writes. Exit status 0: all as it should be; 1: not."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+SCRIPT = os.path.join(ROOT, "jobs", "beside_openmm.py")
+TABLE = """name,ionic,temperature,ph,rg,rg_error,n,doi,sequence
+gly,0.2,280,7,1.5,0.1,6,10.1/x,GGGGSG
+ser,0.2,280,7,1.4,0.1,4,10.1/y,GSSG
+"""
+PROGRAM = """#!{python}
+import json, os, sys
+words = sys.argv[1:]
+value = dict(zip(words[3::2], words[4::2]))
+with open({folder!r} + "/calls", "a") as calls:
+    calls.write(os.path.basename(words[2]) + "\\n")
+row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "valid": True}}
+radius = lambda mean: {{"radius_of_gyration": {{"mean": mean, "error": 0.01, "plateau": True}}}}
+json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "results": [
+    {{"method": "rigid", **row, **radius({rigid})}}, {{"method": "bonds", **row, **radius(1.5)}}]}}, open(value["--json"], "w"))
+"""
+
+
+def call(folder, rigid, *words):
+    """The script with a stand-in program whose rigid links give that radius."""
+    program = os.path.join(folder, "program")
+    with open(program, "w", encoding="utf-8") as file:
+        file.write(PROGRAM.format(python=sys.executable, folder=folder, rigid=rigid))
+    os.chmod(program, 0o755)
+    return subprocess.run([sys.executable, SCRIPT, os.path.join(folder, "p.csv"), os.path.join(folder, "out"), "--copies", "3", *words],
+                          env={**os.environ, "CATENA_PROGRAM": program}, capture_output=True, text=True, check=False)
+
+
+def check(holds, what):
+    if not holds:
+        sys.exit(f"FAILED: {what}")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "p.csv"), "w", encoding="utf-8") as file:
+            file.write(TABLE)
+        first = call(folder, 1.482, "--only", "gly")  # 1.2 % below: the known difference
+        check(first.returncode == 0 and "VALID" in first.stdout, f"the known difference is no failure: {first.stdout}{first.stderr}")
+        with open(os.path.join(folder, "out", "beside-openmm.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        check([row["name"] for row in rows] == ["gly"], "only the protein asked for")
+        check(rows[0]["difference_percent"] == "-1.2" and rows[0]["standard_errors"] == "-1.27", f"difference of {rows[0]}")
+        check(float(rows[0]["standard_errors_without_known"]) == 0, f"known difference of {rows[0]}")
+        both = call(folder, 1.55)  # 4.8 standard errors with the known difference
+        check(both.returncode == 1 and "INVALID: ser:" in both.stdout, f"a large difference fails: {both.stdout}{both.stderr}")
+        with open(os.path.join(folder, "calls"), encoding="utf-8") as file:
+            check(file.read().split() == ["gly.yaml", "ser.yaml"], "results that are there are kept")
+        other = call(folder, 1.5, "--duration", "100")
+        check(other.returncode == 2 and "other copies, times or steps" in other.stderr, f"results of another time are refused: {other.stderr}")
+        unknown = call(folder, 1.5, "--only", "ala")
+        check(unknown.returncode == 2 and "no protein ala" in unknown.stderr, f"an unknown protein is refused: {unknown.stderr}")
+
+
+if __name__ == "__main__":
+    main()
