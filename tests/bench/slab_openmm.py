@@ -108,8 +108,6 @@ def run_catena(asked):
 def run_openmm(asked):
     """The same by OpenMM alone. Writes frames as 32-bit floats, and returns the non-bonded energy of the start."""
     import openmm
-    if os.environ.get("OPENMM_PLUGIN_DIR"):
-        openmm.Platform.loadPluginsFromDirectory(os.environ["OPENMM_PLUGIN_DIR"])
     beads = beads_of(os.path.join(asked.output, "catena", "topology.pdb"))
     system = make_system(openmm, beads)
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, FRICTION, STEP)
