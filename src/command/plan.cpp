@@ -111,63 +111,59 @@ struct StepPlan {
     int matrix_sweeps = 0, bias_sweeps = 0, bias_sweeps_a_drift_sweep = 0;
     std::string text;
 };
+/// Counts the sweeps of an integrator in joint coordinates that kicks rates and moves joints by
+/// turns.
+StepPlan kicks_of(DynamicsSpec const& d, bool tips, int corrections) {
+    SweepsAStep const sweeps = sweeps_a_step(d, tips);
+    std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias "
+                                              "sweeps (2 of the kick, thermostat)"
+                                            : "1 matrix sweep; 2 bias sweeps of the kick";
+    if (is_implicit(d.integrator))
+        text += "; joints with springs or dampers are implicit: their chains have full handles";
+    if (tips)
+        text += fmt::format(
+            "; {} corrections that close jointed tips, a matrix sweep and a bias sweep each",
+            corrections);
+    return {sweeps.matrices + corrections, sweeps.biases + corrections, 0, text};
+}
+
+/// Counts the sweeps of an integrator in joint coordinates whose steps consist of evaluations.
+StepPlan evaluations_of(DynamicsSpec const& d, bool tips, int corrections) {
+    int const evaluations = sweeps_a_step(d, tips).matrices;
+    std::string const inner =
+        d.tolerance > 0
+            ? fmt::format(" for each inner step (tolerance {:g} determines their number)",
+                          d.tolerance)
+            : "";
+    return {evaluations + corrections, evaluations + corrections, 0,
+            fmt::format("{}{}: a matrix sweep and a bias sweep each; {}",
+                        counted(evaluations, "evaluation", "evaluations"), inner,
+                        tips ? fmt::format("{} corrections that close jointed tips, again "
+                                           "a matrix sweep and a bias sweep each",
+                                           corrections)
+                             : "joint coordinates need no projection")};
+}
+
 /// Counts the sweeps of the scene's integrator.
 StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     bool const tips = has_jointed_tips(scene);
     int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
+    if (is_refined(d.integrator)) return evaluations_of(d, tips, corrections);
+    if (uses_joint_coordinates(d.integrator)) return kicks_of(d, tips, corrections);
     std::string const chosen = fmt::format(
         "s is the smallest number that closes the joints to {:g} at the start; a run adds one when "
         "they no longer close",
         ConstrainedIntegrator::early * d.constraint_tolerance);
-    switch (d.integrator) {
-        case Integrator::staggered:
-        case Integrator::baoab:
-        case Integrator::implicit_baoab: {
-            SweepsAStep const sweeps = sweeps_a_step(d, tips);
-            std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias "
-                                                      "sweeps (2 of the kick, thermostat)"
-                                                    : "1 matrix sweep; 2 bias sweeps of the kick";
-            if (is_implicit(d.integrator))
-                text +=
-                    "; joints with springs or dampers are implicit: their chains have full handles";
-            if (tips)
-                text += fmt::format(
-                    "; {} corrections that close jointed tips, a matrix sweep and a bias sweep "
-                    "each",
-                    corrections);
-            return {sweeps.matrices + corrections, sweeps.biases + corrections, 0, text};
-        }
-        case Integrator::rk4:
-        case Integrator::dormand_prince:
-        case Integrator::velocity_verlet: {
-            int const evaluations = sweeps_a_step(d, tips).matrices;
-            std::string const inner =
-                d.tolerance > 0
-                    ? fmt::format(" for each inner step (tolerance {:g} determines their number)",
-                                  d.tolerance)
-                    : "";
-            return {evaluations + corrections, evaluations + corrections, 0,
-                    fmt::format("{}{}: a matrix sweep and a bias sweep each; {}",
-                                counted(evaluations, "evaluation", "evaluations"), inner,
-                                tips ? fmt::format("{} corrections that close jointed tips, again "
-                                                   "a matrix sweep and a bias sweep each",
-                                                   corrections)
-                                     : "joint coordinates need no projection")};
-        }
-        case Integrator::rattle:
-            return {1, 1, 1,
-                    "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half "
-                    "kicks in one), s of the drift; " +
-                        chosen};
-        case Integrator::g_baoab:
-        case Integrator::implicit_g_baoab:
-            return {2, 2, 2,
-                    "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the "
-                    "thermostat, s for either half drift; " +
-                        chosen};
-    }
-    return {};
+    if (is_langevin(d.integrator))
+        return {2, 2, 2,
+                "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the "
+                "thermostat, s for either half drift; " +
+                    chosen};
+    return {1, 1, 1,
+            "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half "
+            "kicks in one), s of the drift; " +
+                chosen};
 }
 
 /// Adds the integrator and the sweeps of a step.
@@ -225,7 +221,8 @@ double implicit_step_of(Scene const& scene) {
 /// Measures the phases of an evaluation of the chains without OpenMM. Throws InputError for
 /// implicit-g-baoab.
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
-    if (scene.dynamics.given && scene.dynamics.integrator == Integrator::implicit_g_baoab)
+    if (scene.dynamics.given && is_implicit(scene.dynamics.integrator) &&
+        !uses_joint_coordinates(scene.dynamics.integrator))
         throw InputError("implicit-g-baoab has no evaluation outside a step that could be measured",
                          "--measure", "leave it out, and see the time per step of a run");
     scene.forces.openmm.reset();

@@ -11,11 +11,14 @@ bool has_jointed_tips(Scene const& scene) {
 }
 
 SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {
-    if (d.integrator == Integrator::rk4) return {4, 4};
-    if (d.integrator == Integrator::dormand_prince)
-        return tips ? SweepsAStep{7, 7} : SweepsAStep{6, 6};
-    if (d.integrator == Integrator::velocity_verlet) return {1, 1};
-    return is_langevin(d.integrator) && d.friction > 0 ? SweepsAStep{2, 3} : SweepsAStep{1, 2};
+    IntegratorTraits const& traits = traits_of(d.integrator);
+    if (traits.refined) {
+        // The corrections of tips change the state, so the next step cannot take over the last
+        // evaluation.
+        int const evaluations = traits.evaluations + (traits.adaptive && tips ? 1 : 0);
+        return {evaluations, evaluations};
+    }
+    return traits.langevin && d.friction > 0 ? SweepsAStep{2, 3} : SweepsAStep{1, 2};
 }
 
 std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem& system, DynamicsSpec const& d) {

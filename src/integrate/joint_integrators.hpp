@@ -44,9 +44,6 @@ class JointIntegrator {
     virtual void restored(Checkpoint const&) {}
 };
 
-/// True if the integrator's solutions are refined `solver.refine` times. The other integrators
-/// solve more than once with one matrix.
-inline bool is_refined(Integrator i) { return i <= Integrator::velocity_verlet; }
 /// True if steps in joint coordinates assemble matrices in a sweep of their own. Forces are
 /// computed meanwhile, or the matrices are needed again (ChainSystem::solves_once()).
 inline bool keeps_matrices(Scene const& scene) {

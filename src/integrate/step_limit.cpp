@@ -24,13 +24,6 @@ constexpr double settled = 1e-4;
 /// of the stiffest mode, energy grows by resonance.
 constexpr double near = 0.65;
 
-/// Returns the stability limit of an integrator: h times the largest angular frequency, undamped.
-double reach_of(Integrator integrator) {
-    return integrator == Integrator::rk4              ? 2.8284
-           : integrator == Integrator::dormand_prince ? 3.3
-                                                      : 2.0;
-}
-
 /// True if a joint of the chain has a spring.
 bool has_springs(ChainSpec const& chain) {
     auto const& k = chain.bodies.stiffness;
@@ -207,12 +200,13 @@ std::optional<StepLimit> estimate_step_limit(Scene const& scene) {
         std::all_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
             return !has_springs(chain) || chain.bodies.size() <= most_bodies;
         });
-    return StepLimit{frequency, reach_of(d.integrator) / frequency, whole};
+    return StepLimit{frequency, traits_of(d.integrator).stability / frequency, whole};
 }
 
 std::string text_of(StepLimit const& limit, Scene const& scene) {
     return fmt::format("{:.3g} {} ({:.3g} / the largest frequency of the joints' springs)",
-                       limit.step, scene.si ? "s" : "ps", reach_of(scene.dynamics.integrator));
+                       limit.step, scene.si ? "s" : "ps",
+                       traits_of(scene.dynamics.integrator).stability);
 }
 
 std::string note_of_step(Scene const& scene, std::optional<StepLimit> const& limit) {

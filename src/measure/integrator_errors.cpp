@@ -21,8 +21,6 @@ constexpr double unstable = 4;  // ratio to the reference's largest kinetic ener
 
 constexpr double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
 
-int order_of(Integrator integrator) { return integrator == Integrator::rk4 ? 4 : 2; }
-
 /// Treatment of a scene's springs by implicit integrators: no springs, supported, not supported on
 /// a GPU, not supported because a joint's springs are uneven.
 enum class Springs { none, implicit, on_gpu, uneven };
@@ -188,7 +186,7 @@ IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::in
 IntegratorCurve curve_of(Comparison const& exact, Integrator integrator, int last) {
     IntegratorCurve curve;
     curve.name = name_of(integrator);
-    curve.order = order_of(integrator);
+    curve.order = traits_of(integrator).order;
     if (is_implicit(integrator)) curve.scheme = Scheme::implicit_springs;
     for (int k = coarsest; k <= last; ++k)
         curve.points.push_back(point_of(exact, integrator, std::int64_t{1} << k));
@@ -285,13 +283,13 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     bool const works = std::any_of(scene.chains.begin(), scene.chains.end(), works_on_bodies);
     if (works) study.no_energy_error = "torques or wrenches do work on the bodies";
     study.no_implicit = why_explicit_alone(springs_of(scene));
-    std::vector<Integrator> const integrators = integrators_of(scene);
+    std::vector<Integrator> const compared = integrators_of(scene);
     bool const springs = springs_of(scene) != Springs::none;
     if (springs) finest += 2;
     // A reference of second order has steps sixteen times finer than the finest: 1/256 of its
     // error, or rounding. A reference of fifth order has the finest step, or a quarter of it if
     // springs may be stiff.
-    Integrator const judge = integrators.front();
+    Integrator const judge = compared.front();
     bool const joint = uses_joint_coordinates(judge);
     if (joint) study.refine = scene.solver.refine;
     std::int64_t const most = std::int64_t{1} << (!joint    ? finest + 4
@@ -312,9 +310,9 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
         return study;
     }
     exact.floor = std::max(20 * study.reference_error, rounding);
-    for (Integrator const integrator : integrators) {
+    for (Integrator const integrator : compared) {
         bool const early = integrator == Integrator::rk4 && !springs;
-        IntegratorCurve curve = integrator == Integrator::dormand_prince
+        IntegratorCurve curve = is_adaptive(integrator)
                                     ? adaptive_curve(exact)
                                     : curve_of(exact, integrator, early ? finest - 3 : finest);
         auto const& points = curve.points;

@@ -45,7 +45,7 @@ std::vector<std::string> notes_on(Scene const& scene,
     if (d.tolerance > 0)
         notes.emplace_back(
             "times are per inner step; dynamics.tolerance determines the number of inner steps");
-    if (d.integrator == Integrator::implicit_g_baoab)
+    if (is_implicit(d.integrator) && !uses_joint_coordinates(d.integrator))
         notes.emplace_back("drifts are predicted in one part; a run may use more");
     for (plan::StepPrediction const& s : steps)
         if (!s.unusable.empty())

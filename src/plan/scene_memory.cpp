@@ -100,7 +100,7 @@ constexpr double rotor_numbers = 6 + 2 * 3 + 4;
 double numbers_of(DynamicsSpec const& dynamics, bool stands) {
     if (!uses_joint_coordinates(dynamics.integrator)) return stands ? rotor_numbers : 0;
     double numbers = joint_numbers + (stands ? yielding_numbers : 0);
-    if (dynamics.integrator == Integrator::dormand_prince) numbers += embedded_numbers;
+    if (is_adaptive(dynamics.integrator)) numbers += embedded_numbers;
     if (is_langevin(dynamics.integrator) && dynamics.friction > 0) numbers += noise_numbers;
     return numbers;
 }

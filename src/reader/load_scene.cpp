@@ -72,7 +72,8 @@ Scene read_frame(Fields const& fields, std::string const& name) {
 bool is_warm(Fields const& fields, Scene const& frame) {
     Node const* const dynamics = fields.find("dynamics");
     return dynamics && frame.dynamics.temperature > 0 &&
-           (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
+           (dynamics->find("temperature") || (is_langevin(frame.dynamics.integrator) &&
+                                              !uses_joint_coordinates(frame.dynamics.integrator)));
 }
 
 /// Reads the chains of the scene or, if it has none, those of the System that it names.

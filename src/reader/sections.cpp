@@ -206,7 +206,7 @@ namespace {
 double read_tolerance(Node const& node, Integrator integrator) {
     double constexpr least = 1e-13, most = 0.1;
     double const tolerance = positive(node);
-    if (integrator != Integrator::dormand_prince)
+    if (!is_adaptive(integrator))
         fail(node,
              fmt::format("integrator {} has no error estimate: its steps have the length `step`",
                          name_of(integrator)),
@@ -235,17 +235,10 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     Fields const fields(node, keys::dynamics);
     DynamicsSpec dynamics;
     dynamics.given = true;
+    std::vector<std::pair<std::string_view, Integrator>> names;
+    for (IntegratorTraits const& row : integrators) names.emplace_back(row.name, row.kind);
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
-                                             {{"rk4", Integrator::rk4},
-                                              {"dormand-prince", Integrator::dormand_prince},
-                                              {"velocity-verlet", Integrator::velocity_verlet},
-                                              {"staggered", Integrator::staggered},
-                                              {"baoab", Integrator::baoab},
-                                              {"implicit-baoab", Integrator::implicit_baoab},
-                                              {"rattle", Integrator::rattle},
-                                              {"g-baoab", Integrator::g_baoab},
-                                              {"implicit-g-baoab", Integrator::implicit_g_baoab}},
-                                             {"implicit-midpoint"});
+                                             names, {"implicit-midpoint"});
     dynamics.step = positive(fields.need("step", "step: 0.01"));
     take(fields, "steps", dynamics.steps, [](Node const& n) { return whole(n, 0); });
     dynamics.has_steps = fields.find("steps") != nullptr;

@@ -72,6 +72,9 @@ std::string joined(std::span<std::string_view const> names);
 /// Reads one of the names of `choices`. Throws InputError otherwise, "not in this version" for
 /// names of `later`.
 template <class Value>
+Value choice(Node const& node, std::span<std::pair<std::string_view, Value> const> choices,
+             Names later = {});
+template <class Value>
 Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices,
              Names later = {});
 
@@ -81,6 +84,12 @@ Value choice(Node const& node, std::initializer_list<std::pair<std::string_view,
 
 template <class Value>
 Value choice(Node const& node, std::initializer_list<std::pair<std::string_view, Value>> choices,
+             Names later) {
+    return choice(node, std::span(choices.begin(), choices.size()), later);
+}
+
+template <class Value>
+Value choice(Node const& node, std::span<std::pair<std::string_view, Value> const> choices,
              Names later) {
     std::vector<std::string_view> names;
     for (auto const& [name, value] : choices) {

@@ -93,31 +93,6 @@ std::string content_of(std::string const& path) {
     return text.str();
 }
 
-/// Returns stable numbers, because those of the enumeration may change.
-int number_of(Integrator integrator) {
-    switch (integrator) {
-        case Integrator::rk4:
-            return 0;
-        case Integrator::rattle:
-            return 1;
-        case Integrator::g_baoab:
-            return 2;
-        case Integrator::staggered:
-            return 4;
-        case Integrator::baoab:
-            return 5;
-        case Integrator::implicit_baoab:
-            return 6;
-        case Integrator::implicit_g_baoab:
-            return 7;
-        case Integrator::dormand_prince:
-            return 8;
-        case Integrator::velocity_verlet:
-            break;
-    }
-    return 3;
-}
-
 /// Adds optional parts of a scene under their name, and only if present. Scenes without them keep
 /// their fingerprint.
 template <class... T>
@@ -195,7 +170,7 @@ std::string fingerprint(Scene const& scene) {
     ForceSpec const& f = scene.forces;
     add_named(print, "scene drag", f.linear_drag != 0 || f.angular_drag != 0, f.linear_drag,
               f.angular_drag);
-    print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed,
+    print.add_each(d.given, traits_of(d.integrator).code, d.step, d.temperature, d.friction, d.seed,
                    d.constraint_tolerance);
     add_named(print, "fixman", d.fixman);
     add_named(print, "tolerance", d.tolerance > 0, d.tolerance);

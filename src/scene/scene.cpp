@@ -54,33 +54,9 @@ char const* name_of(JointType type) {
 
 std::string DynamicsSpec::why_host_alone() const {
     if (fixman) return "the Fixman force is computed on the host";
-    if (given && (is_implicit(integrator) || integrator == Integrator::baoab))
+    if (given && !traits_of(integrator).on_gpu)
         return std::string("integrator ") + name_of(integrator) + " works on the host";
     return "";
-}
-
-char const* name_of(Integrator integrator) {
-    switch (integrator) {
-        case Integrator::rk4:
-            return "rk4";
-        case Integrator::dormand_prince:
-            return "dormand-prince";
-        case Integrator::velocity_verlet:
-            return "velocity-verlet";
-        case Integrator::staggered:
-            return "staggered";
-        case Integrator::baoab:
-            return "baoab";
-        case Integrator::implicit_baoab:
-            return "implicit-baoab";
-        case Integrator::rattle:
-            return "rattle";
-        case Integrator::g_baoab:
-            return "g-baoab";
-        case Integrator::implicit_g_baoab:
-            return "implicit-g-baoab";
-    }
-    return "?";
 }
 
 char const* name_of(Backend backend) {

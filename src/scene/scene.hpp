@@ -13,6 +13,7 @@
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
 #include "math/simd_level.hpp"
+#include "scene/integrator.hpp"
 
 namespace catena {
 
@@ -256,37 +257,6 @@ struct ForceSpec {
     std::optional<OpenMmSpec> openmm;
 };
 
-/// Time integrator; src/integrate/README.md describes each. The order separates joint coordinates
-/// (before `rattle`) from absolute coordinates.
-enum class Integrator {
-    rk4,
-    dormand_prince,
-    velocity_verlet,
-    staggered,
-    baoab,
-    implicit_baoab,
-    rattle,
-    g_baoab,
-    implicit_g_baoab
-};
-/// True if the state is in joint coordinates, false if it is in absolute coordinates.
-inline bool uses_joint_coordinates(Integrator i) { return i < Integrator::rattle; }
-/// True if springs and dampers of joints are integrated implicitly.
-inline bool is_implicit(Integrator i) {
-    return i == Integrator::staggered || i == Integrator::implicit_baoab ||
-           i == Integrator::implicit_g_baoab;
-}
-/// Factor c of the rotor inertia c h^2 K that replaces a spring K in its joint within a step h. The
-/// least stable value for constant K is 1/4 (src/dca/README.md, "Implicit joint springs"). The
-/// value 1/2 leaves room for the contribution of bending and rotation to K. Under a thermostat a
-/// joint rotates by its thermal angle / sqrt(c) per step. Anharmonic terms within that angle shift
-/// the equilibrium; c = 2 has a quarter of the shift of c = 1/2.
-inline double rotor_of_spring(Integrator i) { return i == Integrator::staggered ? 0.5 : 2.0; }
-/// True if the integrator has a thermostat.
-inline bool is_langevin(Integrator i) {
-    return i == Integrator::baoab || i == Integrator::implicit_baoab || i >= Integrator::g_baoab;
-}
-
 /// Section `dynamics`.
 struct DynamicsSpec {
     /// True if the scene has a `dynamics` section.
@@ -413,7 +383,6 @@ struct Scene {
 
 /// Names as scenes write them.
 char const* name_of(JointType);
-char const* name_of(Integrator);
 char const* name_of(Backend);
 char const* name_of(Handles);
 

@@ -21,8 +21,8 @@ struct XmlOutline {
 /// Reads the whole text. Throws InputError with the line if it is not well-formed XML: tags that do
 /// not match, open comments, a second root, attributes without quotes, ... Also refused is what
 /// OpenMM would ignore silently. Examples are text between elements, an element given twice in the
-/// System or in a force, a number with letters in it, and NaN outside a table. Elements may be nested at most 64 deep.
-/// `file` is the name in messages; `where` is the scene file and key.
+/// System or in a force, a number with letters in it, and NaN outside a table. Elements may be
+/// nested at most 64 deep. `file` is the name in messages; `where` is the scene file and key.
 XmlOutline scan_system_xml(std::string_view text, std::string const& file,
                            std::string const& where);
 

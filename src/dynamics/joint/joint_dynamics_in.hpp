@@ -98,8 +98,7 @@ class JointDynamicsIn final : public JointDynamics {
                                  space.simd());
                 lanes.any())
                 lanes_ = std::move(lanes);
-        if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince)
-            pair_.emplace(group);
+        if (scene.dynamics.given && is_adaptive(scene.dynamics.integrator)) pair_.emplace(group);
         if (scene.solver.refine > 0) refinement_.emplace(group);
         set_state(make_joint_state(group, scene));
         if (tips() > 0)
