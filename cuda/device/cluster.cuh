@@ -233,11 +233,4 @@ __device__ void touch([[maybe_unused]] T const& parameter) {
 #endif
 }
 
-/// Cluster barrier: waits for all blocks of the cluster and makes their earlier writes visible.
-__device__ inline void meet_cluster() {
-    __syncthreads();
-    arrive_at_cluster();
-    wait_for_cluster();
-}
-
 }  // namespace catena::cuda::kernels

@@ -31,13 +31,8 @@ inline std::atomic<std::int64_t> turns_together = 0;
 /// Number of launches so far of sweeps and of scans in which ranks exchanged between the inward and
 /// the outward pass.
 inline std::atomic<std::int64_t> turns_shared = 0, scans_shared = 0;
-/// Number of those scan launches that used one thread per body.
-inline std::atomic<std::int64_t> shared_scans_by_bodies = 0;
-/// Number of sweep launches so far in which warps merged groups of runs
-/// (cuda/sweeps/run_groups.hpp).
-inline std::atomic<std::int64_t> launches_by_groups = 0;
-/// Number of launches so far in which one cluster took the tree above such groups through both
-/// passes (cuda/sweeps/group_lanes.cuh).
+/// Number of launches so far in which one cluster took the tree above groups of runs through
+/// both passes (cuda/sweeps/group_lanes.cuh).
 inline std::atomic<std::int64_t> groups_turned = 0;
 
 }  // namespace catena::cuda

@@ -203,8 +203,7 @@ __global__ void __launch_bounds__(threads_of_exchange)
     __syncthreads();
     exchange_by_block(call, numbers, beside);
 }
-/// Exchange that kernels both_passes(), shared_passes_of_scan() and shared_passes_of_scan_then()
-/// perform between the two passes.
+/// Exchange that kernels both_passes() and shared_passes_of_scan() perform between the two passes.
 template <class Numbers>
 struct ExchangeByBlock {
     PeerCall call;

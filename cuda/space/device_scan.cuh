@@ -40,28 +40,12 @@ class DeviceScan {
     void climb_and_descend(Scan const& scan, cudaStream_t stream) const {
         walk(stream).climb_and_descend(scan);
     }
-    /// Performs both passes and an action in one launch, if possible; see ScanWalk::at_once.
-    template <class Scan, class Action>
-    bool at_once(Scan const& scan, std::int64_t count, Action const& action,
-                 cudaStream_t stream) const {
-        return walk(stream).at_once(scan, count, action);
-    }
-    /// True if at_once(), or shared_passes() with an action, would succeed for a scan with
-    /// goes_by_steps.
-    bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
     /// Performs both passes with an exchange between ranks in one launch; see
     /// ScanWalk::shared_passes.
     template <class Scan, class Numbers>
     bool shared_passes(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
                        DeviceScan const& top, cudaStream_t stream) const {
         return walk(stream).shared_passes(scan, exchange, Launches{top, stream});
-    }
-    /// Performs the same, followed by action(k) for k < count.
-    template <class Scan, class Numbers, class Action>
-    bool shared_passes(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
-                       DeviceScan const& top, std::int64_t count, Action const& action,
-                       cudaStream_t stream) const {
-        return walk(stream).shared_passes(scan, exchange, Launches{top, stream}, count, action);
     }
 
   private:
@@ -109,20 +93,6 @@ class DeviceScan {
         void descend(std::size_t i, Scan const& scan) const {
             launch(kernels::descend_scan<Scan>, i, scan);
         }
-        /// Launches both passes and the action by one cluster; returns false if that is impossible.
-        template <class Scan, class Action>
-        bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
-            kernels::DeviceScanStage const& stage = tree.stages_.front().view;
-            unsigned const blocks = kernels::blocks_of_turn<Scan>(stage, count);
-            std::size_t const shared =
-                sizeof(double) * kernels::numbers_of_turn<Scan>(stage, blocks);
-            if (!tree.has_cluster_of(shared)) return false;
-            auto* const kernel = kernels::turn_scan_then<Scan, Action>;
-            allow_shared(kernel, shared);
-            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, stage,
-                         scan, count, action);
-            return true;
-        }
         /// Launches both passes of the last stage with an exchange and the passes of `top`.
         template <class Scan, class Numbers>
         void shared_passes(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
@@ -136,27 +106,6 @@ class DeviceScan {
             cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above,
                          exchange.next(), scan);
             ++scans_shared;
-        }
-        /// Launches the same and the action by one cluster; returns false if that is impossible.
-        template <class Scan, class Numbers, class Action>
-        bool shared_passes_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange,
-                                Launches const& top, std::int64_t count,
-                                Action const& action) const {
-            kernels::DeviceScanStage const &own = tree.stages_.back().view,
-                                           &above = top.tree.stages_.back().view;
-            unsigned const blocks = kernels::blocks_of_turn<Scan>(own, count);
-            std::size_t const shared =
-                sizeof(double) * kernels::numbers_of_turn<Scan>(own, blocks) + bytes<Scan>(above);
-            if (!tree.has_cluster_of(shared)) return false;
-            auto* const kernel =
-                kernels::shared_passes_of_scan_then<Scan, kernels::ExchangeByBlock<Numbers>,
-                                                    Action>;
-            allow_shared(kernel, shared);
-            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, own,
-                         above, exchange.next(), scan, count, action);
-            ++scans_shared;
-            ++shared_scans_by_bodies;
-            return true;
         }
 
       private:
@@ -178,13 +127,6 @@ class DeviceScan {
         return ScanWalk<Launches>({*this, stream});
     }
 
-    /// True if there are clusters whose blocks can have so many bytes of shared memory.
-    bool has_cluster_of(std::size_t shared_bytes) const {
-        return has_clusters_ && shared_bytes <= most_shared_bytes_;
-    }
-
-    bool has_clusters_ = knows_clusters();
-    std::size_t most_shared_bytes_ = most_shared_bytes();
     Buffer<dca::Run> run_list_;
     RunsView runs_;
     std::vector<Stage> stages_;

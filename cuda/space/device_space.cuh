@@ -16,7 +16,6 @@
 #include "cuda/space/device_tree.cuh"
 #include "cuda/space/kernels.cuh"
 #include "dca/host_space.hpp"
-#include "tree/scan_then.hpp"
 
 namespace catena::cuda {
 
@@ -113,27 +112,6 @@ class DeviceSpace {
     void climb_and_descend(ScanTree const& tree, Scan const& scan) const {
         tree.climb_and_descend(scan, stream());
     }
-    /// Performs both passes of a scan, then action(k) for k < count; in one launch if the chain is
-    /// short enough.
-    template <class Scan, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count,
-                           Action const& action) const {
-        if (tree.at_once(scan, count, action, stream())) return;
-        climb_and_descend(tree, scan);
-        for_each(count, action);
-    }
-    /// Performs both passes of a scan, then action(item) for each item; in one launch if the chain
-    /// is short enough.
-    template <class Scan, class T, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, Buffer<T> const& items,
-                           Action const& action) const {
-        auto const count = static_cast<std::int64_t>(items.size());
-        if (count > 0 &&
-            tree.at_once(scan, count, kernels::OfItem<T, Action>{items.data(), action}, stream()))
-            return;
-        climb_and_descend(tree, scan);
-        over(items, action);
-    }
     /// Performs the inward pass of a sweep (assembly).
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
@@ -148,10 +126,6 @@ class DeviceSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         tree.climb_and_descend(sweep, stream());
-    }
-    /// True if scans of this tree use one thread per body.
-    static bool has_threads_for_bodies(ScanTree const& tree) {
-        return tree.has_threads_for_bodies();
     }
     /// True if so few items leave the GPU with idle threads.
     static bool has_threads_to_spare(std::int64_t items) {
@@ -247,17 +221,6 @@ class DeviceSpace {
                        BodyExchange<D> const&... beside) const {
         return shared_passes_by(
             kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, tree, top, scan);
-    }
-    /// Performs the same for a scan that is followed by an action per item.
-    template <class Numbers, class Scan, class T, class Action, int... D>
-    bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
-                       ScanTree const& top, dca::ScanThen<Scan, Buffer<T>, Action> const& all,
-                       BodyExchange<D> const&... beside) const {
-        ExchangeInTurn<Numbers> const exchange{
-            peers_, stream_, {direct, numbers, along(beside...)}};
-        kernels::OfItem<T, Action> const action{all.items.data(), all.action};
-        return tree.shared_passes(all.scan, exchange, top,
-                                  static_cast<std::int64_t>(all.items.size()), action, stream());
     }
     /// Returns a copy of the field on the host. Waits.
     template <int D>

@@ -14,8 +14,8 @@
 #include "cuda/short/short_chain.cuh"
 #include "cuda/sweeps/cluster_launch.cuh"
 #include "cuda/sweeps/group_lanes.cuh"
-#include "cuda/sweeps/revolute_teams.cuh"
 #include "cuda/sweeps/stage_walk.cuh"
+#include "cuda/sweeps/team_launches.cuh"
 #include "cuda/sweeps/top_launch.cuh"
 #include "tree/stages.hpp"
 
@@ -32,10 +32,7 @@ class DeviceTree {
                std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
         : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
         dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
-        PlanByGroups const by_groups = plan_by_groups(runs, levels, roots, slots, restricted,
-                                                      records, sizes, fewest_groups_below_stages);
-        dca::StagePlan const& plan = by_groups.stages;
-        stages_above_groups_ = by_groups.stages_above_groups;
+        dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
         runs_apart_ = plan.runs_apart;
         gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
         dca::StagesTogether const together(plan, sizes);
@@ -51,11 +48,12 @@ class DeviceTree {
         };
         short_ = one_chain(dca::part_length);
         // If stages contain the runs as well, fewer launches are needed without groups.
-        if (runs_apart_ && !by_groups.groups.empty()) above_groups_ = one_chain(bodies_of_group);
-        if (stages_above_groups_ || above_groups_) {
-            group_list_ = Buffer<dca::Run>(by_groups.groups);
-            groups_ = view_of_groups(by_groups.groups, group_list_.data());
-        }
+        if (!runs_apart_) return;
+        std::vector<dca::Run> const groups = groups_of(runs, levels, records);
+        if (!groups.empty()) above_groups_ = one_chain(bodies_of_group);
+        if (!above_groups_) return;
+        group_list_ = Buffer<dca::Run>(groups);
+        groups_ = view_of_groups(groups, group_list_.data());
     }
 
     /// Performs the inward pass.
@@ -177,27 +175,24 @@ class DeviceTree {
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
-                launch(kernel, grid, sweep);
-            };
-            if (kernels::climb_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams))
-                return;
-            kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, shared_bytes());
-            launch(kernels::climb_runs<Sweep>, grid, sweep);
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (runs <= kernels::most_runs_of_teams)
+                    return launch(kernels::climb_runs_by_teams<Sweep>,
+                                  kernels::grid_of_climb_by_teams(runs), sweep);
+            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs, shared_bytes()),
+                   sweep);
         }
         /// Launches the outward pass of the runs, by teams of lanes if there are few runs.
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
-                launch(kernel, grid, sweep);
-            };
-            if (kernels::descend_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams))
-                return;
-            kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, shared_bytes());
-            launch(kernels::descend_runs<Sweep>, grid, sweep);
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (runs <= kernels::most_runs_of_teams)
+                    return launch(kernels::descend_runs_by_teams<Sweep>,
+                                  kernels::grid_of_descent_by_teams<Sweep>(runs), sweep);
+            launch(kernels::descend_runs<Sweep>,
+                   kernels::grid_of_descent<Sweep>(runs, shared_bytes()), sweep);
         }
-        bool stages_above_groups() const { return tree.stages_above_groups_; }
         /// Launches the inward pass of the runs and of the levels within groups.
         template <class Sweep>
         void climb_groups(Sweep const& sweep) const {
@@ -288,13 +283,12 @@ class DeviceTree {
             allow_shared(kernel, grid.shared_bytes);
             cuda::launch(grid, stream, kernel, arguments...);
         }
-        /// Launches a kernel over groups of runs and counts the launch.
+        /// Launches a kernel over groups of runs.
         template <class Sweep>
         void launch(void (*kernel)(RunsView, GroupsView, Sweep), kernels::RunsGrid const& grid,
                     Sweep const& sweep) const {
             launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_,
                    tree.groups_, sweep);
-            ++launches_by_groups;
         }
         /// Launches a kernel over runs.
         template <class Sweep>
@@ -313,7 +307,6 @@ class DeviceTree {
     RunsView runs_;
     Buffer<dca::Run> group_list_;
     GroupsView groups_;  // empty if no launch uses groups
-    bool stages_above_groups_ = false;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
     /// Launch of the last two stages at once; empty if that is not possible.

@@ -249,11 +249,6 @@ class MemoryEstimator : public HostAccess {
     void descend(AnyTree const&, Sweep const&) const {}
     template <class AnyTree, class Sweep>
     void climb_and_descend(AnyTree const&, Sweep const&) const {}
-    template <class Scan, class Action>
-    void climb_and_descend(ScanTree const&, Scan const&, std::int64_t, Action const&) const {}
-    template <class Scan, class T, class Action>
-    void climb_and_descend(ScanTree const&, Scan const&, List<T> const&, Action const&) const {}
-    static bool has_threads_for_bodies(ScanTree const&) { return false; }
     static bool has_threads_to_spare(std::int64_t) { return false; }
     // Queries return zeros or empty fields, and copies do nothing.
 

@@ -40,13 +40,9 @@ class GroupOfRuns {
                 continue;
             }
             dca::JointAt const at{joint(middle), of_joint};
-            if constexpr (Sweep::keeps_nodes) {
-                typename Sweep::Node node;
-                segment = joined_quickly(sweep, inboard, segment, at, node);
-                sweep.keep(at.k, node);
-            } else {
-                segment = sweep.joined(inboard, segment, at);
-            }
+            typename Sweep::Node node;
+            segment = joined_quickly(sweep, inboard, segment, at, node);
+            sweep.keep(at.k, node);
         }
         if (lane_ == runs_of_group - 1) sweep.store(groups_.slot(group_), segment);
     }

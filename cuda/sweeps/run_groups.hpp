@@ -1,8 +1,7 @@
 // Groups of runs that one warp merges itself: the lowest levels of a long chain's tree, without a
-// launch of their own.
+// launch of their own. One cluster takes the tree above them (group_lanes.cuh).
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "cuda/sweeps/runs_view.hpp"
@@ -15,10 +14,6 @@ constexpr int runs_of_group = 32, levels_of_group = 5;
 static_assert(runs_of_group == 1 << levels_of_group);
 /// Number of bodies per group; the last group may have fewer.
 constexpr std::int64_t bodies_of_group = runs_of_group * dca::longest_run;
-/// Smallest number of groups for which stages are planned above groups. With fewer groups, the
-/// launches of the runs lose more time than those of the stages above gain.
-constexpr std::int64_t fewest_groups_below_stages = 4096;
-
 /// True if sweeps with such records can use groups: those with handles of one direction. A lane
 /// then merges its segment with another lane's in registers.
 constexpr bool go_by_groups(dca::StageRecords const& records) { return records.state == 1; }
@@ -72,37 +67,6 @@ inline GroupsView view_of_groups(std::vector<dca::Run> const& groups, dca::Run c
            groups[static_cast<std::size_t>(view.inner)].next == view.first(view.inner + 1))
         ++view.inner;
     return view;
-}
-
-/// Groups and stages of a tree.
-struct PlanByGroups {
-    std::vector<dca::Run> groups;      // groups_of()
-    bool stages_above_groups = false;  // false: the stages are above runs
-    dca::StagePlan stages;
-};
-/// Plans the groups and the stages above them, if there are at least `fewest` groups. Blocks of the
-/// stages are as narrow as a single launch with both passes of all stages allows.
-inline PlanByGroups plan_by_groups(std::vector<dca::Run> const& runs,
-                                   std::vector<std::vector<dca::Merge>> const& levels,
-                                   std::vector<dca::Root> const& roots, std::int64_t slots,
-                                   std::span<std::uint8_t const> restricted,
-                                   dca::StageRecords const& records, dca::StageSizes sizes,
-                                   std::int64_t fewest) {
-    PlanByGroups plan;
-    plan.groups = groups_of(runs, levels, records);
-    plan.stages_above_groups = !plan.groups.empty() && std::ssize(plan.groups) >= fewest;
-    if (!plan.stages_above_groups) {
-        plan.stages = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
-        return plan;
-    }
-    std::int64_t const most = sizes.threads;
-    sizes.runs_apart = true;
-    for (sizes.threads = 32;
-         sizes.threads < most && std::ssize(plan.groups) > 2 * sizes.threads * sizes.together;)
-        sizes.threads *= 2;
-    plan.stages = dca::plan_stages(plan.groups, {levels.begin() + levels_of_group, levels.end()},
-                                   roots, slots, restricted, sizes);
-    return plan;
 }
 
 }  // namespace catena::cuda

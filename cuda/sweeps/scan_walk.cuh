@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include "cuda/sweeps/frontier_launch.hpp"
 #include "cuda/sweeps/scan_kernels.cuh"
@@ -14,12 +13,8 @@ namespace catena::cuda {
 /// - stages(), blocks(i): number of stages and blocks of stage i.
 /// - climb(i, scan), both_passes(i, scan), descend(i, scan): inward pass, both passes and outward
 /// pass of stage i.
-/// - turn_then(scan, count, action): both passes and an action in one launch; false if that is
-/// impossible.
 /// - shared_passes(scan, exchange, top): both passes of the last stage with an exchange between
 /// ranks and their `top` tree.
-/// - shared_passes_then(scan, exchange, top, count, action): the same with an action; false if that
-/// is impossible.
 template <class Launches>
 class ScanWalk {
   public:
@@ -43,15 +38,6 @@ class ScanWalk {
         launches_.both_passes(last, scan);
         descend_below(last, scan);
     }
-    /// Performs both passes, then action(k) for k < count, in one launch. If one launch is not
-    /// enough, it does nothing and returns false.
-    template <class Scan, class Action>
-    bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
-        return is_one_block() && launches_.turn_then(scan, count, action);
-    }
-    /// True if one block contains the whole scan.
-    bool is_one_block() const { return launches_.stages() == 1 && launches_.blocks(0) == 1; }
-
     /// Performs both passes with an exchange between ranks and their `top` tree, as
     /// StageWalk::shared_passes().
     template <class Scan, class Exchange>
@@ -62,13 +48,6 @@ class ScanWalk {
         launches_.shared_passes(scan, exchange, top);
         descend_below(last, scan);
         return true;
-    }
-    /// Performs the same, then action(k) for k < count, in one launch as at_once().
-    template <class Scan, class Exchange, class Action>
-    bool shared_passes(Scan const& scan, Exchange const& exchange, Launches const& top,
-                       std::int64_t count, Action const& action) const {
-        return is_one_block() && turns_in_a_block(launches_, top) &&
-               launches_.shared_passes_then(scan, exchange, top, count, action);
     }
 
   private:

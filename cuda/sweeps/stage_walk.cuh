@@ -21,8 +21,8 @@ namespace catena::cuda {
 ///   if any. The call requires can_turn() with the same arguments; for the last stage alone it is
 ///   always true.
 /// - climb_runs(sweep), descend_runs(sweep): passes of the runs.
-/// - climb_groups(sweep), descend_groups(sweep): the same with groups of runs (run_groups.hpp).
-///   They replace the passes of the runs if stages_above_groups().
+/// - climb_groups(sweep), descend_groups(sweep): passes of the runs and of the levels within groups
+///   of runs (run_groups.hpp), if can_turn_groups<Sweep>().
 /// - turn_groups(sweep): both passes of everything above the groups, if can_turn_groups<Sweep>().
 template <class Launches>
 class StageWalk {
@@ -131,14 +131,10 @@ class StageWalk {
     }
     template <class Sweep>
     void climb_runs(Sweep const& sweep) const {
-        if constexpr (kernels::by_groups<Sweep>)
-            if (launches_.stages_above_groups()) return launches_.climb_groups(sweep);
         if (launches_.runs_apart()) launches_.climb_runs(sweep);
     }
     template <class Sweep>
     void descend_runs(Sweep const& sweep) const {
-        if constexpr (kernels::by_groups<Sweep>)
-            if (launches_.stages_above_groups()) return launches_.descend_groups(sweep);
         if (launches_.runs_apart()) launches_.descend_runs(sweep);
     }
 

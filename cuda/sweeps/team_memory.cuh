@@ -8,15 +8,22 @@
 
 namespace catena::cuda::kernels {
 
+/// Number of bodies of a run of maximal length, and of those between the first and the last.
+constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run),
+              bodies_within = bodies_of_whole_run - 2;
+/// Lanes per team: one for each body of a run.
+constexpr int lanes_of_team = bodies_of_whole_run;
+static_assert(32 % lanes_of_team == 0);
 /// Array of `slots` records for each team of a warp.
-template <class T, int lanes, int slots>
+template <class T, int slots>
 class SlotsOfTeam {
-    static constexpr int teams = 32 / lanes;
+    static constexpr int teams = 32 / lanes_of_team;
     using Records = PackedRecords<T, numbers_of<T>>;
 
   public:
     static constexpr std::size_t size = Records::size(teams * slots);
-    __device__ SlotsOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes) {}
+    __device__ SlotsOfTeam(double* memory, int lane)
+        : records_{memory}, team_(lane / lanes_of_team) {}
     __device__ void put(int slot, T const& value) const {
         records_.store(slot * teams + team_, value);
     }
@@ -29,12 +36,9 @@ class SlotsOfTeam {
     Records records_;
     int team_;
 };
-/// Number of bodies of a run of maximal length, and of those between the first and the last.
-constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run),
-              bodies_within = bodies_of_whole_run - 2;
-/// Number of bodies of a team's run. `whole`: a run of maximal length, for teams of any width.
-/// Otherwise it has three or more bodies, and the warp's other teams may have other numbers.
-template <int lanes, bool whole>
+/// Number of bodies of a team's run. `whole`: a run of maximal length. Otherwise it has three or
+/// more bodies, and the warp's other teams may have other numbers.
+template <bool whole>
 class BodiesOfTeam {
   public:
     __device__ explicit BodiesOfTeam(dca::Run const& run) : count_(static_cast<int>(run.count)) {}
@@ -46,7 +50,7 @@ class BodiesOfTeam {
     __device__ int most(int lane) const {
         int most = count();
         if constexpr (!whole)
-            for (int apart = lanes; apart < 32; apart *= 2)
+            for (int apart = lanes_of_team; apart < 32; apart *= 2)
                 if (int const other = __shfl_sync(0xffffffffu, most, lane ^ apart); other > most)
                     most = other;
         return most;
@@ -64,8 +68,7 @@ struct BodyAhead : dca::BodyInRun<double> {
     dca::AddedBody<double> body;
     dca::Wrench<double> load;  // about handle 2
 };
-template <int lanes>
-using BodiesAhead = SlotsOfTeam<BodyAhead, lanes, bodies_within>;
+using BodiesAhead = SlotsOfTeam<BodyAhead, bodies_within>;
 /// Data of a joint and a body that the outward pass needs, after the force at the run's first joint
 /// is known.
 struct RevoluteBehind {
@@ -73,33 +76,32 @@ struct RevoluteBehind {
     dca::BodyInRun<double> body;
 };
 /// Data of a team's run for the outward pass, in shared memory.
-template <class Sweep, int lanes, bool whole>
+template <class Sweep, bool whole>
 class RevolutesBehind {
     using Tail = typename dca::RunWorkspace<typename Sweep::Sweeps>::Tail;
-    using Revolutes = SlotsOfTeam<RevoluteBehind, lanes, bodies_of_whole_run - 1>;
-    using Tails = SlotsOfTeam<Tail, lanes, 1>;
+    using Revolutes = SlotsOfTeam<RevoluteBehind, bodies_of_whole_run - 1>;
+    using Tails = SlotsOfTeam<Tail, 1>;
     // Frames of the first body and of the last two.
-    using Frames = SlotsOfTeam<dca::RevoluteFrame<double>, lanes, 3>;
-    static_assert(lanes >= 3);
+    using Frames = SlotsOfTeam<dca::RevoluteFrame<double>, 3>;
+    static_assert(lanes_of_team >= 3);
 
   public:
     static constexpr std::size_t size = Revolutes::size + Tails::size + Frames::size;
-    __device__ RevolutesBehind(BodiesOfTeam<lanes, whole> const& bodies, double* memory, int lane)
+    __device__ RevolutesBehind(BodiesOfTeam<whole> const& bodies, double* memory, int lane)
         : bodies_(bodies),
           revolutes_(memory, lane),
           tail_(memory + Revolutes::size, lane),
           frames_(memory + Revolutes::size + Tails::size, lane),
-          own_(lane % lanes) {}
+          own_(lane % lanes_of_team) {}
     /// Reads the data of all joints and bodies. All lanes of the warp call it together.
     template <class Kept, class Frame>
     __device__ void fetch(Kept const& kept, Vector<double, 5> const& first,
                           Frame const& frame) const {
         if (own_ < 3) frames_.put(own_, frame(own_ == 0 ? 0 : bodies_.count() - 3 + own_));
-        CATENA_NO_UNROLL
-        for (int i = 1 + own_; i < bodies_.count(); i += lanes)
+        if (int const i = 1 + own_; i < bodies_.count())
             revolutes_.put(i - 1, {pushed(kept.revolute(i), first), kept.body(i)});
         move_some<8>(
-            own_, numbers_of<Tail>, lanes, [&](int n) { return kept.tail(n); },
+            own_, numbers_of<Tail>, lanes_of_team, [&](int n) { return kept.tail(n); },
             [&](int n, double v) { tail_.number(0, n) = v; });
         __syncwarp();
     }
@@ -118,7 +120,7 @@ class RevolutesBehind {
     }
 
   private:
-    BodiesOfTeam<lanes, whole> bodies_;
+    BodiesOfTeam<whole> bodies_;
     Revolutes revolutes_;
     Tails tail_;
     Frames frames_;

@@ -199,23 +199,6 @@ class HostSpace : public HostAccess {
         climb(tree, sweep);
         descend(tree, sweep);
     }
-    /// Inward and outward pass of a scan, then action(k) for k < count.
-    template <class Scan, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count,
-                           Action const& action) const {
-        climb_and_descend(tree, scan);
-        for_each(count, action);
-    }
-    /// Inward and outward pass of a scan, then action(item) for each item.
-    template <class Scan, class T, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items,
-                           Action const& action) const {
-        climb_and_descend(tree, scan);
-        over(items, action);
-    }
-    /// True if scans by steps (RevoluteScan) over this tree, with a loop over its items, compute
-    /// these steps by one thread per body.
-    static bool has_threads_for_bodies(ScanTree const& /*tree*/) { return false; }
     /// True if loops over `items` items leave threads idle that loops over their bodies would use.
     static bool has_threads_to_spare(std::int64_t /*items*/) { return false; }
     /// Returns the largest of value(0), ..., value(count - 1), which must be >= 0. NaN counts as

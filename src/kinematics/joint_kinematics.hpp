@@ -8,7 +8,6 @@
 #include "dca/host_space.hpp"
 #include "kinematics/joint_scan.hpp"
 #include "tree/frontier_exchange.hpp"
-#include "tree/scan_then.hpp"
 
 namespace catena {
 
@@ -162,8 +161,6 @@ class JointKinematics {
     /// a chain.
     template <bool positions, class Last>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
-        if (group_.schedule.shared.empty())
-            return space_.climb_and_descend(tree_, MotionScan<positions>{s}, group_.size, last);
         sweep<positions>(s, loads);
         space_.for_each(group_.size, last);
     }
@@ -189,23 +186,10 @@ class JointKinematics {
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
         pass(scan, tree, meeting, loads);
     }
-    /// True if sweep_runs() uses one thread per body instead of one thread per run.
-    bool has_threads_for_bodies() const {
-        return space_.has_threads_for_bodies(tree_) &&
-               (group_.schedule.shared.empty() ||
-                (shared_.is_direct() && space_.has_threads_for_bodies(top_)));
-    }
-    /// Runs `scan` over all runs, then last(run) for each run; where possible in one launch.
+    /// Runs `scan` over all runs, then last(run) for each run.
     template <class Scan, class Last>
     void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
-        if (group_.schedule.shared.empty())
-            return space_.climb_and_descend(tree_, scan, runs_, last);
-        MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
-        dca::ScanThen const all{scan, runs_, last};
-        if (shared_.both_passes(space_, communicator_, shown(scan), tree_, top_, all, meeting,
-                                loads))
-            return;
-        pass(scan, tree_, meeting, loads);
+        sweep_with(scan, tree_, loads);
         space_.over(runs_, last);
     }
 
@@ -232,12 +216,6 @@ class JointKinematics {
     /// Sets the motion before each chain's first body to rest relative to the ground.
     void begin_at_ground() {
         MotionRecords const before = before_.view();
-        JointsView const all = joints();
-        // Scans later store the same bits here. Code that runs before the scan has ended may
-        // already read them (RevoluteScan::begins_at_ground).
-        space_.over(runs_, [before, all] CATENA_LAMBDA(dca::Run const& run) {
-            if (all.starts_chain(run.body)) before.store(run.slot, Motion::none());
-        });
         space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) {
             before.store(root.slot, Motion::none());
         });

@@ -84,9 +84,9 @@ class FrontierExchange {
         space.for_each(width_ * std::ssize(shared_), TakeNumbers<Numbers>{numbers, all_.data()});
     }
     /// Exchanges in one fused operation: the inward pass over `tree`, show() and bring(), both
-    /// passes over `top`, and the outward pass over `tree`. `sweep` defines the passes and may be a
-    /// ScanThen. Returns false and does nothing if the space cannot fuse them. Ranks that fuse and
-    /// ranks that do not can exchange with each other. Collective.
+    /// passes over `top`, and the outward pass over `tree`. `sweep` defines the passes. Returns
+    /// false and does nothing if the space cannot fuse them. Ranks that fuse and ranks that do not
+    /// can exchange with each other. Collective.
     template <class Numbers, class Tree, class Sweep, class... Beside>
     bool both_passes(Space const& space, Communicator const& communicator, Numbers const& numbers,
                      Tree const& tree, Tree const& top, Sweep const& sweep,

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests what walks.py collects from the JSON of program runs."""
+import argparse
 import contextlib
 import io
 import json
@@ -78,7 +79,15 @@ class Walks(unittest.TestCase):
         for each in walks.WALKS.values():
             for name, walk in each.items():
                 self.assertEqual(len(walk.does.split("; ")), 2, name)
-                self.assertTrue(walk.off or walk.options != walk.others, name)
+                self.assertTrue(not walk.cases or walk.off or walk.options != walk.others, name)
+
+    def test_a_walk_that_was_removed_is_not_measured(self):
+        gone = [name for name, walk in walks.WALKS["gpu"].items() if not walk.cases]
+        self.assertEqual(gone, ["groups", "narrow-teams", "scan-cluster"])
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            options = argparse.Namespace(set="gpu", folder=folder, seconds=60, turns=1, only=",".join(gone), cpu_time=False, catena="no program")
+            walks.Measurement(options).all()
+            self.assertEqual(os.listdir(folder), [])
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@
 
 #include "cuda/device/clusters.hpp"
 #include "cuda/space/memory.hpp"
-#include "cuda/sweeps/run_groups.hpp"
 #include "integrate/chain_system.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/support/gpu.hpp"
@@ -237,29 +236,15 @@ TEST_F(Gpu, AMillionAndOne) {
         scene_of("{base: fixed, generator: {random: {bodies: 300001, joint: revolute, seed: 1}}}",
                  Handles::articulated));
 }
-/// Of so many links warps join 32 runs each: up and down in sweeps of matrices, of biases and of
-/// both.
-TEST_F(Gpu, GroupsOfRuns) {
-    std::int64_t const before = cuda::launches_by_groups;
-    int const bodies = static_cast<int>(
-        cuda::fewest_groups_below_stages * cuda::runs_of_group * dca::longest_run + 300);
-    expect_same(scene_of(random_chain_of(bodies, "link"), Handles::projected));
-    EXPECT_GE(cuda::launches_by_groups, before + 3);
-    for (char const* const joint : {"link", "link, rigid: 0.3"})
-        for (char const* const base : {"base: fixed", "base: free"})
-            expect_same_at_once(random_chain_of(bodies, joint, base), Axes::joint);
-    EXPECT_GE(cuda::launches_by_groups, before + 3 + 4 * 2);
-}
-/// Of one chain of fewer, sweeps of both take the tree above these in one cluster.
+/// Of one chain of so many links warps join 32 runs each, and one cluster takes the tree above
+/// these, in sweeps of both.
 TEST_F(Gpu, GroupsOfOneChain) {
     for (int const bodies : {270001, 524288, 524289, 1048576, 1048577})
         for (char const* const base : {"base: fixed", "base: free"}) {
-            std::int64_t const before = cuda::groups_turned, together = cuda::turns_together,
-                               by_groups = cuda::launches_by_groups;
+            std::int64_t const before = cuda::groups_turned, together = cuda::turns_together;
             expect_same_at_once(random_chain_of(bodies, "link", base), Axes::joint);
             bool const by_cluster = bodies <= 1048576 && cuda::knows_clusters();
             EXPECT_EQ(cuda::groups_turned > before, by_cluster);
-            EXPECT_EQ(cuda::launches_by_groups > by_groups, by_cluster);
             EXPECT_EQ(cuda::turns_together > together, !by_cluster && cuda::blocks_at_once() > 0);
             if (HasFailure()) return;
         }

@@ -38,9 +38,8 @@ struct NamedGpu {
     std::string name;
     StagedGpu gpu;
 };
-char const *const h100 = "an H100",
-                  *const joins_groups = "that joins runs in groups where they are few",
-                  *const turns_groups = "whose one cluster turns what is above groups";
+char const *const h100 = "an H100", *const turns_groups =
+                                        "whose one cluster turns what is above groups";
 StagedGpu of_h100(dca::StageRecords const& records) {
     StagedGpu gpu{dca::stage_sizes(records, cuda_on_host::most_shared_bytes, 132)};
     gpu.short_chains = true;
@@ -63,22 +62,14 @@ std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
         each.gpu.ranks_reach_each_other = true;
         return each;
     };
-    NamedGpu grouping{joins_groups, of_h100(records)};
-    grouping.gpu.short_chains = false;
-    grouping.gpu.fewest_groups_below_stages = 1;
     NamedGpu turning{turns_groups, of_h100(records)};
     turning.gpu.short_chains = false;
     turning.gpu.lanes_above_groups = true;
     turning.gpu.most_blocks_of_cluster = 2;  // so that a block has several warps
-    NamedGpu narrow = with(64, 12, 0, false);
-    narrow.name += ", narrow teams";
-    narrow.gpu.narrow_teams = true;
     return {small,
-            grouping,
             turning,
             with(32, 2, 0, false),
             among_ranks(with(64, 4, 3, true)),
-            narrow,
             among_ranks(with(128, 8, 8, false)),
             with(256, 16, 8, true),
             {"of too few threads", {{128, 32, 4}, false, 32}},
@@ -99,9 +90,7 @@ class StageKernels : public ::testing::Test {
             for (auto const& group : make_groups(scene, axes, handles, false, testing::world())) {
                 std::vector<NamedSolver> solvers;
                 for (NamedGpu const& each : gpus(records_of(*group))) {
-                    if (only_ ? each.name != only_
-                              : each.name == joins_groups || each.name == turns_groups)
-                        continue;
+                    if (only_ ? each.name != only_ : each.name == turns_groups) continue;
                     StageSpace::gpu = each.gpu;
                     StageSpace::ranks =
                         each.gpu.ranks_reach_each_other ? &testing::world() : nullptr;
@@ -274,7 +263,7 @@ TEST_F(StageKernels, ShortChains) {
         }
 }
 
-/// By a thread or by several each; whose joints are not all revolute joints go the other way.
+/// By a thread each or by a team; whose joints are not all revolute joints go the other way.
 TEST_F(StageKernels, RunsOnRevolutes) {
     if (!alone()) return;
     for (std::size_t const bodies : {2, 17, 19, 45, 128, 511})
@@ -295,8 +284,8 @@ TEST_F(StageKernels, RunsOnRevolutes) {
             bodies,
             {.bodies = 7 * bodies % 41, .joints = RandomJoints::revolute, .base = Base::free}));
     expect_same(scene_of(short_ones));
-    std::set<int> const all_teams{kernels::lanes_of_narrow_team, kernels::lanes_of_broad_team};
-    EXPECT_EQ(StageSpace::seen.lanes_of_teams, all_teams);
+    EXPECT_GT(StageSpace::seen.whole_runs_by_teams, 0);
+    EXPECT_GT(StageSpace::seen.whole_runs_by_threads, 0);
 }
 /// More than a block of stages that lanes of a warp climb together has: the first one is narrow
 /// then, and keeps its nodes for the way down.
@@ -353,35 +342,8 @@ TEST_F(StageKernels, MatricesThatAreNotPositiveDefinite) {
         }
 }
 
-/// The lowest five levels by the warps that have the runs.
-TEST_F(StageKernels, GroupsOfRuns) {
-    only_ = joins_groups;
-    auto const expect_groups = [&](std::vector<ChainSpec> const& chains, bool several) {
-        StageSpace::seen = {};
-        expect_same(scene_of(chains));
-        EXPECT_EQ(StageSpace::seen.groups > 1, several);
-    };
-    // Several blocks above them.
-    if (expect_groups({random_bead_chain(1, 40000, Base::fixed)}, true); !alone() || HasFailure())
-        return;
-    EXPECT_FALSE(StageSpace::seen.blocks_that_turn.empty());
-    for (std::size_t const bodies : {257, 512, 513, 1000, 1100, 5000})
-        for (Base const base : {Base::fixed, Base::free}) {
-            SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
-            ChainSpec const beads = random_bead_chain(bodies, bodies, base);
-            expect_groups({beads}, bodies > 512);
-            if (bodies == 5000) continue;
-            expect_groups({beads, random_bead_chain(3, bodies, base)},
-                          bodies == 512);  // where the second one's runs begin a group
-            if (HasFailure()) return;
-        }
-    expect_groups({random_linked_chain(5, 1300, Base::fixed, Tip::jointed)}, true);
-    expect_groups({closed(random_bead_chain(6, 1030, Base::free))}, true);
-    ChainSpec light = random_bead_chain(1, 1500, Base::fixed);
-    light.beads.mass[272] = -1e-3;  // no positive definite matrix where runs of a group meet
-    expect_groups({light}, true);
-}
-/// And all above them in one launch of one cluster.
+/// The lowest five levels by the warps that have the runs, and all above them in one launch of one
+/// cluster.
 TEST_F(StageKernels, GroupsOfOneChain) {
     if (!alone()) return;
     only_ = turns_groups;
@@ -406,25 +368,6 @@ TEST_F(StageKernels, GroupsOfOneChain) {
         expect_blocks({bead < 10000 ? 1U : 2U}, light);
     }
 }
-/// So many groups that blocks above them are wider, so that they run at once.
-TEST(Groups, AreJoinedInOneLaunch) {
-    for (std::int64_t const bodies : {std::int64_t{1} << 21, std::int64_t{6000000}}) {
-        dca::Schedule const schedule = dca::make_schedule(dca::Partition({bodies}, false, 1), 0);
-        dca::StageRecords const records = dca::stage_records(1, true);
-        dca::StageSizes const sizes = of_h100(records).sizes;
-        cuda::PlanByGroups const by_groups =
-            cuda::plan_by_groups(schedule.runs, schedule.levels, schedule.roots, schedule.slots, {},
-                                 records, sizes, cuda::fewest_groups_below_stages);
-        EXPECT_EQ(std::ssize(by_groups.groups), (bodies - 1) / cuda::bodies_of_group + 1);
-        EXPECT_TRUE(by_groups.stages_above_groups);
-        dca::StagePlan const& plan = by_groups.stages;
-        EXPECT_TRUE(plan.runs_apart);
-        EXPECT_EQ(plan.stages.size(), 2U);
-        EXPECT_TRUE(dca::StagesTogether(plan, sizes));
-        EXPECT_EQ(plan.stages.front().width, bodies > 5000000 ? 128 : 64);
-    }
-}
-
 /// So many that launches of their own do them.
 TEST_F(StageKernels, VeryManyRuns) {
     if (!alone()) return;

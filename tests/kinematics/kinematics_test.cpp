@@ -105,7 +105,6 @@ TEST(Kinematics, GoesFromJointToJoint) {
 TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     Communicator const& world = catena::testing::world();
     ScanSpace::most_stages = 0;
-    ScanSpace::blocks_of_clusters.clear();
     auto const expect_the_same = [&](Scene const& scene, std::int64_t most) {
         ScanSpace::most = most;
         ScanSpace::ranks = most > 2 ? &world : nullptr;
@@ -134,7 +133,6 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     EXPECT_EQ(ScanSpace::shared_turns > 0, world.size() > 1);
     if (world.size() > 1) return;
     EXPECT_GE(ScanSpace::most_stages, 6U);
-    EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
 }
 
 /// What a RevoluteScan leaves to solvers and steps, of chains that begin with whatever joint and go
@@ -162,7 +160,6 @@ class RevolutesIn {
                         k == run.body ? RevolutesInRuns::first : RevolutesInRuns::within;
     }
     ChainGroup const& group() const { return *groups_[0]; }
-    bool has_threads_for_bodies() const { return kinematics_.has_threads_for_bodies(); }
     /// The bits of what becomes of every body, each time from another state.
     std::vector<std::uint64_t> find(bool joint_loads, bool all_turns) {
         for (std::int64_t k = 0; k < group().size; ++k) {
@@ -222,19 +219,11 @@ class RevolutesIn {
 /// Alone, and where ranks share the chains.
 TEST(Kinematics, HasTheSameBitsOfRevolutesByTheKernelsOfAGpu) {
     Communicator const& world = catena::testing::world();
-    ScanSpace::blocks_of_clusters.clear();
     ScanSpace::shared_turns = 0;
     ScanSpace::ranks = &world;
-    bool by_bodies = false, by_runs = false;
     auto const expect_the_same = [&](Scene const& scene) {
         RevolutesIn<HostSpace> by_loops(scene, world);
         RevolutesIn<ScanSpace> by_kernels(scene, world);
-        std::int64_t const runs = std::ssize(by_loops.group().schedule.runs);
-        bool const one_block = runs > 0 && runs <= dca::most_of_scan;
-        EXPECT_TRUE(by_kernels.has_threads_for_bodies() == one_block || world.size() > 1);
-        EXPECT_TRUE(!by_kernels.has_threads_for_bodies() ||
-                    one_block);  // a rank without a share of the chain has none
-        (by_kernels.has_threads_for_bodies() ? by_bodies : by_runs) = true;
         for (bool const joint_loads : {false, true})
             for (bool const all_turns : {false, true})
                 for (int state = 0; state < 2; ++state)
@@ -250,13 +239,7 @@ TEST(Kinematics, HasTheSameBitsOfRevolutesByTheKernelsOfAGpu) {
         many.chains.push_back(random_chain(
             bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
     expect_the_same(many);
-    EXPECT_TRUE(by_bodies);
-    EXPECT_TRUE(by_runs || world.size() > 2);
     EXPECT_EQ(ScanSpace::shared_turns > 0, world.size() > 1);
-    EXPECT_TRUE(ScanSpace::blocks_of_clusters.contains(8) || world.size() > 3);
-    EXPECT_FALSE(ScanSpace::blocks_of_clusters.empty());
-    if (world.size() > 1) return;
-    EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
 }
 
 TEST(Kinematics, HasTheSameBitsOnAnyNumberOfRanks) {

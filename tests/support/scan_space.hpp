@@ -2,12 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <set>
 
 #include "dca/host_space.hpp"
 #include "tests/support/cuda_on_host.hpp"
 #include "tests/support/shared_by_host.hpp"
-#include "tree/scan_then.hpp"
 
 // After CUDA's words.
 #include "cuda/sweeps/scan_walk.cuh"
@@ -19,10 +17,9 @@ class ScanSpace : public HostSpace {
     using HostSpace::HostSpace;
     SimdLevel simd() const = delete;  // as a GPU
 
-    /// Items of a block in trees made from now on; the most stages that any has had, and clusters.
+    /// Items of a block in trees made from now on; the most stages that any has had.
     static inline std::int64_t most = cuda::kernels::most_of_scan;
     static inline std::size_t most_stages = 0;
-    static inline std::set<unsigned> blocks_of_clusters;
     /// Scans among ranks so far that took one launch there.
     static inline int shared_turns = 0;
     /// That reach each other's memory; null: none do.
@@ -72,23 +69,6 @@ class ScanSpace : public HostSpace {
     void climb_and_descend(ScanTree const& tree, Scan const& scan) const {
         walk(tree).climb_and_descend(scan);
     }
-    template <class Scan, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count,
-                           Action const& action) const {
-        if (walk(tree).at_once(scan, count, action)) return;
-        climb_and_descend(tree, scan);
-        for_each(count, action);
-    }
-    template <class Scan, class T, class Action>
-    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items,
-                           Action const& action) const {
-        if (walk(tree).at_once(scan, std::ssize(items),
-                               cuda::kernels::OfItem<T, Action>{items.data(), action}))
-            return;
-        climb_and_descend(tree, scan);
-        over(items, action);
-    }
-    static bool has_threads_for_bodies(ScanTree const& tree) { return walk(tree).is_one_block(); }
     template <class Numbers, class Scan, int... D>
     bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
                        ScanTree const& top, Scan const& scan,
@@ -97,18 +77,6 @@ class ScanSpace : public HostSpace {
             if (threadIdx.x == 0) exchange(direct, numbers, beside...);
         };
         return walk(tree).shared_passes(scan, show, Launches{top});
-    }
-    template <class Numbers, class Scan, class T, class Action, int... D>
-    bool shared_passes(Direct const& direct, Numbers const& numbers, ScanTree const& tree,
-                       ScanTree const& top,
-                       dca::ScanThen<Scan, std::span<T const>, Action> const& all,
-                       BodyExchange<D> const&... beside) const {
-        auto const show = [&] {
-            if (threadIdx.x == 0) exchange(direct, numbers, beside...);
-        };
-        return walk(tree).shared_passes(
-            all.scan, show, Launches{top}, std::ssize(all.items),
-            cuda::kernels::OfItem<T, Action>{all.items.data(), all.action});
     }
 
   private:
@@ -130,17 +98,6 @@ class ScanSpace : public HostSpace {
         void descend(std::size_t i, Scan const& scan) const {
             launch(cuda::kernels::descend_scan<Scan>, i, scan);
         }
-        template <class Scan, class Action>
-        bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
-            auto const& stage = tree.stages_.front();
-            unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(stage, count);
-            blocks_of_clusters.insert(blocks);
-            cuda_on_host::launch({blocks, cuda::kernels::most_of_scan,
-                                  cuda::kernels::numbers_of_turn<Scan>(stage, blocks), blocks},
-                                 cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count,
-                                 action);
-            return true;
-        }
         template <class Scan, class Exchange>
         void shared_passes(Scan const& scan, Exchange const& exchange, Launches const& top) const {
             auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
@@ -148,20 +105,6 @@ class ScanSpace : public HostSpace {
             cuda_on_host::launch(
                 {1, cuda::kernels::most_of_scan, numbers<Scan>(own) + numbers<Scan>(above)},
                 cuda::kernels::shared_passes_of_scan<Scan, Exchange>, own, above, exchange, scan);
-        }
-        template <class Scan, class Exchange, class Action>
-        bool shared_passes_then(Scan const& scan, Exchange const& exchange, Launches const& top,
-                                std::int64_t count, Action const& action) const {
-            auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
-            unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(own, count);
-            ++shared_turns;
-            blocks_of_clusters.insert(blocks);
-            cuda_on_host::launch(
-                {blocks, cuda::kernels::most_of_scan,
-                 cuda::kernels::numbers_of_turn<Scan>(own, blocks) + numbers<Scan>(above), blocks},
-                cuda::kernels::shared_passes_of_scan_then<Scan, Exchange, Action>, own, above,
-                exchange, scan, count, action);
-            return true;
         }
 
       private:

@@ -13,8 +13,8 @@
 
 // After CUDA's words.
 #include "cuda/short/short_chain.cuh"
-#include "cuda/sweeps/revolute_teams.cuh"
 #include "cuda/sweeps/stage_walk.cuh"
+#include "cuda/sweeps/team_launches.cuh"
 
 namespace catena::test {
 namespace kernels = cuda::kernels;
@@ -26,10 +26,8 @@ struct StagedGpu {
                                            // take what they have to do in turns
     bool short_chains = false;             // by themselves
     bool ranks_reach_each_other = false;
-    bool narrow_teams = false;  // for runs on revolute joints, also where these are few
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
-    std::int64_t fewest_groups_below_stages = cuda::fewest_groups_below_stages;
-    bool lanes_above_groups = false;  // one cluster, wherever it can
+    bool lanes_above_groups = false;                             // one cluster, wherever it can
     int most_blocks_of_cluster = kernels::most_blocks_of_chain;
 };
 /// In launches so far.
@@ -39,8 +37,8 @@ struct StagesSeen {
     std::set<unsigned> blocks_of_short_chains;
     std::set<unsigned> blocks_that_turn_shared;  // below the one that speaks to other ranks
     std::set<unsigned> blocks_above_groups;
-    std::set<int> lanes_of_teams;  // of runs on revolute joints
-    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, groups = 0;
+    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0;
+    int whole_runs_by_teams = 0, whole_runs_by_threads = 0;  // launches
 };
 
 class StageSpace : public HostSpace {
@@ -72,24 +70,16 @@ class StageSpace : public HostSpace {
               threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             sizes_.runs_apart = records.whole_runs;
-            cuda::PlanByGroups plan =
-                cuda::plan_by_groups(runs, levels, roots, slots, restricted, records, sizes_,
-                                     gpu.fewest_groups_below_stages);
-            plan_ = std::move(plan.stages);
-            groups_ = std::move(plan.groups);
-            stages_above_groups_ = plan.stages_above_groups;
-            if (stages_above_groups_)
-                seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
-            if (!stages_above_groups_ && gpu.runs_apart && !runs.empty()) {
+            plan_ = dca::plan_stages(runs, levels, roots, slots, restricted, sizes_);
+            if (gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
-            if (!gpu.runs_apart)
-                lanes_of_teams_ = gpu.narrow_teams ? kernels::lanes_of_narrow_team
-                                                   : kernels::lanes_of_teams(std::ssize(runs));
+            by_teams_ = !gpu.runs_apart && std::ssize(runs) <= kernels::most_runs_of_teams;
             if (gpu.short_chains)
                 short_ = kernels::one_chain_of(runs, levels, roots, dca::part_length);
-            if (gpu.lanes_above_groups && !groups_.empty())
+            if (gpu.lanes_above_groups) groups_ = cuda::groups_of(runs, levels, records);
+            if (!groups_.empty())
                 above_groups_ = kernels::one_chain_of(runs, levels, roots, cuda::bodies_of_group);
             together_.emplace(plan_, sizes_);
             for (dca::Stage const& stage : plan_.stages) {
@@ -108,12 +98,11 @@ class StageSpace : public HostSpace {
         friend class StageSpace;
         cuda::RunsView runs_;
         std::vector<dca::Run> groups_;
-        bool stages_above_groups_ = false;
         dca::StageSizes sizes_;
         int threads_;
         std::size_t shared_bytes_ = gpu.shared_bytes;
         int most_blocks_of_cluster_ = gpu.most_blocks_of_cluster;
-        int lanes_of_teams_ = 0;
+        bool by_teams_ = false;
         dca::StagePlan plan_;
         kernels::OneChain short_, above_groups_;
         std::optional<dca::StagesTogether> together_;
@@ -248,12 +237,11 @@ class StageSpace : public HostSpace {
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
-                over_runs(kernel, grid, sweep);
-            };
-            if (kernels::climb_by_teams<Sweep>(tree.lanes_of_teams_, runs, by_teams)) {
-                seen.lanes_of_teams.insert(tree.lanes_of_teams_);
-                return;
+            if constexpr (dca::takes_whole_runs<Sweep>) {
+                ++(tree.by_teams_ ? seen.whole_runs_by_teams : seen.whole_runs_by_threads);
+                if (tree.by_teams_)
+                    return over_runs(kernels::climb_runs_by_teams<Sweep>,
+                                     kernels::grid_of_climb_by_teams(runs), sweep);
             }
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, tree.shared_bytes_);
             over_runs(kernels::climb_runs<Sweep>, grid, sweep);
@@ -261,15 +249,14 @@ class StageSpace : public HostSpace {
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) {
-                over_runs(kernel, grid, sweep);
-            };
-            if (kernels::descend_by_teams<Sweep>(tree.lanes_of_teams_, runs, by_teams)) return;
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (tree.by_teams_)
+                    return over_runs(kernels::descend_runs_by_teams<Sweep>,
+                                     kernels::grid_of_descent_by_teams<Sweep>(runs), sweep);
             kernels::RunsGrid const grid =
                 kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_);
             over_runs(kernels::descend_runs<Sweep>, grid, sweep);
         }
-        bool stages_above_groups() const { return tree.stages_above_groups_; }
         template <class Sweep>
         void climb_groups(Sweep const& sweep) const {
             over_runs(kernels::climb_groups<Sweep>,

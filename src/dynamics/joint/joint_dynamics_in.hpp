@@ -486,8 +486,7 @@ class JointDynamicsIn final : public JointDynamics {
     /// True if joints' relative motions, which the preceding step may leave undone, are computed in
     /// a loop before those of runs.
     bool joint_by_joint() const {
-        return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)) &&
-               !kinematics_.has_threads_for_bodies();
+        return space_.has_threads_to_spare(std::ssize(group_.schedule.runs));
     }
     /// Output arrays of a full solution.
     AccelerationsView all() {

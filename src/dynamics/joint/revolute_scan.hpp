@@ -12,12 +12,6 @@ namespace catena {
 /// except those of chains' first bodies are revolute, and none has prescribed motion.
 struct RevoluteScan {
     using Value = MotionNumbers<false>;
-    /// Motion of a body relative to the one before it, with the matrix that composition needs.
-    struct Step {
-        Quat rotation;
-        Vec3 omega;
-        Mat3 axes;
-    };
     JointLoads loads;
     /// set_relative() has already been called for every body.
     bool joint_by_joint = false;
@@ -41,20 +35,7 @@ struct RevoluteScan {
             for (int j = 0; j < few; ++j) m = compose<false>(m, next[j]);
         }
         for (; i < count; ++i) m = compose<false>(m, of_body<false>(run, i));
-        return ended(m.rotation, m.omega);
-    }
-    // Alternative to of_run() body by body: start from step() of the first body, apply go_on() with
-    // step() of each following body, then ended().
-    CATENA_HD Step step(dca::Run const& run, int i) const {
-        Motion const m = of_body<true>(run, i);
-        return {m.rotation, m.omega, to_matrix(m.rotation)};
-    }
-    CATENA_HD static void go_on(Quat& rotation, Vec3& omega, Step const& next) {
-        rotation = rotation * next.rotation;
-        omega = transposed_times(next.axes, omega) + next.omega;
-    }
-    CATENA_HD static Value ended(Quat const& rotation, Vec3 const& omega) {
-        return packed<false>({normalized(rotation), omega, Vec3::zero(), Vec3::zero()});
+        return packed<false>({normalized(m.rotation), m.omega, Vec3::zero(), Vec3::zero()});
     }
     CATENA_HD Value joined(Value const& inboard, Value const& outboard) const {
         return motions().joined(inboard, outboard);
@@ -75,12 +56,6 @@ struct RevoluteScan {
         loads.scan.set_motion<false>(run.body);
         if (run.count == 1) loads.set_torque(run.body);
         loads.set_biases(run.body);
-    }
-
-    /// True if begin() need not wait for the end of the scan, because the ground is before the run.
-    /// A run of one body ends its chain, so that none waits for another rank's data.
-    CATENA_HD bool begins_at_ground(dca::Run const& run) const {
-        return loads.scan.joints.starts_chain(run.body);
     }
 
   private:
