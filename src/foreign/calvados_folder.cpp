@@ -28,17 +28,30 @@ bool is_file(fs::path const& file) {
 
 constexpr double most_whole = 1e15;
 
+/// True for well-formed YAML that is empty, a list or a single value.
+bool is_no_map(std::string const& text) {
+    try {
+        return scene::parse_value(text, "").kind != Node::Kind::map;
+    } catch (InputError const&) {
+        return false;
+    }
+}
+
+/// Parses a file of keys and values. Throws InputError for other contents.
+std::unique_ptr<Node> parsed(std::string const& text, std::string const& file) {
+    if (is_no_map(text))
+        throw InputError("the file holds no keys with values", scene::shown_path(file),
+                         "write it again, or move it out of the folder");
+    return scene::parse_document(text, file);
+}
+
 /// A YAML file of the package.
 class Settled {
   public:
     explicit Settled(std::string const& file) {
         Node at;
         at.text = file;
-        std::string const text = scene::read_text_file(file, at);
-        if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-            throw InputError("the file is empty", scene::shown_path(file),
-                             "write it again, or move it out of the folder");
-        root_ = scene::parse_document(text, file);
+        root_ = parsed(scene::read_text_file(file, at), file);
     }
     Node const& root() const { return *root_; }
     /// Entry with a value; nullptr if it is absent, empty or null.

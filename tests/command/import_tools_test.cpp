@@ -92,8 +92,10 @@ TEST_F(ToolFolder, AConfigurationThatIsNotWellFormedIsRefused) {
     write_pdb("start.pdb", beads, 10);
     write("config.yaml", "sysname: mine\ntemp: 293\nbox: [1, 2\n");
     expect_refused(import(), 2, "(mine/config.yaml: line ");
-    write("config.yaml", "\n");
-    expect_refused(import(), 2, "the file is empty (mine/config.yaml)");
+    for (char const* const text : {"", "# nothing\n", "- sysname\n", "sysname\n"}) {
+        write("config.yaml", text);
+        expect_refused(import(), 2, "the file holds no keys with values (mine/config.yaml)");
+    }
     // The package writes its keys in alphabetical order.
     write("config.yaml", "box: [9, 9, 9]\next_force_expr: x\nfriction_coeff: 0.01\nfrestart: a\n");
     expect_refused(import(), 2, "the configuration has no `sysname` (mine/config.yaml)");
