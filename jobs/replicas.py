@@ -7,6 +7,7 @@ FOLDER/NAME-2, ..., and prints the table, which is also FOLDER/radii.csv. Runs t
 import argparse
 import csv
 import json
+import math
 import os
 import re
 import subprocess
@@ -178,19 +179,21 @@ def runs_of(name, folder):
         summary = summary_of(os.path.join(folder, each))
         if summary and summary["valid"] and summary["run"]["last_step"] >= steps:
             radius = summary["observables"]["radius_of_gyration"]
-            found.append((radius["mean"], radius["standard_error"] or 0.0, not radius.get("converged", True), summary["run"]["time"]))
+            found.append((radius["mean"], math.nan if radius["standard_error"] is None else radius["standard_error"], not radius.get("converged", True), summary["run"]["time"]))
         else:
             left_out += 1
     return found, left_out
 
 
 def combine(runs):
-    """Mean over runs. Its error is the larger of what the runs' own errors and their scatter give."""
+    """Mean over runs. Its error is the larger of what the runs' own errors and their scatter give; runs of too few frames have no error, and
+    one such run has neither: NaN."""
     count = len(runs)
     mean = sum(each[0] for each in runs) / count
     own = sum(each[1] ** 2 for each in runs) ** 0.5 / count
-    scatter = (sum((each[0] - mean) ** 2 for each in runs) / (count - 1) / count) ** 0.5 if count > 1 else 0.0
-    return mean, max(own, scatter), any(each[2] for each in runs)
+    scatter = (sum((each[0] - mean) ** 2 for each in runs) / (count - 1) / count) ** 0.5 if count > 1 else math.nan
+    known = [error for error in (own, scatter) if math.isfinite(error)]
+    return mean, max(known, default=math.nan), any(each[2] for each in runs)
 
 
 def table_of(proteins, folder):
@@ -213,9 +216,10 @@ def table_of(proteins, folder):
 def print_table(lines):
     print("| protein | residues | measured (nm) | simulated (nm) | runs | ns in all | source |\n| --- | --- | --- | --- | --- | --- | --- |")
     for each in lines:
-        least = "at least " if each["error_is_lower_limit"] else ""
+        least, error = "at least " if each["error_is_lower_limit"] else "", each["simulated_error_nm"]
+        simulated = f"+- {least}{error:.2f}" if math.isfinite(error) else "(no error: too few frames)"
         print(f"| {each['name']} | {each['residues']} | {each['measured_nm']:.2f} +- {each['measured_error_nm']:.2f} | "
-              f"{each['simulated_nm']:.2f} +- {least}{each['simulated_error_nm']:.2f} | {each['runs']} | {each['time_ns']:g} | {each['doi']} |")
+              f"{each['simulated_nm']:.2f} {simulated} | {each['runs']} | {each['time_ns']:g} | {each['doi']} |")
 
 
 def write_table(lines, path):

@@ -139,8 +139,9 @@ std::string table_of(std::vector<SamplingRow> const& rows) {
 std::string usable_text(std::vector<SamplingMethodVerdict> const& verdicts) {
     Table table({"links", "step fs", "Rg %", "T conf. %", "usable", "ns/day"}, {0, 4});
     auto const percent = [](double value, double error) {
-        return std::isfinite(value) ? fmt::format("{:+.2f} +- {:.2f}", value, error)
-                                    : std::string("-");
+        if (!std::isfinite(value)) return std::string("-");
+        return std::isfinite(error) ? fmt::format("{:+.2f} +- {:.2f}", value, error)
+                                    : fmt::format("{:+.2f} +- ?", value);
     };
     for (SamplingMethodVerdict const& each : verdicts) {
         for (std::size_t i = 0; i < each.rows.size(); ++i) {

@@ -4,9 +4,10 @@
 #include <filesystem>
 
 #include "command/commands.hpp"
+#include "console/option_values.hpp"
 #include "domains/rigid_entry.hpp"
 #include "error.hpp"
-#include "io/output_file.hpp"
+#include "io/output.hpp"
 #include "mpi/first_rank.hpp"
 #include "page/domain_picture.hpp"
 #include "reader/load_scene.hpp"
@@ -30,6 +31,7 @@ DomainPicture picture_of(PredictedChain const& chain) {
 void draw_domains(CheckRequest const& request, Communicator const& communicator) {
     if (request.picture.empty()) return;
     on_first_rank(communicator, [&] {
+        require_writable("--picture", request.picture);
         std::vector<PredictedChain> const chains =
             load_predictions(request.scene, overrides_of(request));
         if (chains.empty())
@@ -38,9 +40,7 @@ void draw_domains(CheckRequest const& request, Communicator const& communicator)
                              "write `rigid: {pae: FILE.json}`, or leave --picture out");
         std::vector<DomainPicture> pictures;
         for (PredictedChain const& chain : chains) pictures.push_back(picture_of(chain));
-        AtomicFile file(request.picture);
-        file.write(domain_pictures(pictures));
-        file.publish();
+        write_text_file(request.picture, domain_pictures(pictures));
     });
 }
 

@@ -5,6 +5,7 @@
 
 #include "analysis/dcd.hpp"
 #include "command/commands.hpp"
+#include "console/option_values.hpp"
 #include "console/text.hpp"
 #include "mpi/first_rank.hpp"
 
@@ -36,6 +37,7 @@ std::vector<std::string> notes_on(TrajectoryFile const& trajectory,
 Outcome convert_run(Communicator const& communicator, ConvertRequest const& request) {
     Outcome outcome;
     on_first_rank(communicator, [&] {
+        require_writable("FILE.dcd", request.dcd.file);
         TrajectoryFile const trajectory(request.folder);
         analysis::DcdWritten const written = analysis::write_dcd(trajectory, request.dcd);
         Text text;

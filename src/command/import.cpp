@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 
 #include "command/commands.hpp"
+#include "console/option_values.hpp"
 #include "console/text.hpp"
 #include "error.hpp"
 #include "foreign/files.hpp"
@@ -81,6 +84,7 @@ foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings cons
     foreign::SceneDraft draft;
     draft.title = name_of(files);
     draft.file = request.output.empty() ? draft.title + ".yaml" : request.output;
+    require_writable("--output", draft.file);
     refuse_existing(draft.file, request.overwrite);
     draft.source = scene::shown_path(request.source);
     draft.system = files.system;
@@ -121,17 +125,37 @@ std::vector<foreign::SceneDraft> drafts_of(foreign::Files const& files,
     return drafts;
 }
 
+/// Writes a word of a command as a shell reads it: quoted unless it is plain, control characters
+/// escaped.
+std::string shell_word(std::string const& text) {
+    auto const is_plain = [](unsigned char c) {
+        return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("_-./+=@%:,", c) != nullptr;
+    };
+    auto const is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+    if (std::all_of(text.begin(), text.end(), is_plain)) return text;
+    std::string word = std::any_of(text.begin(), text.end(), is_control) ? "$'" : "'";
+    bool const escapes = word[0] == '$';
+    for (char const c : text) {
+        if (is_control(static_cast<unsigned char>(c)))
+            word += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+        else if (c == '\'')
+            word += escapes ? "\\'" : "'\\''";
+        else
+            word += escapes && c == '\\' ? "\\\\" : std::string(1, c);
+    }
+    return word + "'";
+}
+
 /// The commands that run the scenes one after the other.
 std::vector<std::string> next_steps(std::vector<Written> const& scenes) {
-    auto const folder = [](std::string const& scene) {
-        return fs::path(scene).stem().string() + "-run";
+    auto const folder = [](std::string const& scene, char const* file = "") {
+        return shell_word(fs::path(scene).stem().string() + "-run" + file);
     };
-    std::string const& last = scenes.back().file;
-    if (scenes.size() == 1) return {fmt::format("catena run {}", last)};
-    std::string const& first = scenes.front().file;
-    return {fmt::format("catena run {} --output {}", first, folder(first)),
-            fmt::format("catena run {} --restart {}/checkpoint.h5 --branch --output {}", last,
-                        folder(first), folder(last))};
+    std::string const &last = scenes.back().file, first = scenes.front().file;
+    if (scenes.size() == 1) return {fmt::format("catena run {}", shell_word(last))};
+    return {fmt::format("catena run {} --output {}", shell_word(first), folder(first)),
+            fmt::format("catena run {} --restart {} --branch --output {}", shell_word(last),
+                        folder(first, "/checkpoint.h5"), folder(last))};
 }
 
 /// Text of what was written.
@@ -140,9 +164,9 @@ std::string text_of(foreign::Files const& files, foreign::SceneDraft const& draf
     foreign::Settings const& run = draft.settings;
     Json const& check = scenes.back().check;
     Text text;
-    text.heading(draft.title);
+    text.heading(scene::shown_path(draft.title));
     for (Written const& scene : scenes)
-        text.entry(&scene == &scenes.front() ? "written" : "", scene.file);
+        text.entry(&scene == &scenes.front() ? "written" : "", scene::shown_path(scene.file));
     if (!run.tool.empty()) text.entry("tool", run.tool);
     text.entry("System", scene::shown_path(files.system));
     text.entry("topology", scene::shown_path(draft.topology));

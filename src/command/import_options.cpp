@@ -43,8 +43,9 @@ class ImportCommand final : public Command {
             "  catena import system.xml start.pdb --output mine.yaml\n"
             "  catena import system.xml state.xml --links FENE=0.97 --leave-out "
             "MonteCarloBarostat\n"
-            "Temperature, friction and step are those of config.yaml (CALVADOS) or of a serialised "
-            "Integrator in the folder, else defaults, which are noted. The scene is checked before "
+            "Temperature, friction and step are those of config.yaml (CALVADOS), of a serialised "
+            "Integrator or of initArgs_N.h5 (polychrom) in the folder, else defaults, which are "
+            "noted. The scene is checked before "
             "it is written.");
     }
     Request request(CommonOptions const& common) const override {

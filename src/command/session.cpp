@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <filesystem>
 #include <new>
 #include <optional>
 #include <thread>
@@ -12,6 +11,7 @@
 
 #include "clock.hpp"
 #include "command/command_line.hpp"
+#include "console/option_values.hpp"
 #include "console/process.hpp"
 #include "console/terminal.hpp"
 #include "error.hpp"
@@ -80,17 +80,7 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
     start_log(communicator.rank() != 0 ? "off" : options.log_level);
     if (options.quiet && spdlog::get_level() < spdlog::level::err)
         spdlog::set_level(spdlog::level::err);
-    on_first_rank(communicator, [&] {
-        std::filesystem::path const file = options.json;
-        if (file.empty() || file == "-") return;
-        std::error_code ignored;
-        if (std::filesystem::is_directory(file, ignored))
-            throw InputError("this is a folder, not a file", "--json " + file.string(),
-                             "name a file");
-        if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path(), ignored))
-            throw InputError("no such folder: " + file.parent_path().string(),
-                             "--json " + file.string(), "create it, or name another file");
-    });
+    on_first_rank(communicator, [&] { require_writable("--json", options.json); });
 }
 
 Scene Session::load(std::string const& file) const {

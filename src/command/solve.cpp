@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "command/acceleration_table.hpp"
 #include "command/commands.hpp"
+#include "console/option_values.hpp"
 #include "console/terminal.hpp"
 #include "integrate/chain_system.hpp"
 #include "measure/accelerations_file.hpp"
@@ -224,11 +224,7 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
     on_first_rank(communicator, [&] {
         if (file.empty()) return;
         require_accelerations_writer(file);
-        std::filesystem::path const folder = std::filesystem::path(file).parent_path();
-        std::error_code ignored;
-        if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-            throw InputError("no such folder: " + folder.string(), "--accelerations " + file,
-                             "create it, or name another file");
+        require_writable("--accelerations", file);
     });
 }
 

@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "scene/fields.hpp"
+#include "scene/node.hpp"
 
 namespace catena::command {
 
@@ -35,6 +36,18 @@ void require_files_apart(std::string const& scene, std::string const& json,
     if (is_same(json, accelerations))
         throw InputError("--json and --accelerations name the same file", "command line",
                          "name two files");
+}
+
+void require_writable(std::string const& option, std::string const& file) {
+    if (file.empty() || file == "-") return;
+    std::filesystem::path const path = file, folder = path.parent_path();
+    std::string const where = option + " " + scene::shown_path(file);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError("this is a folder, not a file", where, "name a file");
+    if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+        throw InputError("no such folder: " + scene::shown_path(folder.string()), where,
+                         "create it, or name another file");
 }
 
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least,

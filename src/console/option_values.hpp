@@ -16,6 +16,11 @@ namespace catena::command {
 void require_files_apart(std::string const& scene, std::string const& json,
                          std::string const& accelerations);
 
+/// Checks the name of a file that a command will write, before the work whose result it holds.
+/// Throws InputError if a folder has that name, or if the folder to hold the file is missing.
+/// `option`, such as "--json", names the file in the message. An empty name and "-" are accepted.
+void require_writable(std::string const& option, std::string const& file);
+
 /// Reads digits, or a number without a fraction such as 1e6. Throws InputError unless it is in
 /// [least, most].
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/json_fault.hpp"
 #include "scene/files.hpp"
 
 namespace catena::scene {
@@ -46,14 +47,18 @@ Json parsed(std::string const& path, Node const& at) {
             event == Json::parse_event_t::key && depth == depth_of_keys && names_matrix(value);
         return true;
     };
+    std::string const text = read_text_file(path, at);
     try {
-        Json file = Json::parse(read_text_file(path, at), count);
+        Json file = Json::parse(text, count);
         if (matrices > 1)
             fail(at, fmt::format("`{}` has {} matrices of errors", shown_path(path), matrices),
                  "keep the one that belongs to the structure");
         return file;
-    } catch (Json::exception const& error) {
-        fail(at, fmt::format("`{}` is not JSON ({})", shown_path(path), shown(error.what(), 120)),
+    } catch (Json::parse_error const& error) {
+        fail(at, fmt::format("`{}` is {}", shown_path(path), json_fault(text, error.byte)),
+             ways_out);
+    } catch (Json::exception const&) {  // the only one that parsing throws besides
+        fail(at, fmt::format("`{}` holds a number beyond double precision", shown_path(path)),
              ways_out);
     }
 }

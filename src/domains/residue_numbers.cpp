@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "scene/fields.hpp"
@@ -18,6 +19,24 @@ double constexpr largest_number = 1e15;
 bool is_whole(std::string const& text, double& value) {
     return parse_number(text, value) == NumberFault::none && value == std::floor(value) &&
            std::abs(value) < largest_number;
+}
+
+/// Text without blanks at its ends.
+std::string trimmed(std::string const& text) {
+    std::size_t const first = text.find_first_not_of(" \t");
+    if (first == std::string::npos) return "";
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Names without repetition, joined by commas; the first eight.
+std::string listed_once(std::vector<std::string> const& names) {
+    std::vector<std::string> once;
+    for (std::string const& name : names)
+        if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+    std::string text;
+    for (std::size_t k = 0; k < std::min<std::size_t>(once.size(), 8); ++k)
+        text += (k == 0 ? "" : ", ") + (once[k].empty() ? "(no name)" : shown(once[k]));
+    return once.size() > 8 ? text + ", ..." : text;
 }
 
 }  // namespace
@@ -60,27 +79,57 @@ Numbering::Numbering(ResidueNumbers const& numbers) : numbers_(numbers) {
         residues_[numbers.labels[k]].push_back(k);
 }
 
-std::string Numbering::remedy() const {
+std::string Numbering::remedy(std::string const& chain) const {
     if (numbers_.labels.empty())
         return fmt::format("give [first, last] with residues from 1 to {}, both included",
                            numbers_.residues);
+    std::size_t first = 0, last = numbers_.labels.size() - 1;
+    while (first < last && !in_chain(first, chain)) ++first;
+    while (last > first && !in_chain(last, chain)) --last;
     return fmt::format(
         "give [first, last] with the file's residue numbers, here {} to {}, both included",
-        numbers_.labels.front(), numbers_.labels.back());
+        numbers_.labels[first], numbers_.labels[last]);
 }
 
 Domain Numbering::range(Node const& node) const {
     std::array<ResidueName, 2> const ends = ends_of(node);
+    if (!ends[0].chain.empty()) refuse_unknown_chain(node, ends[0].chain);
     Domain range{residue(node, ends[0]), residue(node, ends[1])};
     range.name = fmt::format("residues {} to {}", shown(ends[0].label), shown(ends[1].label));
     if (!ends[0].chain.empty()) range.name += " of chain " + shown(ends[0].chain);
-    if (range.last < range.first)
-        fail(node,
-             range.name +
-                 " do not form a rigid body, which needs three residues that do not lie on one "
-                 "line",
-             remedy());
+    if (range.last < range.first) refuse_backwards(node, range);
     return range;
+}
+
+void Numbering::refuse_backwards(Node const& node, Domain const& range) const {
+    std::string const low = numbers_.label(range.last), high = numbers_.label(range.first);
+    std::string chain = node.kind == Node::Kind::scalar ? text(node) : "";
+    chain = chain.substr(0, chain.rfind(':') == std::string::npos ? 0 : chain.rfind(':') + 1);
+    fail(node, range.name + " run backwards",
+         node.kind == Node::Kind::scalar
+             ? fmt::format("write \"{}{}-{}\"", shown(trimmed(chain)), low, high)
+             : fmt::format("write [{}, {}]", low, high));
+}
+
+bool Numbering::is_chain(std::string const& name) const {
+    return std::any_of(numbers_.chains.begin(), numbers_.chains.end(),
+                       [&](auto const& names) { return names[0] == name || names[1] == name; });
+}
+
+/// Throws InputError for a chain that the entry does not choose or the file does not have.
+void Numbering::refuse_unknown_chain(Node const& node, std::string const& chain) const {
+    if (numbers_.chains.empty() || is_chain(chain)) return;
+    std::vector<std::string> names;
+    for (auto const& [name, label] : numbers_.chains) names.push_back(name);
+    std::string const chosen = listed_once(names);
+    auto const& others = numbers_.other_chains;
+    if (std::find(others.begin(), others.end(), chain) != others.end())
+        fail(node, fmt::format("the entry does not choose chain {}", shown(chain)),
+             fmt::format("name it under `chain`, as in `chain: [{}, {}]`, or use residues of {}",
+                         chosen, shown(chain), chosen));
+    names.insert(names.end(), others.begin(), others.end());
+    fail(node, fmt::format("the file has no chain {}", shown(chain)),
+         "take one of " + listed_once(names));
 }
 
 bool Numbering::is_list_of_ranges(Node const& node) {
@@ -102,15 +151,36 @@ std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
 
 /// Reads "A:1-95". Numbers may be negative: "A:-3-10".
 std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
-    std::string const written = text(node);
+    std::string const written = trimmed(text(node));
     std::size_t const colon = written.rfind(':');
-    std::string const chain = colon == std::string::npos ? "" : written.substr(0, colon);
-    std::string const span = colon == std::string::npos ? written : written.substr(colon + 1);
+    std::string const chain = colon == std::string::npos ? "" : trimmed(written.substr(0, colon));
+    std::string const span =
+        colon == std::string::npos ? written : trimmed(written.substr(colon + 1));
     std::size_t const dash = span.find('-', 1);
-    if (dash == std::string::npos || dash + 1 == span.size() || colon == 0)
+    std::array<ResidueName, 2> ends{{{chain, trimmed(span.substr(0, dash))}, {chain, ""}}};
+    if (dash != std::string::npos) ends[1].label = trimmed(span.substr(dash + 1));
+    bool const two = !ends[1].label.empty() && ends[1].label.find('-', 1) == std::string::npos;
+    if (!two || colon == 0)
         fail(node, describe(node) + " is not a range of residues",
              "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
-    return {{{chain, span.substr(0, dash)}, {chain, span.substr(dash + 1)}}};
+    if (colon == std::string::npos) refuse_missing_colon(node, written);
+    return ends;
+}
+
+/// Throws InputError for "A1-72", where A is a chain of the file and no residue is called A1.
+void Numbering::refuse_missing_colon(Node const& node, std::string const& written) const {
+    if (residues_.contains(written.substr(0, written.find('-', 1)))) return;
+    std::vector<std::string> names = numbers_.other_chains;
+    for (auto const& [name, label] : numbers_.chains) names.insert(names.end(), {name, label});
+    for (std::string const& name : names) {
+        if (name.empty() || !written.starts_with(name) || written.size() == name.size()) continue;
+        std::string const rest = written.substr(name.size());
+        bool const numbered = std::isdigit(static_cast<unsigned char>(rest[0])) != 0 ||
+                              (rest[0] == '-' && rest.find('-', 1) != std::string::npos);
+        if (numbered)
+            fail(node, describe(node) + " has no colon after the chain",
+                 fmt::format("did you mean \"{}:{}\"?", shown(name), shown(rest)));
+    }
 }
 
 /// True if the residue lies in the chain; every residue does if none is named.
@@ -134,7 +204,7 @@ std::size_t Numbering::residue(Node const& node, ResidueName const& end) const {
         fail(node,
              fmt::format("residue {}{} is not in the file", shown(end.label),
                          end.chain.empty() ? "" : " of chain " + shown(end.chain)),
-             remedy());
+             remedy(end.chain));
     if (found.size() > 1)
         fail(node,
              fmt::format("{} residues of the file have the number {}", found.size(),

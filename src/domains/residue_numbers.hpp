@@ -19,6 +19,8 @@ struct ResidueNumbers {
     std::vector<std::string> labels = {};
     /// Chain of each residue: the authors' name and the label; empty without a file.
     std::vector<std::array<std::string, 2>> chains = {};
+    /// Names of the file's chains that the entry does not choose.
+    std::vector<std::string> other_chains = {};
     /// First residue of each chain, ascending; empty for a single chain.
     std::vector<std::size_t> begins = {};
 
@@ -49,10 +51,11 @@ class Numbering {
     /// `numbers` must outlive the object.
     explicit Numbering(ResidueNumbers const& numbers);
 
-    /// Advice for messages: the valid range of numbers.
-    std::string remedy() const;
-    /// Reads [first, last] or "CHAIN:FIRST-LAST", where "CHAIN:" may be left out. Throws InputError
-    /// for unknown and ambiguous residues, and if the last one precedes the first.
+    /// Advice for messages: the valid range of numbers, of one chain if it is named.
+    std::string remedy(std::string const& chain = "") const;
+    /// Reads [first, last] or "CHAIN:FIRST-LAST", where "CHAIN:" may be left out. Blanks around the
+    /// parts do not count. Throws InputError for unknown chains, unknown and ambiguous residues,
+    /// other forms, and if the last residue precedes the first.
     Domain range(Node const& node) const;
     /// True for a list of ranges, such as ["A:1-95", "B:1-88"] or [[1, 30], [41, 80]].
     static bool is_list_of_ranges(Node const& node);
@@ -60,6 +63,10 @@ class Numbering {
   private:
     std::array<ResidueName, 2> ends_of(Node const& node) const;
     std::array<ResidueName, 2> ends_in(Node const& node) const;
+    bool is_chain(std::string const& name) const;
+    void refuse_unknown_chain(Node const& node, std::string const& chain) const;
+    void refuse_missing_colon(Node const& node, std::string const& written) const;
+    void refuse_backwards(Node const& node, Domain const& range) const;
     bool in_chain(std::size_t residue, std::string const& chain) const;
     std::size_t residue(Node const& node, ResidueName const& end) const;
     std::size_t counted_residue(Node const& node, ResidueName const& end) const;

@@ -206,11 +206,8 @@ class RigidMap {
                          read_predicted_error(resolved(text(file), source_.scene_file), file),
                          limits,
                          {}};
-        if (found.error.residues != found.plddt.size())
-            fail(file,
-                 fmt::format("`{}` has the errors of {} residues, the chain has {}",
-                             shown_path(file.text), found.error.residues, found.plddt.size()),
-                 "give the file that belongs to this structure, with all its residues");
+        refuse_fraction(limits.plddt, found.plddt);
+        refuse_other_size(file, found);
         ConfidentDomains const decided = confident_domains(found.plddt, found.error, limits);
         if (decided.domains.empty())
             fail(file,
@@ -235,6 +232,25 @@ class RigidMap {
         made_.prediction = std::make_shared<Prediction const>(std::move(found));
     }
 
+    /// Throws InputError for a threshold from 0 to 1 beside confidences from 0 to 100.
+    void refuse_fraction(double threshold, std::vector<double> const& plddt) const {
+        if (!(threshold > 0 && threshold <= 1)) return;
+        fail(*fields_.find("plddt"),
+             fmt::format("a pLDDT of {:g}, where those of the structure reach {:.3g}", threshold,
+                         *std::max_element(plddt.begin(), plddt.end())),
+             fmt::format("give it from 0 to 100, such as {:g}", 100 * threshold));
+    }
+    /// Throws InputError unless structure and errors have the same number of residues.
+    static void refuse_other_size(Node const& file, Prediction const& found) {
+        std::size_t const structure = found.plddt.size(), errors = found.error.residues;
+        if (structure == errors) return;
+        fail(file,
+             fmt::format("the structure has {} residues and `{}` the errors of {}", structure,
+                         shown_path(file.text), errors),
+             fmt::format("if both are of one protein, {} is cut short: copy it again, or else give "
+                         "the errors of this structure",
+                         structure < errors ? "the structure" : "the file of errors"));
+    }
     static double percentage(Node const& node) {
         double const value = number(node);
         if (!(value >= 0 && value <= 100))

@@ -28,13 +28,30 @@ bool is_file(fs::path const& file) {
 
 constexpr double most_whole = 1e15;
 
+/// True for well-formed YAML that is empty, a list or a single value.
+bool is_no_map(std::string const& text) {
+    try {
+        return scene::parse_value(text, "").kind != Node::Kind::map;
+    } catch (InputError const&) {
+        return false;
+    }
+}
+
+/// Parses a file of keys and values. Throws InputError for other contents.
+std::unique_ptr<Node> parsed(std::string const& text, std::string const& file) {
+    if (is_no_map(text))
+        throw InputError("the file holds no keys with values", scene::shown_path(file),
+                         "write it again, or move it out of the folder");
+    return scene::parse_document(text, file);
+}
+
 /// A YAML file of the package.
 class Settled {
   public:
     explicit Settled(std::string const& file) {
         Node at;
         at.text = file;
-        root_ = scene::parse_document(scene::read_text_file(file, at), file);
+        root_ = parsed(scene::read_text_file(file, at), file);
     }
     Node const& root() const { return *root_; }
     /// Entry with a value; nullptr if it is absent, empty or null.
@@ -127,17 +144,42 @@ void read_slab(Settled const& config, Files const& files, Settings& settings) {
     if (!is_equilibrated(files)) settings.equilibration_steps = config.whole("steps_eq", 1000, 0);
 }
 
+/// True for a configuration of the package. Throws InputError for one that was cut: the package
+/// writes its keys in alphabetical order.
+bool is_of_package(Settled const& config, std::string const& file) {
+    bool const named = config.find("sysname") != nullptr;
+    bool const alike = config.find("friction_coeff") && config.find("ext_force_expr");
+    if (!named && !alike) return false;
+    for (char const* const key : {"sysname", "temp"})
+        if (!config.find(key))
+            throw InputError(fmt::format("the configuration has no `{}`", key),
+                             scene::shown_path(file),
+                             "write it again with the package's prepare.py, or move it out of the "
+                             "folder to import the System alone");
+    return true;
+}
+
+/// Notes the keys whose defaults count because the file lacks them.
+void note_absent(Settled const& config, Settings& settings) {
+    auto const note = [&](char const* key, double value) {
+        if (!config.find(key))
+            settings.notes.push_back(
+                fmt::format("config.yaml has no `{}`; {:.9g} is assumed.", key, value));
+    };
+    note("steps", static_cast<double>(settings.steps));
+    note("wfreq", static_cast<double>(settings.every));
+    if (!config.find("friction")) note("friction_coeff", settings.friction);
+}
+
 }  // namespace
 
 void find_calvados_files(Files& files) {
     fs::path const config = fs::path(files.folder) / "config.yaml",
                    components = fs::path(files.folder) / "components.yaml";
     if (!is_file(config)) return;
-    try {
-        Settled const read(config.string());
-        if (!read.find("sysname") || !read.find("temp")) return;
-    } catch (InputError const& error) {  // perhaps another tool's
-        files.notes.push_back(fmt::format("config.yaml is left out: {}.", error.what()));
+    if (!is_of_package(Settled(config.string()), config.string())) {
+        files.notes.push_back(
+            "config.yaml is not read: it has no `sysname`, which the CALVADOS package writes.");
         return;
     }
     files.config = config.string();
@@ -182,6 +224,7 @@ Settings calvados_settings(Files const& files) {
     settings.steps = config.whole("steps", 100000000, 0);
     settings.every = config.whole("wfreq", 100000, 1);
     settings.seed = static_cast<std::uint64_t>(config.whole("random_number_seed", 1, 0));
+    note_absent(config, settings);
     settings.minimises = fs::path(files.topology).filename() == "top.pdb";
     if (config.number("runtime", 0) > 0)
         settings.notes.push_back(

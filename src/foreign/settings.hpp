@@ -1,4 +1,4 @@
-// How the other tool moved its particles: temperature, friction, step.
+// Settings of the other tool, which moved its particles: temperature, friction, step.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +29,20 @@ struct Settings {
     /// Sentences on what was assumed or cannot be taken over.
     std::vector<std::string> notes;
 };
+
+/// Settings that were read; the others hold defaults.
+struct Found {
+    bool temperature, friction, step;
+};
+
+/// Returns "NAME (KIND): 300 K, friction 0.01/ps assumed, steps of 0.01 ps.".
+std::string settings_note(std::string const& name, std::string const& kind, Settings const&,
+                          Found const&);
+
+/// Returns a sentence on how the scene's dynamics differs from that of an integrator, or an empty
+/// text for a Langevin integrator with fixed steps. `kind` is the name of OpenMM's class in any
+/// case, with or without "Integrator".
+std::string integrator_note(std::string const& kind, Settings const&);
 
 /// Reads the settings from the tool's own file or from a serialised Integrator. Otherwise the
 /// defaults hold, with a note. Throws InputError for files that cannot be read.

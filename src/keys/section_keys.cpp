@@ -115,7 +115,7 @@ constexpr Key openmm_keys[] = {
      "temperature: 300"},
     {"ionic_strength", "number >= 0", "0.15", "mol/l",
      "The builder screens charges by a salt of this strength.", "ionic_strength: 0.15"},
-    {"ph", "number", "none: neutral", "",
+    {"ph", "number, 0 to 14", "none: neutral", "",
      "The builder gives histidine the charge 1 / (1 + 10^(pH - 6)) e.", "ph: 7"},
     {"switch_width", "number >= 0", "0", "length",
      "The builder switches pair terms off over this width before each cutoff; 0 cuts them as "

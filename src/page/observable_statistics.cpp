@@ -34,16 +34,20 @@ Equilibration equilibration_of(ObservablesTable const& table) {
     return latest;
 }
 
+/// "All 30 frames count", or what holds for a single one.
+std::string all_count(std::size_t frames) {
+    return frames == 1 ? "The only frame counts" : fmt::format("All {} frames count", frames);
+}
+
 /// Sentence on the frames that count where a thermostat lets the start be forgotten.
 std::string sentence_on(Equilibration const& start, ObservablesTable const& table) {
     std::size_t const frames = table.columns[0].size();
     if (frames < fewest_for_equilibration)
         return fmt::format(
-            "All {} frames count, equilibration included: fewer than {} frames do "
-            "not show where it ends.",
-            frames, fewest_for_equilibration);
-    if (start.frame == 0)
-        return fmt::format("All {} frames count: no equilibration is recognised.", frames);
+            "{}, equilibration included: fewer than {} frames do not show where it "
+            "ends.",
+            all_count(frames), fewest_for_equilibration);
+    if (start.frame == 0) return all_count(frames) + ": no equilibration is recognised.";
     std::string text = fmt::format(
         "The first {} of {} frames, before step {:.0f}, are left out as equilibration of the {}.",
         start.frame, frames, table.columns[0][start.frame], readable_words(start.observable));
@@ -75,7 +79,7 @@ TableStatistics statistics_of(ObservablesTable const& table, Frames which) {
     TableStatistics found;
     found.frames = table.columns.empty() ? 0 : table.columns[0].size();
     if (found.frames == 0) return found;
-    found.says = fmt::format("All {} frames count", found.frames);
+    found.says = all_count(found.frames);
     if (which == Frames::equilibrated) {
         Equilibration const start = equilibration_of(table);
         found.left_out = start.frame;

@@ -56,7 +56,7 @@ std::string concentration_text(Json const& system) {
     double const mass = number(system, "mass_concentration"),
                  chains = number(system, "chain_concentration");
     if (!std::isfinite(mass)) return "";
-    std::string found = fmt::format("{:.4g} g/l", mass);
+    std::string found = fmt::format("{:.4g} mg/ml", mass);
     if (std::isfinite(chains)) found += fmt::format(", {:.4g} mmol/l of chains", 1e3 * chains);
     return found + ", mean over the box";
 }

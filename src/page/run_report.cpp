@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "error.hpp"
+#include "io/json_fault.hpp"
 #include "io/observables_table.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
@@ -26,10 +27,13 @@ namespace fs = std::filesystem;
 
 /// Parses a JSON file. Throws InputError if it is not JSON.
 Json read_json(fs::path const& file) {
+    std::string const text = read_text_file(file.string());
     try {
-        return Json::parse(read_text_file(file.string()));
-    } catch (Json::exception const& error) {
-        throw InputError("not JSON, " + std::string(error.what()), file.string(),
+        return Json::parse(text);
+    } catch (Json::parse_error const& error) {
+        throw InputError(json_fault(text, error.byte), file.string(), "correct or remove the file");
+    } catch (Json::exception const&) {  // the only one that parsing throws besides
+        throw InputError("a number beyond double precision", file.string(),
                          "correct or remove the file");
     }
 }
@@ -184,9 +188,8 @@ std::string timeline_section(fs::path const& file) {
     try {
         std::string const picture = timeline_picture(read_json(file));
         return picture.empty() ? "" : "<h2>One step</h2>\n" + picture;
-    } catch (Json::exception const& error) {
-        throw InputError("not a timeline, " + std::string(error.what()), file.string(),
-                         "correct or remove the file");
+    } catch (Json::exception const&) {
+        throw InputError("not a timeline of a run", file.string(), "correct or remove the file");
     }
 }
 
@@ -224,9 +227,9 @@ void write_run_report(std::string const& folder) {
                 observables_section(summary, table) + facts_section("Speed", speed_facts(summary)) +
                 verdict_section(summary) + notes_section(summary) +
                 internals_section(summary, picture);
-    } catch (Json::exception const& error) {
-        throw InputError("not the summary of a run, " + std::string(error.what()),
-                         summary_file.string(), "correct or remove the file");
+    } catch (Json::exception const&) {
+        throw InputError("not the summary of a run", summary_file.string(),
+                         "correct or remove the file");
     }
     body += files_in(in);
     replace_text_file((in / "report.html").string(), html_page(title + " – Catena", body));

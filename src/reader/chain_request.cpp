@@ -199,7 +199,7 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
         part != nullptr && part->mass_centres ? largest_soft_change : largest_change_of(spread);
     StartFit fit(scene, from, "give positions of this model, or write `links: as_given`", most,
                  system ? largest_relaxed_change : 0);
-    StartFit::Chain const chain{name(), beads, base, rigid};
+    StartFit::Chain const chain{part != nullptr ? part->name : name(), beads, base, rigid};
     // The chain is made whole first, so that distances of neighbours are those along its links.
     fit.make_whole(chain, links_as_given());
     refuse_coincident(beads, from);

@@ -6,6 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
+
+#include "structure/residue_names.hpp"
+#include "systems/charges.hpp"
 
 namespace catena::scene {
 
@@ -15,17 +20,33 @@ namespace {
 double constexpr most_salt = 10;
 /// Lowest temperature of the measurements behind the permittivity, K.
 double constexpr coldest_water = 273;
+/// Lowest temperature of biomolecules that is not taken for one in degrees Celsius, K.
+double constexpr coldest_usual = 200;
+/// Zero of the Celsius scale, K.
+double constexpr celsius_zero = 273.15;
 /// Relative difference below which temperatures count as equal.
 double constexpr same_temperature = 1e-9;
 
 /// Longest plausible step, ps, of residues with friction.
 double constexpr longest_usual_step = 0.2;
 
+std::vector<std::string> const& residues_of(ChainSpec const& chain) {
+    return chain.is_beads() ? chain.beads.residue : chain.carried().residue;
+}
+
 /// Returns whether a force field is expected to know the beads of the chain.
 bool has_residues(ChainSpec const& chain) {
-    auto const& residues = chain.is_beads() ? chain.beads.residue : chain.carried().residue;
+    auto const& residues = residues_of(chain);
     return std::any_of(residues.begin(), residues.end(),
                        [](std::string const& residue) { return residue != "UNK"; });
+}
+
+/// True if a chain of the scene has an amino acid.
+bool has_amino_acids(Scene const& scene) {
+    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
+        auto const& residues = residues_of(chain);
+        return std::any_of(residues.begin(), residues.end(), is_amino_acid);
+    });
 }
 
 }  // namespace
@@ -59,17 +80,25 @@ void note_forces(Scene& scene) {
             "did you mean {:.6g} (for {:.6g} "
             "mmol/l)?",
             openmm.ionic_strength, openmm.ionic_strength / 1000, openmm.ionic_strength));
-    if (openmm.ph && !(*openmm.ph >= 0 && *openmm.ph <= 14))
-        scene.note(fmt::format("forces.openmm.ph is {:.6g}, outside 0 to 14.", *openmm.ph));
     if (run.given && !scene.si && run.step > longest_usual_step && !is_implicit(run.integrator))
         scene.note(
             fmt::format("dynamics.step is {0:.6g} ps, that is {1:.6g} fs: steps of such chains are "
                         "0.01 to 0.06 ps. Did you mean {2:.6g}?",
                         run.step, 1000 * run.step, run.step / 1000));
-    if (openmm.temperature < coldest_water)
+}
+
+void note_cold_water(Scene& scene) {
+    if (!scene.forces.openmm || scene.forces.openmm->builder.empty()) return;
+    double const temperature = scene.forces.openmm->temperature;
+    bool const charged = temperature < coldest_water && has_charges(scene);
+    if (temperature < coldest_usual && (charged || has_amino_acids(scene)))
+        scene.note(fmt::format(
+            "the temperature is {0:.6g} K: did you mean {1:.6g} K ({0:.6g} degrees Celsius)?",
+            temperature, temperature + celsius_zero));
+    if (charged)
         scene.note(fmt::format(
             "water is frozen at {:.6g} K: its permittivity is extrapolated below {:.6g} K.",
-            openmm.temperature, coldest_water));
+            temperature, coldest_water));
 }
 
 void note_missing_forces(Scene& scene) {

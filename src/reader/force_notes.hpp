@@ -6,6 +6,10 @@
 
 namespace catena::scene {
 
+/// Notes water that is frozen where beads are charged, and temperatures of biomolecules that look
+/// like degrees Celsius. The chains must be there.
+void note_cold_water(Scene&);
+
 /// Notes a temperature of the force field that differs from the run's, and implausible ionic
 /// strength, pH or step. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.

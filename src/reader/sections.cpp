@@ -100,6 +100,16 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
              "add `topology: topology.pdb`, or `map: {chain: [first, last]}`");
 }
 
+/// Largest pH of a scale that begins at 0.
+constexpr double largest_ph = 14;
+
+double read_ph(Node const& node) {
+    double const ph = number(node);
+    if (!(ph >= 0 && ph <= largest_ph))
+        fail(node, fmt::format("a pH of {:.6g}", ph), "give a number from 0 to 14");
+    return ph;
+}
+
 /// Reads `forces.openmm`.
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
     if (Node const* const table = node.find("residues"))
@@ -119,7 +129,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
         fail(node, "the force field's temperature is that of the run, 0",
              "add `temperature: 300` here");
     take(fields, "ionic_strength", spec.ionic_strength, non_negative);
-    if (Node const* const ph = fields.find("ph")) spec.ph = number(*ph);
+    if (Node const* const ph = fields.find("ph")) spec.ph = read_ph(*ph);
     take(fields, "switch_width", spec.switch_width, non_negative);
     if (Node const* const termini = fields.find("charge_termini"))
         spec.map.push_back({"", as_numbers(read_charged_termini(*termini))});

@@ -172,7 +172,9 @@ class Complex {
     std::string run(std::size_t first, std::size_t last) const {
         std::string const chain = shown(parts_[numbers_.chain_of(first)].from.chains[0].name);
         return fmt::format("{}{}{}{}", chain, chain.empty() ? "" : " ", numbers_.label(first),
-                           first == last ? "" : "-" + numbers_.label(last));
+                           first == last  ? ""
+                           : last < first ? " down to " + numbers_.label(last)
+                                          : " to " + numbers_.label(last));
     }
     std::string order() const {
         std::string text;
@@ -197,8 +199,8 @@ class Complex {
 void note_complex(StructurePart const& part, Scene& scene) {
     std::set<std::string> const names(part.members.begin(), part.members.end());
     scene.note(fmt::format(
-        "{} {} share a rigid body and are one chain, `{}`, of {} beads, in trajectory and "
-        "topology, too: {}",
+        "{} {} share a rigid body and are simulated as one chain, `{}`, whose {} beads have the "
+        "order of residues {}",
         names.size() == 1 ? "pieces of chain" : "chains", fmt::join(names, " and "),
         shown(part.name), part.from.sites.size(), part.order));
 }
@@ -287,6 +289,7 @@ class StructureReader {
             }
         }
         if (!all_numbered) numbers.labels = {}, numbers.chains = {};
+        if (all_numbered) numbers.other_chains = all_.other_chains;
         return source;
     }
     /// Gives each part its rigid bodies. Parts that share a body become one.

@@ -273,19 +273,25 @@ class ChainFilter {
         });
         if (summary.atoms == 0) return;  // refused with a better reason
         for (std::string const& name : choice.chains) choose(name, known, path, at);
+        for (Known const& chain : known)
+            if (chain.polymer && !takes(chain.name, chain.label) && !is_in(others, chain.name))
+                others.push_back(chain.name);
     }
 
-    bool takes(PdbAtom const& atom) const {
-        auto const in = [](std::vector<std::string> const& list, std::string_view name) {
-            return std::find(list.begin(), list.end(), name) != list.end();
-        };
-        return all_ || in(names_, chain_of(atom)) || in(labels_, atom.label);
+    bool takes(std::string_view name, std::string_view label) const {
+        return all_ || is_in(names_, name) || is_in(labels_, label);
     }
 
     /// Sentences on names that mean another chain by their label.
     std::vector<std::string> notes;
+    /// Names of the polymer chains that are not chosen.
+    std::vector<std::string> others;
 
   private:
+    static bool is_in(std::vector<std::string> const& list, std::string_view name) {
+        return std::find(list.begin(), list.end(), name) != list.end();
+    }
+
     /// A chain of the file.
     struct Known {
         std::string name, label;
@@ -365,7 +371,7 @@ PdbSites read_pdb(std::string const& path, Node const& at, StructureChoice const
     ChainFilter const filter(choice, file, name, at);
     ResidueGathering gathering(path, at);
     PdbSummary const summary = file.for_each_atom(choice.model, [&](PdbAtom const& atom) {
-        if (filter.takes(atom)) gathering.add(atom);
+        if (filter.takes(chain_of(atom), atom.label)) gathering.add(atom);
     });
     refuse_no_atoms(summary, choice, name, at);
     Selection selection(gathering.residues, path, at, choice.mass_centres);
@@ -376,6 +382,7 @@ PdbSites read_pdb(std::string const& path, Node const& at, StructureChoice const
     note_models(summary, choice, selection.made);
     selection.made.notes.insert(selection.made.notes.end(), filter.notes.begin(),
                                 filter.notes.end());
+    selection.made.other_chains = filter.others;
     selection.list_chains(summary);
     return std::move(selection.made);
 }

@@ -44,6 +44,8 @@ struct PdbSites {
     std::string file;  // for messages
     std::vector<PdbSite> sites;
     std::vector<PdbSiteChain> chains{};
+    /// Names of the file's other chains, which are not chosen, each once.
+    std::vector<std::string> other_chains{};
     std::optional<Vec3> cell{};  // cell of the file, rectangular, nm
     /// Sentences on what was left out or chosen.
     std::vector<std::string> notes{};

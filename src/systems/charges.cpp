@@ -83,6 +83,14 @@ std::string histidine_text(OpenMmSpec const& spec, ForceResidues const& table,
                        number > 0 ? fmt::format(", {} of them", number) : "");
 }
 
+bool has_charges(Scene const& scene) {
+    if (!scene.forces.openmm || scene.forces.openmm->builder.empty()) return false;
+    OpenMmSpec const& spec = *scene.forces.openmm;
+    std::vector<double> const charges =
+        bead_charges(spec, ForceResidues(spec), charged_beads(scene));
+    return std::any_of(charges.begin(), charges.end(), [](double charge) { return charge != 0; });
+}
+
 std::string assumed_charges(Scene const& scene) {
     if (!scene.forces.openmm || scene.forces.openmm->builder.empty()) return {};
     OpenMmSpec const& spec = *scene.forces.openmm;

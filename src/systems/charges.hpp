@@ -20,6 +20,9 @@ std::vector<double> bead_charges(OpenMmSpec const&, ForceResidues const&, BeadSy
 std::string histidine_text(OpenMmSpec const&, ForceResidues const&,
                            std::span<std::string const> residues);
 
+/// True if a builder makes the scene's forces and a bead is charged.
+bool has_charges(Scene const&);
+
 /// Returns the net charges of the chains and, if there are any, what is assumed of histidines.
 /// Empty unless a builder makes the scene's forces.
 std::string assumed_charges(Scene const&);

@@ -110,11 +110,17 @@ class Scanner {
         return std::count(part.begin(), part.end(), '\n');
     }
 
+    /// Kind of the object for messages: the root element, as far as it is read.
+    std::string kind() const {
+        static constexpr std::array<string_view, 4> kinds{"System", "State", "Integrator", "Force"};
+        return is_one_of(outline_.root, kinds) ? outline_.root : "file";
+    }
+
     /// Throws InputError with the line of position `at`.
     [[noreturn]] void fail(std::size_t at, std::string const& what) const {
         throw InputError(
             fmt::format("{} is not well-formed: {} (line {})", file_, what, 1 + lines(0, at)),
-            where_, "write the System again with OpenMM's XmlSerializer");
+            where_, fmt::format("write the {} again with OpenMM's XmlSerializer", kind()));
     }
 
     /// Skips blanks between elements; throws InputError for other characters.
@@ -130,7 +136,8 @@ class Scanner {
         string_view const rest = text_.substr(at_);
         if (rest.starts_with("<!--")) return skip({"<!--", "-->", "<", "a comment"});
         if (rest.starts_with("<?")) return skip({"<?", "?>", "<>", "a declaration"});
-        if (rest.starts_with("<!")) fail(at_, "a document type or section, which no System has");
+        if (rest.starts_with("<!"))
+            fail(at_, "a document type or section, which OpenMM does not write");
         if (rest.starts_with("</")) return end_tag();
         start_tag();
     }
@@ -188,7 +195,8 @@ class Scanner {
     /// Reads a start tag or an empty element with its attributes and opens it.
     void start_tag() {
         std::size_t const begin = at_++;
-        if (open_.empty() && rooted_) fail(begin, "a second element beside the System");
+        if (open_.empty() && rooted_)
+            fail(begin, fmt::format("a second element beside the {}", kind()));
         if (open_.size() == deepest)
             fail(begin, fmt::format("elements lie more than {} deep in each other", deepest));
         Element element{name(), begin};

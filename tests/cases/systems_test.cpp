@@ -211,14 +211,11 @@ TEST(Slips, MillimolarIsNoted) {
                       "salt: did you mean 0.15"));
 }
 
-TEST(Slips, StepsInFemtosecondsAndImpossiblePhAreNoted) {
+TEST(Slips, StepsInFemtosecondsAreNoted) {
     EXPECT_TRUE(
         holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.step=10"}),
               "dynamics.step is 10 ps, that is 10000 fs: steps of such chains are 0.01 to 0.06 ps. "
               "Did you mean 0.01?"));
-    EXPECT_TRUE(
-        holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "forces.openmm.ph=70"}),
-              "ph is 70, outside 0 to 14"));
 }
 
 TEST(Slips, ResiduesWithoutForcesAreNoted) {
@@ -231,11 +228,26 @@ TEST(Slips, ResiduesWithoutForcesAreNoted) {
               "[]");
 }
 
-TEST(Slips, FrozenWaterIsNoted) {
-    EXPECT_TRUE(holds(
-        notes_of("22-slips-of-the-pen/temperatures.yaml",
-                 {"--set", "dynamics.temperature=200", "--set", "forces.openmm.temperature=200"}),
-        "water is frozen at 200 K"));
+TEST(Slips, FrozenWaterAndCelsiusAreNoted) {
+    auto const at = [](std::string const& temperature) {
+        return notes_of("22-slips-of-the-pen/temperatures.yaml",
+                        {"--set", "dynamics.temperature=" + temperature, "--set",
+                         "forces.openmm.temperature=" + temperature});
+    };
+    std::string const frozen = "water is frozen at ", celsius = "did you mean 298.15 K";
+    EXPECT_TRUE(holds(at("210"), frozen + "210 K"));
+    EXPECT_FALSE(holds(at("210"), "did you mean"));
+    EXPECT_TRUE(holds(at("25"), "the temperature is 25 K: " + celsius + " (25 degrees Celsius)?"));
+    EXPECT_FALSE(holds(at("298"), frozen));
+}
+
+/// Nothing depends on water where nothing is charged.
+TEST(Slips, UnchargedBeadsMayBeCold) {
+    Ended const e = catena({"check", input("polymer-melt.yaml"), "--set", "chains[0].sequence=XX",
+                            "--set", "relax=false"});
+    expect_good(e);
+    EXPECT_EQ(count(e.out, "frozen"), 0U) << e.out;
+    EXPECT_EQ(count(e.out, "did you mean"), 0U) << e.out;
 }
 
 TEST(Residues, OfAFileGiveTheChainsCharge) {

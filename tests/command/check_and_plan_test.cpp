@@ -89,8 +89,12 @@ TEST(Check, DrawsDomainsThatItRefuses) {
     EXPECT_TRUE(std::filesystem::exists(folder / "domains.svg"));
 }
 
-TEST(Check, DrawsNoPictureWithoutAPrediction) {
+TEST(Check, DrawsNoPictureWithoutAPredictionOrFolder) {
     TemporaryFolder const folder;
+    write_prediction(folder, 20);
+    expect_refused(
+        catena({"check", "s.yaml", "--picture", "nodir/x.svg"}, folder.path()), 2,
+        "no such folder: nodir (--picture nodir/x.svg): create it, or name another file");
     expect_refused(catena({"check", input("arm.yaml"), "--picture", folder / "a.svg"}), 2,
                    "no chain of the scene decides its rigid domains by a prediction");
     expect_refused(catena({"check", input("arm.yaml"), "--picture", folder / "a.png"}), 2,

@@ -27,9 +27,10 @@ TEST_F(Complexes, are_one_chain_whose_body_carries_beads_of_both) {
     EXPECT_EQ(s.chains[0].name, "A+B");
     LinkedArrays const& l = s.chains[0].linked;
     EXPECT_EQ(l.carried.offset, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 18, 19, 20, 21, 22}));
-    EXPECT_EQ(notes_of(s),
-              Words{"chains A and B share a rigid body and are one chain, `A+B`, of 22 beads, in "
-                    "trajectory and topology, too: A 1-12, B 1-10"});
+    EXPECT_EQ(
+        notes_of(s),
+        Words{"chains A and B share a rigid body and are simulated as one chain, `A+B`, whose "
+              "22 beads have the order of residues A 1 to 12, B 1 to 10"});
     // The body has the mass of its beads, and both inner ends are termini.
     double const gly = find_calvados2('G')->mass;
     EXPECT_NEAR(l.mass[4], 14 * gly + 2 + 16, 1e-9);
@@ -112,12 +113,20 @@ TEST_F(Complexes, charge_the_termini_of_each_member_by_its_own_ends) {
               (Ends{{0, true}, {11, false}, {12, true}, {21, false}}));
 }
 
+/// The start's changes name the chain as the scene does.
+TEST_F(Complexes, have_one_name_in_all_lines) {
+    write("a.pdb", pdb_text(helix(12, "A") + helix(10, "B", 1, 12.2)));
+    Scene const s = read(scene_of("[[\"A:5-12\", \"B:1-6\"]]"));
+    EXPECT_EQ(s.start.link_at.substr(0, 12), "chain `A+B`,") << s.start.link_at;
+}
+
 TEST_F(Complexes, may_run_backwards_along_a_chain) {
     Scene const s = read(scene_of("[[\"A:5-12\", \"B:4-10\"]]", ", name: pair"));
     EXPECT_EQ(s.chains.at(0).name, "pair");
-    EXPECT_EQ(notes_of(s),
-              Words{"chains A and B share a rigid body and are one chain, `pair`, of 22 beads, in "
-                    "trajectory and topology, too: A 1-12, B 5-10, B 4-1"});
+    EXPECT_EQ(
+        notes_of(s),
+        Words{"chains A and B share a rigid body and are simulated as one chain, `pair`, whose "
+              "22 beads have the order of residues A 1 to 12, B 5 to 10, B 4 down to 1"});
 }
 
 TEST_F(Complexes, have_copies) {
@@ -167,8 +176,8 @@ TEST_F(Complexes, join_the_pieces_of_a_chain_with_a_gap) {
     EXPECT_EQ(s.chains[0].name, "p");
     EXPECT_EQ(s.chains[0].linked.size(), 9u);
     EXPECT_EQ(notes_of(s).back(),
-              "pieces of chain A share a rigid body and are one chain, `p`, of 22 beads, in "
-              "trajectory and topology, too: A 1-12, A 20-29");
+              "pieces of chain A share a rigid body and are simulated as one chain, `p`, whose 22 "
+              "beads have the order of residues A 1 to 12, A 20 to 29");
     // Ends at the gap are no termini.
     EXPECT_NEAR(s.chains[0].linked.mass[4], 14 * find_calvados2('G')->mass, 1e-9);
     EXPECT_EQ(refusal(start + "[\"A:5-25\"]}]"),

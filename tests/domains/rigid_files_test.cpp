@@ -172,8 +172,12 @@ TEST_F(RigidFiles, predictions_decide_domains_by_confidence_and_error) {
 TEST_F(RigidFiles, predictions_must_fit_the_structure) {
     write_prediction(20, 59);
     EXPECT_EQ(refusal(scene_of("pae: pae.json")),
-              "`pae.json` has the errors of 59 residues, the chain has 60" + at_pae_ +
-                  "give the file that belongs to this structure, with all its residues");
+              "the structure has 60 residues and `pae.json` the errors of 59" + at_pae_ +
+                  "if both are of one protein, the file of errors is cut short: copy it again, or "
+                  "else give the errors of this structure");
+    write_prediction(20, 61);
+    EXPECT_NE(refusal(scene_of("pae: pae.json")).find("the structure is cut short"),
+              std::string::npos);
     write_prediction(20);
     auto const with_b_factor = [&](double value) {
         std::vector<AtomLine> atoms = helix(60, "A");
@@ -186,6 +190,15 @@ TEST_F(RigidFiles, predictions_must_fit_the_structure) {
     EXPECT_EQ(with_b_factor(0), "all B factors are 0: they are no pLDDT" + give);
     EXPECT_EQ(with_b_factor(0.9), "no B factor exceeds 1: they are no pLDDT from 0 to 100" + give);
     EXPECT_EQ(with_b_factor(123), "the B factor 123 of residue 1 is no pLDDT" + give);
+}
+
+TEST_F(RigidFiles, thresholds_and_confidences_have_one_scale) {
+    write_prediction(20);
+    EXPECT_EQ(refusal(scene_of("pae: pae.json, plddt: 0.7")),
+              "a pLDDT of 0.7, where those of the structure reach 91.5 (s.yaml: "
+              "chains[0].rigid.plddt, line 1): give it from 0 to 100, such as 70");
+    EXPECT_EQ(bodies_of("pae: pae.json, plddt: 0").size(),
+              bodies_of("pae: pae.json, plddt: 30").size());
 }
 
 TEST_F(RigidFiles, predictions_come_in_several_forms) {
@@ -214,8 +227,16 @@ TEST_F(RigidFiles, predictions_come_in_several_forms) {
               "row 1, column 2 of `pae.json` is not an error in angstrom" + remedy);
     EXPECT_EQ(refused("{\"pae\": [[0, 1e300], [1, 0]]}"),
               "row 1, column 2 of `pae.json` is not an error in angstrom" + remedy);
-    EXPECT_EQ(refused("data").substr(0, 23), "`pae.json` is not JSON ");
-    EXPECT_EQ(refused("{\"pae\": [[0, 1e400], [1, 0]]}").substr(0, 23), "`pae.json` is not JSON ");
+    EXPECT_EQ(refused("{\"pae\":\n\n [[0, what]]}"),
+              "`pae.json` is not well-formed JSON, line 3" + remedy);
+    EXPECT_EQ(refused("{\"pae\": [[0, 1], [1,\n"),
+              "`pae.json` is not well-formed JSON, line 2: the text ends too early, as in a file "
+              "that was cut" +
+                  remedy);
+    EXPECT_EQ(refused("{\"pae\": [[" + std::string(500, ' ') + "x"),
+              "`pae.json` is not well-formed JSON, line 1, character 511" + remedy);
+    EXPECT_EQ(refused("{\"pae\": [[0, 1e400], [1, 0]]}"),
+              "`pae.json` holds a number beyond double precision" + remedy);
     for (std::string const second : {"pae", "predicted_aligned_error"})
         EXPECT_EQ(refused("{\"pae\": [[0]], \"" + second + "\": [[1]]}"),
                   "`pae.json` has 2 matrices of errors" + at_pae_ +

@@ -53,6 +53,7 @@ TEST(ObservableStatistics, SayWhyEveryFrameCounts) {
               "All 11 frames count, equilibration included: fewer than 20 frames do not show where "
               "it ends.");
     EXPECT_EQ(statistics_of(table_of(30, 0), Frames::all).says, "All 30 frames count.");
+    EXPECT_EQ(statistics_of(table_of(1, 0), Frames::all).says, "The only frame counts.");
     EXPECT_TRUE(statistics_of(table_of(0, 0), Frames::equilibrated).observables.empty());
 }
 
@@ -105,7 +106,7 @@ TEST(RunFacts, BeginWithTheSystemAndItsUnits) {
               "system: 2 chains of 10 beads (a-1 to a-2)\n"
               "forces: calvados2 at 300 K and 0.15 mol/l\n"
               "box: 20 x 20 x 30 nm, periodic\n"
-              "concentration: 12.5 g/l, 0.2767 mmol/l of chains, mean over the box\n"
+              "concentration: 12.5 mg/ml, 0.2767 mmol/l of chains, mean over the box\n"
               "temperature: 300 K, Langevin thermostat of friction 0.01/ps\n"
               "integrator: g-baoab, step 0.01 ps\n"
               "simulated time: 5 ps, 500 steps, from step 100 to 600; 6 ps since the scene's "

@@ -53,6 +53,13 @@ def made_up(folder):
     found = table(out)[0]
     if (found["simulated_nm"], found["simulated_error_nm"], found["runs"], found["time_ns"]) != ("1.1", "0.1", "2", "1.0"):
         yield f"means of two runs: {found} {done.stderr}"
+    alone = json.loads(summary(1.0, True))
+    alone["observables"]["radius_of_gyration"]["standard_error"] = None  # of a single frame
+    write(os.path.join(out, "gly-1", "summary.json"), json.dumps(alone))
+    write(os.path.join(out, "gly-2", "summary.json"), summary(9.0, False))
+    done = call([proteins, out, "--only", "table"])
+    if "| 1.00 (no error: too few frames) |" not in done.stdout:
+        yield f"a run without an error: {done.stdout} {done.stderr}"
     wrong = write(os.path.join(folder, "w.csv"), HEAD + "gly,0.2,280,7,1.5,0.1,7,10.1/x,GGGGSG\n")
     done = call([wrong, out])
     if done.returncode != 2 or "6 residues, not 7" not in done.stderr:

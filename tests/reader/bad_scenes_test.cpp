@@ -256,6 +256,9 @@ dynamics: {integrator: rattle, step: 1, temperature: 0}
 forces: {openmm: {builder: calvados2}})y",
      "the force field's temperature is that of the run, 0 (s.yaml: forces.openmm, line 3): add "
      "`temperature: 300` here"},
+    {"impossible_ph", R"y(chains: [{sequence: GGG, model: calvados2}]
+forces: {openmm: {builder: calvados2, ph: 70}})y",
+     "a pH of 70 (s.yaml: forces.openmm.ph, line 2): give a number from 0 to 14"},
     {"force_group", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, force_groups: [32]}})y",
      "key `force_groups` does not apply to a builder (s.yaml: forces.openmm.force_groups, line 2): "

@@ -222,16 +222,39 @@ TEST_F(Structures, domains_by_chain_and_residue_number) {
         EXPECT_EQ(chain.bead_count(), 6u);
     }
     std::string const at = " (s.yaml: chains[0].rigid[0], line 1): ";
-    EXPECT_EQ(
-        refusal_with("chain: all, rigid: [\"C:1-3\"]"),
-        "residue 1 of chain C is not in the file" + at +
-            "give [first, last] with the file's residue numbers, here -2 to 6, both included");
+    EXPECT_EQ(refusal_with("chain: all, rigid: [\"B:1-7\"]"),
+              "residue 7 of chain B is not in the file" + at +
+                  "give [first, last] with the file's residue numbers, here 1 to 6, both included");
     EXPECT_EQ(
         refusal_with("chain: all, rigid: [[1, 3]]"),
         "2 residues of the file have the number 1" + at + "name the chain, such as \"A:1-...\"");
     EXPECT_EQ(refusal_with("chain: A, rigid: [\"A:\"]"),
               "`A:` in quotes is not a range of residues" + at +
                   "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
+}
+
+/// Each wrong range gets its own cause; blanks do not count.
+TEST_F(Structures, wrong_ranges_of_residues_are_told_apart) {
+    Words const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
+    write("a.pdb", pdb_text(strand(six, "A", 1, 0) + strand(six, "B", 1, 0, 20)));
+    std::string const at = " (s.yaml: chains[0].rigid[0], line 1): ";
+    auto const all = [&](std::string const& range) {
+        return refusal_with("chain: all, rigid: [" + range + "]");
+    };
+    EXPECT_EQ(all("\"C:1-3\""), "the file has no chain C" + at + "take one of A, B");
+    EXPECT_EQ(refusal_with("chain: A, rigid: [\"B:1-3\"]"),
+              "the entry does not choose chain B" + at +
+                  "name it under `chain`, as in `chain: [A, B]`, or use residues of A");
+    EXPECT_EQ(refusal_with("chain: A, rigid: [\"C:1-3\"]"),
+              "the file has no chain C" + at + "take one of A, B");
+    EXPECT_EQ(all("\"A:5-2\""),
+              "residues 5 to 2 of chain A run backwards" + at + "write \"A:2-5\"");
+    EXPECT_EQ(refusal_with("chain: A, rigid: [[5, 2]]"),
+              "residues 5 to 2 run backwards" + at + "write [2, 5]");
+    EXPECT_EQ(all("\"A:1-3-5\""), "`A:1-3-5` in quotes is not a range of residues" + at +
+                                      "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
+    EXPECT_EQ(all("\"A1-3\""),
+              "`A1-3` in quotes has no colon after the chain" + at + "did you mean \"A:1-3\"?");
 }
 
 TEST_F(Structures, a_domain_does_not_cross_a_gap) {
