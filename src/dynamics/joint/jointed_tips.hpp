@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
 #include "kinematics/joint_kinematics.hpp"
 
@@ -136,7 +137,7 @@ struct JointedTips {
     CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
         Place m{t.translation - t.com, t.rotation * t.axes};
         if (slides(t.type)) m.point = e.apart() - t.com;
-        if (t.type == JointType::universal) {
+        if (has_two_axes(t.type)) {
             Vec3 const first = t.rotation * t.first_axis, second = e.to_last(t.axis);
             Vec3 const normal = cross(first, second), p = (1 / norm(normal)) * normal;
             m.axes.set_column(0, p);
@@ -166,18 +167,13 @@ struct JointedTips {
         return {transposed_times(m.axes, e.to_last(e.other.omega) - w),
                 transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
-    /// True if the joint has one axis, fixed in both bodies: revolute, prismatic, helical.
-    CATENA_HD static bool turns_about_axis(JointType type) {
-        return type == JointType::revolute || slides(type);
-    }
     /// Velocity-dependent part c of the joint's relative acceleration (src/dca/README.md, "Joint
     /// bias"), with the rates that follow from the bodies' motion.
     CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
-        if (t.type != JointType::universal && !turns_about_axis(t.type))
-            return {Vec3::zero(), Vec3::zero()};
+        if (!has_two_axes(t.type) && !has_one_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
         Pair const rate = opening_rate(t, e, m);
-        if (t.type == JointType::universal) {
+        if (has_two_axes(t.type)) {
             // First axis: (0, y, z).
             Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);
             Vec3 const u{{0, rate.angular[1], rate.angular[2]}};
@@ -196,13 +192,13 @@ struct JointedTips {
         // Rotation of G in J.
         Quat const relative =
             conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;
-        if (t.type == JointType::weld) open.angular = rotation_vector(relative);
-        if (t.type == JointType::universal) {
+        if (is_rigid(t.type)) open.angular = rotation_vector(relative);
+        if (has_two_axes(t.type)) {
             Vec3 const second = to_matrix(relative) * t.axis;
             open.angular[0] =
                 -(dot(t.first_axis, second) - t.cosine) / norm(cross(t.first_axis, second));
         }
-        if (turns_about_axis(t.type)) {
+        if (has_one_axis(t.type)) {
             open.angular = transposed_times(t.axes, cross(t.axis, to_matrix(relative) * t.axis));
             double turned = dot(rotation_vector(relative), t.axis);
             // The number of whole revolutions follows from the sliding.
