@@ -243,8 +243,13 @@ struct JointsView {
         MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * rotation, Vector3::zero(),
                                   meeting_point(state, k), Vector3::zero()};
         JointAt<Place> const joint_k{*this, state, k};
-        with_motion(type(k),
-                    [&](auto motion) { return motion.set_velocity(joint_k, rotation, m); });
+        if (with_motion(type(k), [&](auto motion) { return motion.sets_omega(joint_k, m); }))
+            return m;
+        // The code below serves all other motions: copies of it would not be inlined on a GPU.
+        Mat3At<Place> const to_meeting = to_matrix(rotation);
+        auto const r = rate(state, k);
+        m.omega = transposed_times(to_meeting, r.angular);
+        m.velocity = transposed_times(to_meeting, r.linear);
         return m;
     }
     /// Meeting point and joint axes of joint k in its inboard body.

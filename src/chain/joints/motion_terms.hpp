@@ -39,13 +39,11 @@ struct MotionDefaults {
                                                              typename Joint::Vector3&) {
         return angular;
     }
-    /// Sets omega and velocity of `motion`, a motion whose rotation is B in M, from the joint's
-    /// rate; B axes.
-    template <class Rate, class Rotation, class Motion>
-    static CATENA_HD void set_from_rate(Rate const& rate, Rotation const& turn, Motion& motion) {
-        auto const to_meeting = to_matrix(turn);
-        motion.omega = transposed_times(to_meeting, rate.angular);
-        motion.velocity = transposed_times(to_meeting, rate.linear);
+    /// Sets omega of a motion and returns true if omega needs no rate() and the velocity is zero.
+    /// Otherwise the caller derives both from rate().
+    template <class Joint, class Motion>
+    static CATENA_HD bool sets_omega(Joint const&, Motion&) {
+        return false;
     }
 };
 

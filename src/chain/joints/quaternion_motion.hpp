@@ -17,10 +17,11 @@ struct QuaternionMotion : MotionDefaults {
     static CATENA_HD JointRate<typename Joint::Real> rate(Joint const& j) {
         return {to_matrix(turn(j)) * j.rates(), Joint::Vector3::zero()};
     }
-    /// Sets omega and velocity of a motion whose rotation of B in M is `turn`.
+    /// Sets omega of a motion, B axes, and returns true (MotionDefaults).
     template <class Joint, class Motion>
-    static CATENA_HD void set_velocity(Joint const& j, typename Joint::Rotation const&, Motion& m) {
+    static CATENA_HD bool sets_omega(Joint const& j, Motion& m) {
         m.omega = j.rates();
+        return true;
     }
     /// Known load on the outboard body along the joint's axes: torque, and force along the last
     /// axis. `along` has the moments along the coordinates; `turn` is the rotation matrix of B.

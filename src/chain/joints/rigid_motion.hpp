@@ -17,7 +17,9 @@ struct RigidMotion : MotionDefaults {
         return {Joint::Vector3::zero(), Joint::Vector3::zero()};
     }
     template <class Joint, class Motion>
-    static CATENA_HD void set_velocity(Joint const&, typename Joint::Rotation const&, Motion&) {}
+    static CATENA_HD bool sets_omega(Joint const&, Motion&) {
+        return true;
+    }
     template <class Joint, class Turn>
     static CATENA_HD Vector<typename Joint::Real, 4> load(Joint const&, Turn const&,
                                                           typename Joint::Vector3 const&) {

@@ -20,12 +20,10 @@ struct ScrewMotion : MotionDefaults {
         return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
     }
     template <class Joint, class Motion>
-    static CATENA_HD void set_velocity(Joint const& j, typename Joint::Rotation const& turn,
-                                       Motion& m) {
-        if (j.pivots())
-            m.omega = j.rate(0) * j.axis();  // The axis has the same components in B and M.
-        else
-            set_from_rate(rate(j), turn, m);
+    static CATENA_HD bool sets_omega(Joint const& j, Motion& m) {
+        if (!j.pivots()) return false;
+        m.omega = j.rate(0) * j.axis();  // The axis has the same components in B and M.
+        return true;
     }
     template <class Joint, class Turn>
     static CATENA_HD Vector<typename Joint::Real, 4> load(Joint const& j, Turn const&,

@@ -23,11 +23,6 @@ struct UniversalMotion : MotionDefaults {
         auto const qd = j.rates();
         return {qd[0] * j.first_axis() + qd[1] * j.axis(), Joint::Vector3::zero()};
     }
-    template <class Joint, class Motion>
-    static CATENA_HD void set_velocity(Joint const& j, typename Joint::Rotation const& turn,
-                                       Motion& m) {
-        set_from_rate(rate(j), turn, m);
-    }
     /// The torque lies in the plane of the two axes.
     template <class Joint, class Turn>
     static CATENA_HD Vector<typename Joint::Real, 4> load(Joint const& j, Turn const&,
