@@ -11,6 +11,7 @@
 #include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
 #include "kinematics/joint_kinematics.hpp"
+#include "math/with_number.hpp"
 
 namespace catena {
 
@@ -49,19 +50,12 @@ double reach_of(ChainGroup const&, Scene const&);
 template <class Place>
 CATENA_HD void store_first(DirectionsView view, Place k, int directions,
                            Vector<RealAt<Place>, 6> const& v) {
-    using Real = RealAt<Place>;
-    switch (directions) {
-        case 2:
-            return write_directions(view, k, Vector<Real, 2>{{v[0], v[1]}});
-        case 3:
-            return write_directions(view, k, Vector<Real, 3>{{v[0], v[1], v[2]}});
-        case 4:
-            return write_directions(view, k, Vector<Real, 4>{{v[0], v[1], v[2], v[3]}});
-        case 5:
-            return write_directions(view, k, Vector<Real, 5>{{v[0], v[1], v[2], v[3], v[4]}});
-        default:
-            return write_directions(view, k, v);
-    }
+    with_number<2, 6>(directions, [&](auto count) {
+        constexpr int K = decltype(count)::value;
+        Vector<RealAt<Place>, K> first;
+        for (int i = 0; i < K; ++i) first[i] = v[i];
+        write_directions(view, k, first);
+    });
 }
 
 /// Extends a vector to six numbers by zeros.
@@ -73,18 +67,8 @@ CATENA_HD Vector<double, 6> with_zeros(Vector<double, K> const& v) {
 }
 /// Loads `directions` numbers of body k and extends them by zeros.
 CATENA_HD Vector<double, 6> load_first(ConstDirectionsView view, std::int64_t k, int directions) {
-    switch (directions) {
-        case 2:
-            return with_zeros(view.load<2>(k));
-        case 3:
-            return with_zeros(view.load<3>(k));
-        case 4:
-            return with_zeros(view.load<4>(k));
-        case 5:
-            return with_zeros(view.load<5>(k));
-        default:
-            return view.load<6>(k);
-    }
+    return with_number<2, 6>(
+        directions, [&](auto count) { return with_zeros(view.load<decltype(count)::value>(k)); });
 }
 
 /// Tips of a rank and the motions of their two sides, with the operations on one tip.
