@@ -12,6 +12,7 @@
 #include "dynamics/bead_dynamics.hpp"
 #include "dynamics/joint/joint_dynamics_in.hpp"
 #include "dynamics/rigid_dynamics.hpp"
+#include "math/with_number.hpp"
 
 namespace catena::cuda {
 namespace {
@@ -22,20 +23,11 @@ using namespace dca;
 /// memory depends on the number of directions only, so that one leaf type represents all.
 template <class Use>
 auto with_directions(ChainGroup const& group, Use const& use) {
-    switch (group.directions) {
-        case 1:
-            return use(Of<BeadLeaf<1>>{});
-        case 2:
-            return use(Of<BodyLeaf<2, JointFrameHandles<2, false>>>{});
-        case 3:
-            return use(Of<BodyLeaf<3, JointFrameHandles<3, false>>>{});
-        case 4:
-            return use(Of<BodyLeaf<4, JointFrameHandles<4, false>>>{});
-        case 5:
-            return use(Of<BodyLeaf<5, JointFrameHandles<5, false>>>{});
-        default:
-            return use(Of<BodyLeaf<6, JointFrameHandles<6, false>>>{});
-    }
+    if (group.directions == 1) return use(Of<BeadLeaf<1>>{});
+    return with_number<2, 6>(group.directions, [&](auto directions) {
+        constexpr int K = decltype(directions)::value;
+        return use(Of<BodyLeaf<K, JointFrameHandles<K, false>>>{});
+    });
 }
 
 /// Calls use(Of<Leaf>) with a leaf type that needs the same memory as the group's.

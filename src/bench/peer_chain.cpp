@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/body_loads.hpp"
 #include "math/rotation.hpp"
 
@@ -61,7 +62,7 @@ Vec3 torque_of(BodyArrays const& b, std::size_t k) {
     Vec3 torque = entry(b.torque, k);
     Vec3 const stiffness = entry(b.stiffness, k), damping = entry(b.damping, k);
     bool const sprung = norm(stiffness) > 0;
-    if (b.joint[k] == JointType::revolute) {
+    if (pivots(b.joint[k])) {
         torque[0] -= sprung ? stiffness[0] * (b.q[k][0] - (b.rest.empty() ? 0 : b.rest[k][0])) : 0;
     } else if (sprung) {
         Quat const rest = b.rest.empty() ? Quat::identity() : quaternion(b.rest[k]);
@@ -76,9 +77,9 @@ PeerBody body_of(BodyArrays const& bodies, std::size_t k) {
     PeerBody b{bodies.mass[k], bodies.com[k],        bodies.inertia[k],     PeerJoint::ball,
                bodies.axis[k], bodies.rotation[k],   bodies.translation[k], bodies.q[k],
                bodies.qd[k],   torque_of(bodies, k), Vec3::zero(),          Vec3::zero()};
-    if (bodies.joint[k] == JointType::revolute) b.joint = PeerJoint::revolute;
+    if (pivots(bodies.joint[k])) b.joint = PeerJoint::revolute;
     if (!bodies.wrench.empty()) std::tie(b.wrench_torque, b.wrench_force) = bodies.wrench[k];
-    if (bodies.joint[k] == JointType::free)
+    if (floats(bodies.joint[k]))
         b.rotation = Mat3::identity(), b.translation = b.torque = Vec3::zero();
     return b;
 }
@@ -94,7 +95,7 @@ PeerBody slide_at(Vec3 const& position, Vec3 const& velocity, double mass) {
 }
 
 void append(std::vector<double>& table, BodyArrays const& bodies) {
-    if (bodies.joint[0] == JointType::free)
+    if (floats(bodies.joint[0]))
         append(table, slide_at(bodies.free_position, bodies.free_velocity, 0));
     for (std::size_t k = 0; k < bodies.size(); ++k) append(table, body_of(bodies, k));
 }
@@ -179,7 +180,7 @@ std::vector<double> accelerations_of_beads(BeadArrays const& beads,
 
 /// True if the first body of the chain is free.
 bool has_free_body(ChainSpec const& chain) {
-    return !chain.is_beads() && chain.bodies.joint[0] == JointType::free;
+    return !chain.is_beads() && floats(chain.bodies.joint[0]);
 }
 
 /// Returns the number of joint accelerations of a chain.
@@ -187,7 +188,7 @@ std::size_t accelerations_of(ChainSpec const& chain) {
     if (chain.is_beads()) return 1 + 2 * chain.size();
     std::size_t count = 0;
     for (JointType const joint : chain.bodies.joint)
-        count += joint == JointType::revolute ? 1 : joint == JointType::free ? 6 : 3;
+        count += static_cast<std::size_t>(freedom_of(joint));
     return count;
 }
 
@@ -200,10 +201,7 @@ bool resists(std::vector<std::array<double, 2>> const& drag) {
 }  // namespace
 
 std::string not_for_peers(Scene const& scene) {
-    auto const among = [](JointType joint) {
-        return joint == JointType::revolute || joint == JointType::spherical ||
-               joint == JointType::free;
-    };
+    auto const among = [](JointType joint) { return pivots(joint) || has_quaternion(joint); };
     ForceSpec const& forces = scene.forces;
     if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 ||
         forces.angular_drag != 0)

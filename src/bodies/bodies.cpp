@@ -9,6 +9,7 @@
 #include "bodies/carried_beads.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
+#include "chain/joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 
@@ -27,12 +28,12 @@ JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     }
     Node const& node = body.need("joint", "joint: {type: revolute, axis: [0, 0, 1]}");
     JointEntry entry = read_joint(node);
-    if (entry.type == JointType::free && !first)
+    if (floats(entry.type) && !first)
         fail(node, "a free joint inside a chain", "use it for body 1 of a chain with `base: free`");
-    if (entry.type == JointType::free && base == Base::fixed)
+    if (floats(entry.type) && base == Base::fixed)
         fail(node, "a free joint on a fixed base",
              "write `base: free`, or give joint 1 another type");
-    if (entry.type != JointType::free && first && base == Base::free)
+    if (!floats(entry.type) && first && base == Base::free)
         fail(node,
              fmt::format("a {} joint 1 on a free base, which has no joint 1", name_of(entry.type)),
              "write `base: fixed`, or `joint: {type: free}` for body 1");
@@ -53,7 +54,7 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.stiffness.push_back(entry.stiffness);
     bodies.damping.push_back(entry.damping);
     bodies.rest.push_back(entry.rest);
-    if (entry.type == JointType::free) {
+    if (floats(entry.type)) {
         bodies.free_position = entry.position;
         bodies.free_velocity = entry.velocity;
     }
@@ -74,8 +75,8 @@ struct Needed {
         torque = torque || joint.loaded;
         spring = spring || joint.sprung;
         damping = damping || joint.damped;
-        first_axis = first_axis || joint.type == JointType::universal;
-        pitch = pitch || joint.type == JointType::helical;
+        first_axis = first_axis || has_two_axes(joint.type);
+        pitch = pitch || has_pitch(joint.type);
     }
     /// Clears all arrays that no body needs; an empty array means zero.
     void drop_rest(BodyArrays& bodies) const {

@@ -9,6 +9,7 @@
 #include "bodies/hdf5_table.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
+#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
 #include "io/trial.hpp"
 #include "keys/maps.hpp"
@@ -18,12 +19,31 @@ namespace catena::scene {
 
 namespace {
 
-/// The file's own numbering of joint types, because the enumeration may change.
-constexpr std::pair<std::string_view, JointType> types[] = {
-    {"free", JointType::free},           {"link", JointType::link},
-    {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
-    {"universal", JointType::universal}, {"weld", JointType::weld},
-    {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
+/// Model of a joint type as files name it: by its name or its code.
+struct FileType {
+    JointType type;
+    std::string_view name;
+    int code;
+};
+/// Returns all types of the list of joint models, by their codes.
+std::vector<FileType> types_of_files() {
+    std::vector<FileType> types;
+    for_each_joint([&](auto model) {
+        using Model = decltype(model);
+        types.push_back({Model::type, Model::name, Model::code});
+    });
+    std::sort(types.begin(), types.end(),
+              [](FileType const& a, FileType const& b) { return a.code < b.code; });
+    return types;
+}
+/// Returns the codes that a file of bodies may use, with their names, for messages.
+std::string codes_for_bodies() {
+    std::string text;
+    for (FileType const& type : types_of_files())
+        if (!is_rod(type.type))
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", type.code, type.name);
+    return text;
+}
 
 Vec3 vector_at(double const* v) { return {{v[0], v[1], v[2]}}; }
 
@@ -100,38 +120,40 @@ class Hdf5Bodies {
         });
     }
 
-    /// Reads `joint_type` [n]: names, or the numbers of `types`.
+    /// Reads `joint_type` [n]: names, or the codes of the joint models.
     void read_joints() {
         need("joint_type", "one number or one name per body");
         bodies_.joint.resize(table_.rows());
+        std::vector<FileType> const types = types_of_files();
+        auto const find = [&](auto const& is) {
+            auto const found = std::find_if(types.begin(), types.end(), is);
+            return found == types.end() ? std::nullopt : std::optional(found->type);
+        };
         if (table_.is_text("joint_type")) {
             table_.for_each_text("joint_type", [&](std::size_t k, std::string const& text) {
-                auto const found =
-                    std::find_if(std::begin(types), std::end(types),
-                                 [&](auto const& type) { return type.first == text; });
-                if (found == std::end(types))
+                auto const type = find([&](FileType const& t) { return t.name == text; });
+                if (!type)
                     table_.refuse("joint_type", k,
                                   fmt::format("`{}` is not a joint type", shown(text)),
                                   "use the names of `joint.type`");
-                set_joint(k, found->second);
+                set_joint(k, *type);
             });
             return;
         }
         table_.for_each("joint_type", {{}}, [&](std::size_t k, double const* v, std::size_t) {
-            auto const number = static_cast<std::size_t>(std::clamp(v[0], 0.0, 255.0));
-            if (number >= std::size(types) || static_cast<double>(number) != v[0])
+            auto const type = find([&](FileType const& t) { return t.code == v[0]; });
+            if (!type)
                 table_.refuse("joint_type", k, fmt::format("{} is not a joint type", v[0]),
-                              "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 "
-                              "prismatic, 7 helical");
-            set_joint(k, types[number].second);
+                              "use " + codes_for_bodies());
+            set_joint(k, *type);
         });
     }
 
     /// Sets the type of joint k. Throws InputError for links, and for a free joint anywhere but at
     /// body 1 of a free base.
     void set_joint(std::size_t k, JointType type) {
-        bool const free = type == JointType::free;
-        if (type == JointType::link)
+        bool const free = floats(type);
+        if (is_rod(type))
             table_.refuse("joint_type", k, "a link in a file of rigid bodies on joints",
                           "write chains of links as a list or a generator");
         if (free && k > 0)
@@ -161,14 +183,14 @@ class Hdf5Bodies {
         });
     }
 
-    /// True if joint k has an axis: one coordinate, or a universal joint.
+    /// True if joint k has an axis.
     bool has_axis(std::size_t k) const {
         JointType const type = bodies_.joint[k];
-        return numbers_of(type) == 1 || type == JointType::universal;
+        return has_one_axis(type) || has_two_axes(type);
     }
-    /// True if any joint has that type.
-    bool any(JointType type) const {
-        return std::find(bodies_.joint.begin(), bodies_.joint.end(), type) != bodies_.joint.end();
+    /// True if any joint's type has the property.
+    bool any(bool (*has)(JointType)) const {
+        return std::any_of(bodies_.joint.begin(), bodies_.joint.end(), has);
     }
 
     /// Reads `axis` [n, 3], `first_axis` [n, 3] and `pitch` [n]. Axes are normalised; those of
@@ -184,19 +206,19 @@ class Hdf5Bodies {
             if (!has_axis(k)) return void(axis = Vec3::zero());
             refuse("axis", k, make_direction(axis));
         });
-        if (any(JointType::universal)) {
+        if (any(has_two_axes)) {
             need("first_axis", "there are universal joints");
             vectors("first_axis", bodies_.first_axis, [&](std::size_t k, Vec3& axis) {
-                if (bodies_.joint[k] != JointType::universal) return void(axis = Vec3::zero());
+                if (!has_two_axes(bodies_.joint[k])) return void(axis = Vec3::zero());
                 refuse("first_axis", k, make_direction(axis));
                 refuse("first_axis", k, check_two_axes(axis, bodies_.axis[k]));
             });
         }
-        if (!any(JointType::helical)) return;
+        if (!any(has_pitch)) return;
         need("pitch", "there are helical joints");
         bodies_.pitch.assign(table_.rows(), 0);
         table_.for_each("pitch", {{}}, [&](std::size_t k, double const* v, std::size_t) {
-            if (bodies_.joint[k] != JointType::helical) return;
+            if (!has_pitch(bodies_.joint[k])) return;
             if (v[0] == 0)
                 table_.refuse("pitch", k, "a helical joint without pitch",
                               "give its shift per radian, or use a revolute joint");
@@ -207,7 +229,7 @@ class Hdf5Bodies {
     /// Reads a dataset [n, 4] of joint positions. Entries that the joint does not use become 0.
     void positions(char const* name, std::vector<std::array<double, 4>>& into) {
         into.resize(table_.rows());
-        for (std::size_t k = 0; k < table_.rows(); ++k) into[k] = {turns(k) ? 1.0 : 0.0, 0, 0, 0};
+        for (std::size_t k = 0; k < table_.rows(); ++k) into[k] = rest_position(bodies_.joint[k]);
         if (!table_.has(name)) return;
         table_.for_each(name, {{4}}, [&](std::size_t k, double const* v, std::size_t) {
             if (turns(k)) {
@@ -219,17 +241,14 @@ class Hdf5Bodies {
         });
     }
     /// True if the position of joint k is a quaternion.
-    bool turns(std::size_t k) const {
-        return bodies_.joint[k] == JointType::spherical || bodies_.joint[k] == JointType::free;
-    }
+    bool turns(std::size_t k) const { return has_quaternion(bodies_.joint[k]); }
 
     /// Reads `q` [n, 4], `qd` [n, 3], `free_position` [3] and `free_velocity` [3]. Rates that a
     /// joint does not have become 0.
     void read_state() {
         positions("q", bodies_.q);
-        vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
-            keep(v, bodies_.joint[k] == JointType::free ? 3 : count(k));
-        });
+        vectors("qd", bodies_.qd,
+                [&](std::size_t k, Vec3& v) { keep(v, rates_of_joint(bodies_.joint[k])); });
         table_.vector("free_position", bodies_.free_position.data);
         table_.vector("free_velocity", bodies_.free_velocity.data);
     }

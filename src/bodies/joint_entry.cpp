@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "bodies/physics.hpp"
+#include "chain/joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
@@ -26,15 +28,19 @@ struct TypeName {
 TypeName type_of(Node const& joint) {
     Node const* const type = joint.find("type");
     if (!type) fail(joint, "key `type` is missing", "add `type: revolute`");
-    return choice<TypeName>(*type, {{"free", {JointType::free}},
-                                    {"link", {JointType::link}},
-                                    {"revolute", {JointType::revolute}},
-                                    {"planar", {JointType::revolute, true}},
-                                    {"universal", {JointType::universal}},
-                                    {"spherical", {JointType::spherical}},
-                                    {"prismatic", {JointType::prismatic}},
-                                    {"helical", {JointType::helical}},
-                                    {"weld", {JointType::weld}}});
+    std::optional<TypeName> found;
+    std::vector<std::string_view> names;
+    auto const offer = [&](std::string_view name, TypeName const& meant) {
+        if (type->kind == Node::Kind::scalar && type->text == name) found = meant;
+        names.push_back(name);
+    };
+    for_each_joint([&](auto model) {
+        using Model = decltype(model);
+        offer(Model::name, {Model::type});
+        if constexpr (Model::name_in_plane) offer(Model::name_in_plane, {Model::type, true});
+    });
+    if (!found) refuse_choice(*type, names, {});
+    return *found;
 }
 
 /// Refuses the keys without meaning for this type of joint.
@@ -57,20 +63,20 @@ void refuse_length(Node const& joint) {
 /// Keys of the joint's axes and frame.
 std::vector<std::string_view> geometry_keys(JointType type) {
     std::vector<std::string_view> keys{"type", "rotation", "translation"};
-    if (type == JointType::universal) keys.emplace_back("axes");
-    if (numbers_of(type) == 1) keys.emplace_back("axis");
-    if (type == JointType::helical) keys.emplace_back("pitch");
+    if (has_two_axes(type)) keys.emplace_back("axes");
+    if (has_one_axis(type)) keys.emplace_back("axis");
+    if (has_pitch(type)) keys.emplace_back("pitch");
     return keys;
 }
 
 /// All keys of a joint of a body.
 std::vector<std::string_view> joint_keys(JointType type) {
-    if (type == JointType::free) return {"type", "q", "qd"};
+    if (floats(type)) return {"type", "q", "qd"};
     std::vector<std::string_view> keys = geometry_keys(type);
-    if (type == JointType::weld) return keys;
+    if (is_rigid(type)) return keys;
     for (char const* const key : {"q", "qd", "torque", "stiffness", "damping", "rest"})
         keys.emplace_back(key);
-    if (type != JointType::spherical) keys.emplace_back("motion");
+    if (!is_ball(type)) keys.emplace_back("motion");
     return keys;
 }
 
@@ -105,7 +111,7 @@ Vec3 resistance(Node const& node, JointType type) {
 
 /// Reads q or rest in the format of BodyArrays::q.
 Four position(Node const& node, JointType type, bool alike) {
-    if (type == JointType::spherical) return unit_quaternion(node);
+    if (has_quaternion(type)) return unit_quaternion(node);
     Vec3 const v = components(node, type, alike);
     return {v[0], v[1], 0, 0};
 }
@@ -130,7 +136,7 @@ void read_free(Fields const& joint, JointEntry& entry) {
 /// Reads axes, pitch and joint frame into a JointEntry or a TipJoint.
 template <class Entry>
 void read_geometry(Fields const& joint, Entry& entry) {
-    if (entry.type == JointType::universal) {
+    if (has_two_axes(entry.type)) {
         Node const& axes = joint.need("axes", "axes: [[1, 0, 0], [0, 1, 0]]");
         if (axes.kind != Node::Kind::list || axes.items.size() != 2)
             fail(axes, describe(axes) + " is not two axes",
@@ -140,8 +146,8 @@ void read_geometry(Fields const& joint, Entry& entry) {
         if (auto const fault = check_two_axes(entry.first_axis, entry.axis))
             fail(axes, fault->what, fault->remedy);
     }
-    if (numbers_of(entry.type) == 1) entry.axis = direction(joint.need("axis", "axis: [0, 0, 1]"));
-    if (entry.type == JointType::helical) {
+    if (has_one_axis(entry.type)) entry.axis = direction(joint.need("axis", "axis: [0, 0, 1]"));
+    if (has_pitch(entry.type)) {
         Node const& pitch = joint.need("pitch", "pitch: 0.1");
         entry.pitch = number(pitch);
         if (entry.pitch == 0)
@@ -175,7 +181,7 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
         if (Node const* const other = joint.find(key))
             fail(*other, fmt::format("key `{}` of a joint whose `motion` is prescribed", key),
                  "keep one of them");
-    if (entry.type == JointType::universal) {
+    if (numbers_of(entry.type) == 2) {
         if (motion.kind != Node::Kind::list || motion.items.size() != 2)
             fail(motion, describe(motion) + " is not two motions",
                  "give a list of two maps, one per axis");
@@ -193,13 +199,12 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
 /// Reads position, rates, torque, spring and damper.
 void read_state(Fields const& joint, JointEntry& entry) {
     JointType const type = entry.type;
-    // The default position is zero; for quaternions that is the identity.
-    if (type == JointType::spherical) entry.q = entry.rest = {1, 0, 0, 0};
+    entry.q = entry.rest = rest_position(type);
     if (Node const* const q = joint.find("q")) entry.q = position(*q, type, false);
     if (Node const* const rest = joint.find("rest")) entry.rest = position(*rest, type, true);
     if (Node const* const qd = joint.find("qd")) entry.qd = components(*qd, type, false);
     if (Node const* const torque = joint.find("torque"))
-        entry.torque = components(*torque, type, type == JointType::universal);
+        entry.torque = components(*torque, type, has_two_axes(type));
     if (Node const* const stiffness = joint.find("stiffness"))
         entry.stiffness = resistance(*stiffness, type);
     if (Node const* const damping = joint.find("damping"))
@@ -211,9 +216,7 @@ void read_state(Fields const& joint, JointEntry& entry) {
 
 }  // namespace
 
-int numbers_of(JointType type) {
-    return type == JointType::free || type == JointType::link ? 0 : coordinates_of(type);
-}
+int numbers_of(JointType type) { return numbers_of_joint(type); }
 
 // The joint's type decides which keys have a meaning.
 JointEntry read_joint(Node const& node) {
@@ -224,7 +227,7 @@ JointEntry read_joint(Node const& node) {
     entry.type = type;
     entry.planar = planar;
     check_keys(node, type, joint_keys(type));
-    if (type == JointType::free) return read_free(joint, entry), entry;
+    if (floats(type)) return read_free(joint, entry), entry;
     read_geometry(joint, entry);
     if (Node const* const motion = joint.find("motion"))
         read_motion(joint, *motion, entry);
@@ -246,15 +249,15 @@ TipEntry read_tip_joint(Node const& node, bool ring) {
     entry.joint.ring = ring;
     entry.joint.type = type;
     entry.planar = planar;
-    if (type == JointType::free)
+    if (floats(type))
         fail(*node.find("type"), "a free joint at the tip restricts nothing", "write `tip: free`");
     std::vector<std::string_view> keys =
-        type == JointType::link ? std::vector<std::string_view>{"type", "length", "translation"}
-                                : geometry_keys(type);
+        is_rod(type) ? std::vector<std::string_view>{"type", "length", "translation"}
+                     : geometry_keys(type);
     keys.emplace_back("anchor");
-    if (type != JointType::link && type != JointType::weld) keys.emplace_back("q");
+    if (!is_rod(type) && !is_rigid(type)) keys.emplace_back("q");
     check_keys(node, type, keys);
-    if (type == JointType::link) {
+    if (is_rod(type)) {
         if (!ring) entry.joint.anchor = vector3(joint.need("anchor", "anchor: [0, 0, 1]"));
         if (Node const* const length = joint.find("length")) entry.joint.length = positive(*length);
         if (Node const* const translation = joint.find("translation"))
@@ -265,7 +268,7 @@ TipEntry read_tip_joint(Node const& node, bool ring) {
         joint.need("translation",
                    "translation: [1, 0, 0], where the first body's origin is in the last body");
     read_geometry(joint, entry.joint);
-    if (type == JointType::spherical) entry.joint.q = {1, 0, 0, 0};
+    entry.joint.q = rest_position(type);
     if (ring) return entry;
     if (Node const* const q = joint.find("q")) entry.joint.q = position(*q, type, false);
     if (Node const* const anchor = joint.find("anchor")) entry.joint.anchor = vector3(*anchor);

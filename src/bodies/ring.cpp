@@ -5,45 +5,19 @@
 
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "scene/pose.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-/// Closure error of a ring: distance, and angle in rad, of the first body from the nearest pose
-/// that the joint allows.
-struct Opening {
-    double distance = 0, angle = 0;
-};
-
 /// Computes the closure error. `b` is the pose of the first body relative to the joint frame.
-Opening opening_of(TipJoint const& joint, Pose const& b) {
-    Mat3 const rotation = to_matrix(b.orientation);
-    // Distance from the axis, and sine of the angle between the axes on both sides.
-    double const across = norm(cross(joint.axis, b.origin)),
-                 tilt = norm(cross(joint.axis, rotation * joint.axis));
-    switch (joint.type) {
-        case JointType::universal:
-            return {norm(b.origin), std::abs(dot(joint.first_axis, rotation * joint.axis) -
-                                             dot(joint.first_axis, joint.axis))};
-        case JointType::revolute:
-            return {norm(b.origin), tilt};
-        case JointType::prismatic:
-            return {across, norm(rotation_vector(b.orientation))};
-        case JointType::helical: {
-            // The motion repeats after each rotation by 2 pi: only the remainder of its translation
-            // counts.
-            double const a_turn = 2 * std::acos(-1.0) * std::abs(joint.pitch);
-            double const along = dot(joint.axis, b.origin) -
-                                 joint.pitch * dot(joint.axis, rotation_vector(b.orientation));
-            return {std::hypot(across, std::remainder(along, a_turn)), tilt};
-        }
-        case JointType::weld:
-            return {norm(b.origin), norm(rotation_vector(b.orientation))};
-        default:
-            return {norm(b.origin), 0};
-    }
+JointOpening opening_of(TipJoint const& joint, Pose const& b) {
+    JointShape const shape{joint.axis, joint.first_axis, joint.pitch};
+    return with_joint(joint.type, [&](auto model) {
+        return decltype(model)::opening(shape, b.orientation, b.origin);
+    });
 }
 
 }  // namespace
@@ -77,7 +51,7 @@ void close_ring(ChainSpec& chain, Node const& node, Scene& scene) {
     Vec3 const apart = to_matrix(to_last) * (first.origin - end.origin) - joint.translation;
     Pose const b{conjugate(to_quaternion(joint.rotation)) * (to_last * first.orientation),
                  transposed_times(joint.rotation, apart)};
-    Opening const open = opening_of(joint, b);
+    JointOpening const open = opening_of(joint, b);
     // A ring of zero length, with all joints at one point, is measured in absolute lengths.
     double const around = reach.length + norm(joint.translation), length = around > 0 ? around : 1;
     if (open.distance <= closure_tolerance * length && open.angle <= closure_tolerance) return;

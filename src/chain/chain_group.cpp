@@ -7,6 +7,7 @@
 #include <map>
 
 #include "chain/chain_order.hpp"
+#include "chain/joints/joint_models.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -22,46 +23,23 @@ Mat3 columns(Eigen::Vector3d const& p, Eigen::Vector3d const& q, Vec3 const& axi
     return m;
 }
 
+/// Returns the axes (p, q, axis), right-handed, of a joint with one axis.
+Mat3 axes_about(Vec3 const& axis) {
+    Eigen::Vector3d const z = as_eigen(axis), p = z.unitOrthogonal();
+    return columns(p, z.cross(p).normalized(), axis);
+}
 /// Returns the axes (p, q, axis) of a joint, right-handed; the identity if the joint has no axis.
-/// For a universal joint, p is normal to both axes.
+/// For a joint with two axes, p is normal to both.
 Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
-    if (type == JointType::free || type == JointType::link || type == JointType::spherical ||
-        type == JointType::weld)
-        return Mat3::identity();
-    Eigen::Vector3d const z = as_eigen(axis);
-    Eigen::Vector3d const p = type == JointType::universal
-                                  ? as_eigen(first_axis).cross(z).normalized()
-                                  : z.unitOrthogonal();
+    if (has_one_axis(type)) return axes_about(axis);
+    if (!has_two_axes(type)) return Mat3::identity();
+    Eigen::Vector3d const z = as_eigen(axis), p = as_eigen(first_axis).cross(z).normalized();
     return columns(p, z.cross(p).normalized(), axis);
 }
 
 /// Returns {c, s, rate}, see ChainGroup::screw.
 Vec3 screw_of(JointType type, double pitch) {
-    if (type == JointType::prismatic) return {{0, 1, 1}};
-    double const rate = type == JointType::helical ? std::hypot(1.0, pitch) : 1.0;
-    return {{1 / rate, type == JointType::helical ? pitch / rate : 0.0, rate}};
-}
-
-/// Number of directions that a joint type constrains; 6 less its degrees of freedom, and 1 for a
-/// link.
-int restricted_directions(JointType type) {
-    switch (type) {
-        case JointType::free:
-            return 0;
-        case JointType::link:
-            return 1;
-        case JointType::spherical:
-            return 3;
-        case JointType::universal:
-            return 4;
-        case JointType::revolute:
-        case JointType::prismatic:
-        case JointType::helical:
-            return 5;
-        case JointType::weld:
-            return 6;
-    }
-    return 0;
+    return with_joint(type, [&](auto model) { return decltype(model)::screw(pitch); });
 }
 
 /// Inverse of a rotational inertia, as a lower triangle.
@@ -77,9 +55,9 @@ Vector<double, 6> inverse(Sym3 const& inertia) {
 /// Type of joint `body` (counted from 0); the number of bodies denotes the tip joint.
 JointType joint_type(ChainSpec const& spec, std::int64_t body) {
     if (body == static_cast<std::int64_t>(spec.size()))
-        return spec.tip == Tip::jointed ? spec.tip_joint.type : JointType::free;
+        return spec.tip == Tip::jointed ? spec.tip_joint.type : FreeJoint::type;
     if (spec.bodies.size() > 0) return spec.bodies.joint[body];
-    return body == 0 && spec.base == Base::free ? JointType::free : JointType::link;
+    return body == 0 && spec.base == Base::free ? FreeJoint::type : LinkJoint::type;
 }
 /// True if the joint has prescribed motion.
 bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
@@ -98,9 +76,9 @@ bool has_implicit_joint(ChainSpec const& spec, std::int64_t body) {
 /// Number of constrained directions of a joint. In a ring, the first body's joint is the closing
 /// joint.
 int restricted_at(ChainSpec const& spec, std::int64_t body, bool implicit) {
-    if (body == 0 && spec.is_ring()) return restricted_directions(spec.tip_joint.type);
+    if (body == 0 && spec.is_ring()) return restricted_by(spec.tip_joint.type);
     if (implicit && has_implicit_joint(spec, body)) return 6;
-    return is_driven_joint(spec, body) ? 6 : restricted_directions(joint_type(spec, body));
+    return is_driven_joint(spec, body) ? 6 : restricted_by(joint_type(spec, body));
 }
 
 /// Smallest number of handle directions that covers every joint of the chain.
@@ -140,7 +118,7 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     fill_inertia(group, b.inertia[body], k);
     if (group.planar) keep_axis_alone(group, b.inertia[body], b.axis[body], k);
     auto const axes = [&](std::int64_t joint) {
-        bool const universal = b.joint[joint] == JointType::universal;
+        bool const universal = has_two_axes(b.joint[joint]);
         return joint_axes(b.joint[joint], b.axis[joint],
                           universal ? b.first_axis[joint] : Vec3::zero());
     };
@@ -159,7 +137,7 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
         return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint)));
     };
     group.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
-    if (group.has_universal && b.joint[body] == JointType::universal)
+    if (group.has_universal && has_two_axes(b.joint[body]))
         group.first_axis.set(k, b.first_axis[body]);
     if (!group.has_screws) return;
     bool const closing =
@@ -167,8 +145,7 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     if (closing)
         group.screw.set(k, screw_of(spec.tip_joint.type, spec.tip_joint.pitch));
     else
-        group.screw.set(
-            k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
+        group.screw.set(k, screw_of(b.joint[body], has_pitch(b.joint[body]) ? b.pitch[body] : 0));
 }
 
 /// Sets the arrays of body k of a linked chain.
@@ -233,7 +210,7 @@ void allocate(ChainGroup& group) {
     std::int64_t const n = group.size;
     group.is_first.assign(n, 0);
     group.is_last.assign(n, 0);
-    group.joint.assign(n, JointType::free);
+    group.joint.assign(n, FreeJoint::type);
     group.mass = Field<1>(n);
     group.inverse_mass = Field<1>(n);
     if (group.beads || group.linked) group.length = Field<1>(n);
@@ -337,7 +314,7 @@ dca::TipTo tip_of(ChainSpec const& spec) {
 /// Records which kinds of joints a chain has.
 void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     auto const look = [&](JointType type) {
-        group.has_universal = group.has_universal || type == JointType::universal;
+        group.has_universal = group.has_universal || has_two_axes(type);
         group.has_screws = group.has_screws || slides(type);
     };
     for (JointType const type : spec.bodies.joint) look(type);
@@ -349,8 +326,7 @@ void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
 bool is_revolute(ChainSpec const& spec) {
     std::vector<JointType> const& joint = spec.bodies.joint;
     return spec.tip == Tip::free &&
-           std::all_of(joint.begin() + (joint.empty() ? 0 : 1), joint.end(),
-                       [](JointType type) { return type == JointType::revolute; });
+           std::all_of(joint.begin() + (joint.empty() ? 0 : 1), joint.end(), pivots);
 }
 
 /// Builds the group of the given chains. Collective.
@@ -416,18 +392,16 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
 int ChainGroup::restricted(std::int64_t k) const {
     return std::min(directions, is_implicit(k) || (!drives.empty() && is_driven(k))
                                     ? 6
-                                    : restricted_directions(joint[static_cast<std::size_t>(k)]));
+                                    : restricted_by(joint[static_cast<std::size_t>(k)]));
 }
 
 LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t last) {
     TipJoint const& tip = spec.tip_joint;
     LocalTip local{last, tip, joint_axes(tip.type, tip.axis, tip.first_axis),
                    screw_of(tip.type, tip.pitch),
-                   std::min(group.directions, restricted_directions(tip.type))};
+                   std::min(group.directions, restricted_by(tip.type))};
     if (group.planar)
-        local.axes =
-            joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()),
-                       Vec3::zero());
+        local.axes = axes_about(transposed_times(tip.rotation, spec.bodies.axis.back()));
     return local;
 }
 

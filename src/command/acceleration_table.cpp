@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "chain/joints/joint_models.hpp"
 #include "measure/accelerations_file.hpp"
 
 namespace catena::command {
@@ -20,8 +21,7 @@ std::string unit_of(Scene const& scene, ChainSpec const& chain, std::size_t k, s
     std::string const per = scene.si ? "/s^2" : "/ps^2", length = scene.si ? "m" : "nm";
     if (count == 0) return "";
     if (count == 6) return "rad" + per + ", " + length + per;
-    bool const linear =
-        chain.is_beads() || chain.is_linked() || chain.bodies.joint[k] == JointType::prismatic;
+    bool const linear = chain.is_beads() || chain.is_linked() || has_lengths(chain.bodies.joint[k]);
     return (linear ? length : "rad") + per;
 }
 

@@ -4,6 +4,7 @@
 
 #include "dca/articulated_sweeps.hpp"
 #include "dca/body_leaf.hpp"
+#include "math/with_number.hpp"
 
 namespace catena::dca {
 
@@ -33,20 +34,12 @@ auto with_articulated_leaf(ChainGroup const& group, Use const& use) {
 /// Selects the leaf with floating handles, for bodies in joint coordinates.
 template <class Use>
 auto with_joint_leaf(ChainGroup const& group, Use const& use) {
-    switch (group.directions) {
-        case 2:
-            return use(Of<BodyLeaf<2, JointFrameHandles<2, false>>>{});
-        case 3:
-            return use(Of<BodyLeaf<3, JointFrameHandles<3, false>>>{});
-        case 4:
-            return use(Of<BodyLeaf<4, JointFrameHandles<4, false>>>{});
-        case 5:
-            return group.has_screws ? use(Of<BodyLeaf<5, JointFrameHandles<5, true>>>{})
-                                    : use(Of<BodyLeaf<5, JointFrameHandles<5, false>>>{});
-        default:
-            return group.has_screws ? use(Of<BodyLeaf<6, JointFrameHandles<6, true>>>{})
-                                    : use(Of<BodyLeaf<6, JointFrameHandles<6, false>>>{});
-    }
+    return with_number<2, 6>(group.directions, [&](auto directions) {
+        constexpr int K = decltype(directions)::value;
+        if constexpr (K >= 5)  // Joints that slide restrict five directions.
+            if (group.has_screws) return use(Of<BodyLeaf<K, JointFrameHandles<K, true>>>{});
+        return use(Of<BodyLeaf<K, JointFrameHandles<K, false>>>{});
+    });
 }
 
 }  // namespace catena::dca

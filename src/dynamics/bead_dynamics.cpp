@@ -1,12 +1,13 @@
 // Start, results and residual of bead chains on the host.
 #include "dynamics/bead_dynamics.hpp"
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena {
 
 std::vector<std::uint8_t> links_of(ChainGroup const& group) {
     std::vector<std::uint8_t> links;
-    for (std::int64_t k = 0; k < group.size; ++k)
-        links.push_back(group.joint[k] == JointType::link ? 1 : 0);
+    for (std::int64_t k = 0; k < group.size; ++k) links.push_back(is_rod(group.joint[k]) ? 1 : 0);
     return links;
 }
 
@@ -76,7 +77,7 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
                                        terms[tip.body][3] + b[3] + turning));
     }
     for (std::int64_t k = 0; k < group.size; ++k) {
-        if (group.joint[k] != JointType::link) continue;
+        if (!is_rod(group.joint[k])) continue;
         Vector<double, 4> const mine = terms[k], before = group.is_first[k]
                                                               ? Vector<double, 4>::zero()
                                                               : terms.view().load(k - 1);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena {
 namespace {
 
@@ -69,7 +71,7 @@ BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
         loads.rest = field_of<4>(group, scene, [](BodyArrays const& b, std::int64_t i) {
             if (!b.rest.empty())
                 return Vector<double, 4>{{b.rest[i][0], b.rest[i][1], b.rest[i][2], b.rest[i][3]}};
-            return Vector<double, 4>{{b.joint[i] == JointType::spherical ? 1.0 : 0.0, 0, 0, 0}};
+            return Vector<double, 4>{{is_ball(b.joint[i]) ? 1.0 : 0.0, 0, 0, 0}};
         });
     }
     if (loads.dampers)

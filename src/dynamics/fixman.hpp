@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
 #include "kinematics/link_geometry.hpp"
 
@@ -26,7 +27,7 @@ class FixmanPotential {
 
   private:
     bool has_link(std::int64_t k) const {
-        return group_.joint[static_cast<std::size_t>(k)] == JointType::link;
+        return is_rod(group_.joint[static_cast<std::size_t>(k)]);
     }
     /// Direction of the outboard link of bead k; zero if it has none.
     Vec3 outboard(ConfigurationView const&, std::int64_t k) const;

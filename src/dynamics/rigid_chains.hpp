@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
 #include "dynamics/body_loads.hpp"
 #include "dynamics/constrained_step.hpp"
@@ -88,7 +89,7 @@ struct RigidChains {
     /// True if body k is a point bead.
     CATENA_HD bool is_bead(std::int64_t k) const { return principal_moment.at(k, 0) == 0; }
     /// True if body k has an inboard joint or link.
-    CATENA_HD bool is_joined(std::int64_t k) const { return joint[k] != JointType::free; }
+    CATENA_HD bool is_joined(std::int64_t k) const { return !floats(joint[k]); }
     /// Attachment of the tip of body k; null if body k is not a last body or its tip is free.
     CATENA_HD HeldTip const* tip_of(std::int64_t k) const {
         return jointed_tip && jointed_tip[k] >= 0 ? tip + jointed_tip[k] : nullptr;
@@ -194,7 +195,7 @@ struct RigidChains {
     /// its rotor. Precondition: given.joint_loads.
     CATENA_HD void set_joint_torque(std::int64_t k) const {
         Vec3 torque_on_body = Vec3::zero();
-        if (joint[k] == JointType::spherical) {
+        if (is_ball(joint[k])) {
             torque_on_body = given.torque.load(k);
             if (given.springs) {
                 Quat const inboard =

@@ -1,6 +1,7 @@
 // Results, residual and potential energy of rigid chains.
 #include "dynamics/rigid_solution.hpp"
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/rigid_chains.hpp"
 
 namespace catena {
@@ -9,7 +10,7 @@ PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given,
                              Field<3> const& position, Field<4> const& orientation) {
     PotentialEnergy e = potential_in(given.gravity, group, position);
     for (std::int64_t k = 0; given.springs && k < group.size; ++k) {
-        if (group.joint[k] != JointType::spherical) continue;
+        if (!is_ball(group.joint[k])) continue;
         Quat const inboard =
             group.is_first[k] ? Quat::identity() : as_quaternion(orientation[k - 1]);
         Quat const rotation = turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]),
@@ -68,7 +69,7 @@ double RigidSolution::residual(Communicator const& communicator) const {
             worst = larger(worst, closing(Vec3{{apart[0], apart[1], apart[2]}}, own[3] + there[3],
                                           tip_direction, tip_bias, k));
         }
-        if (group.joint[static_cast<std::size_t>(k)] == JointType::free) continue;
+        if (floats(group.joint[static_cast<std::size_t>(k)])) continue;
         HandleAcceleration const mine = handle_acceleration(k, group.r1[k]);
         Vector<double, 4> const before =
             group.is_first[k] ? Vector<double, 4>::zero() : point.view().load(k - 1);

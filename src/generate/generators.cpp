@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "generate/conformation.hpp"
 #include "generate/random.hpp"
 #include "math/philox.hpp"
@@ -17,7 +18,7 @@ BodyArrays revolute_chain(std::size_t n) {
     bodies.mass.assign(n, 0);
     bodies.com.assign(n, Vec3::zero());
     bodies.inertia.assign(n, Sym3::zero());
-    bodies.joint.assign(n, JointType::revolute);
+    bodies.joint.assign(n, RevoluteJoint::type);
     bodies.axis.assign(n, {{0, 0, 1}});
     bodies.rotation.assign(n, Mat3::identity());
     bodies.translation.assign(n, Vec3::zero());
@@ -61,7 +62,7 @@ void wind(BodyArrays& bodies, Winding const& winding, double twist) {
         if (k > 0) bodies.rotation[k] = turned;
     }
     if (winding.base == Base::fixed) return;
-    bodies.joint[0] = JointType::free;
+    bodies.joint[0] = FreeJoint::type;
     bodies.axis[0] = Vec3::zero();
     bodies.q[0] = {1, 0, 0, 0};
 }
@@ -114,13 +115,13 @@ BodyArrays elastic_rod(ElasticRod const& rod) {
     bodies.rest.assign(bodies.size(), {1, 0, 0, 0});
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         set_rod(bodies, k, rod.mass, rod.length, rod.radius);
-        bodies.joint[k] = JointType::spherical;
+        bodies.joint[k] = SphericalJoint::type;
         if (k == 0) continue;
         Quat const turn = elastic_turn(rod, stiffness, static_cast<std::int64_t>(k));
         bodies.q[k] = {turn.w, turn.x, turn.y, turn.z};
     }
     bool const free = rod.base == Base::free;
-    bodies.joint[0] = free ? JointType::free : JointType::weld;
+    bodies.joint[0] = free ? FreeJoint::type : WeldJoint::type;
     bodies.q[0] = {free ? 1.0 : 0.0, 0, 0, 0};
     bodies.stiffness[0] = Vec3::zero();
     return bodies;
@@ -129,7 +130,7 @@ BodyArrays elastic_rod(ElasticRod const& rod) {
 BodyArrays polygon(Polygon const& shape) {
     BodyArrays bodies = revolute_chain(static_cast<std::size_t>(shape.sides));
     double const turn = 2 * Draws::pi / static_cast<double>(shape.sides), half = turn / 2;
-    bool const balls = shape.joint == JointType::spherical;
+    bool const balls = is_ball(shape.joint);
     std::array<double, 4> const at_rest =
         balls ? std::array<double, 4>{1, 0, 0, 0} : std::array<double, 4>{0, 0, 0, 0};
     for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -143,7 +144,7 @@ BodyArrays polygon(Polygon const& shape) {
     bodies.qd[0] = balls || shape.base == Base::free ? shape.spin : Vec3{{shape.spin[2], 0, 0}};
     if (shape.base == Base::fixed) return bodies;
     Vec3 const to_centre{{shape.length / 2, shape.length / (2 * std::tan(half)), 0}};
-    bodies.joint[0] = JointType::free;
+    bodies.joint[0] = FreeJoint::type;
     bodies.axis[0] = Vec3::zero();
     bodies.q[0] = {1, 0, 0, 0};
     bodies.free_velocity = cross(to_centre, shape.spin);

@@ -1,6 +1,7 @@
 // Implements random chains: all joint types, physically possible bodies.
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
 
 namespace catena::scene {
@@ -28,31 +29,39 @@ Sym3 random_inertia(Draws& draws, RandomChain const& chain, double mass) {
     return rotated_inertia({{mass * (y + z), mass * (z + x), mass * (x + y)}}, draws.rotation());
 }
 
+/// Returns the types of `mixed` chains, in the order of the list of joint models.
+std::vector<JointType> types_of_mixed() {
+    std::vector<JointType> types;
+    for_each_joint([&](auto model) {
+        if (decltype(model)::mixed) types.push_back(decltype(model)::type);
+    });
+    return types;
+}
+
 /// Joint type of one body; draws a random number only for `mixed`.
 JointType type_of(RandomJoint joint, Draws& draws) {
-    static constexpr JointType all[] = {JointType::revolute,  JointType::universal,
-                                        JointType::spherical, JointType::prismatic,
-                                        JointType::helical,   JointType::weld};
+    static std::vector<JointType> const mixed = types_of_mixed();
     switch (joint) {
         case RandomJoint::planar:
         case RandomJoint::revolute:
-            return JointType::revolute;
+            return RevoluteJoint::type;
         case RandomJoint::universal:
-            return JointType::universal;
+            return UniversalJoint::type;
         case RandomJoint::spherical:
-            return JointType::spherical;
+            return SphericalJoint::type;
         case RandomJoint::weld:
-            return JointType::weld;
+            return WeldJoint::type;
         case RandomJoint::prismatic:
-            return JointType::prismatic;
+            return PrismaticJoint::type;
         case RandomJoint::helical:
-            return JointType::helical;
+            return HelicalJoint::type;
         case RandomJoint::link:
-            return JointType::link;
+            return LinkJoint::type;
         case RandomJoint::mixed:
             break;
     }
-    return all[static_cast<int>(6 * draws.uniform()) % 6];
+    auto const count = static_cast<int>(mixed.size());
+    return mixed[static_cast<std::size_t>(static_cast<int>(count * draws.uniform()) % count)];
 }
 
 /// Draws `count` components in [-1, 1]; the others are zero.
@@ -76,23 +85,16 @@ class RandomJoints {
         Vec3 const axis = axis_of(draws, joint);
         bodies_.axis.push_back(axis);
         if (axes_)
-            bodies_.first_axis.push_back(joint == JointType::universal ? across(draws, axis)
-                                                                       : Vec3::zero());
-        if (pitches_) bodies_.pitch.push_back(joint == JointType::helical ? pitch(draws) : 0);
+            bodies_.first_axis.push_back(has_two_axes(joint) ? across(draws, axis) : Vec3::zero());
+        if (pitches_) bodies_.pitch.push_back(has_pitch(joint) ? pitch(draws) : 0);
         bodies_.q.push_back(position(draws, joint));
-        int const count = joint == JointType::weld ? 0 : rates(joint);
-        bodies_.qd.push_back(components(draws, count));
-        bodies_.torque.push_back(components(draws, joint == JointType::free ? 0 : count));
+        bodies_.qd.push_back(components(draws, rates_of_joint(joint)));
+        bodies_.torque.push_back(components(draws, numbers_of_joint(joint)));
     }
 
   private:
-    static int rates(JointType joint) {
-        return joint == JointType::universal                               ? 2
-               : joint == JointType::spherical || joint == JointType::free ? 3
-                                                                           : 1;
-    }
     Vec3 axis_of(Draws& draws, JointType joint) const {
-        if (rates(joint) == 3 || joint == JointType::weld) return Vec3::zero();
+        if (!has_one_axis(joint) && !has_two_axes(joint)) return Vec3::zero();
         return kind_ == RandomJoint::planar ? Vec3{{0, 0, 1}} : draws.on_sphere();
     }
     /// Draws a first axis at least 30 degrees from `axis`.
@@ -106,25 +108,7 @@ class RandomJoints {
         return draws.uniform() < 0.5 ? size : -size;
     }
     static std::array<double, 4> position(Draws& draws, JointType joint) {
-        double constexpr pi = Draws::pi;
-        switch (joint) {
-            case JointType::revolute:
-            case JointType::helical:
-                return {draws.between(-pi, pi), 0, 0, 0};
-            case JointType::prismatic:
-                return {draws.between(-0.5, 0.5), 0, 0, 0};
-            case JointType::universal: {
-                double const first = draws.between(-pi, pi);
-                return {first, draws.between(-pi, pi), 0, 0};
-            }
-            case JointType::weld:
-            case JointType::link:
-                return {0, 0, 0, 0};
-            case JointType::spherical:
-            case JointType::free:
-                break;
-        }
-        return numbers_of(draws.rotation());
+        return with_joint(joint, [&](auto model) { return model.random_position(draws); });
     }
 
     BodyArrays& bodies_;
@@ -134,7 +118,7 @@ class RandomJoints {
 
 /// Draws the joint frame, or position and velocity of a free body.
 void random_frame(BodyArrays& bodies, Draws& draws, JointType joint, RandomChain const& chain) {
-    if (joint == JointType::free) {
+    if (floats(joint)) {
         bodies.free_position = draws.in_cube(1);
         bodies.free_velocity = draws.in_cube(1);
         bodies.rotation.push_back(Mat3::identity());
@@ -217,7 +201,7 @@ BodyArrays random_bodies(RandomChain const& chain) {
         bodies.com.push_back(draws.in_cube(0.5));
         bodies.inertia.push_back(random_inertia(draws, chain, bodies.mass.back()));
         bool const floating = k == 0 && chain.base == Base::free;
-        JointType const type = floating ? JointType::free : type_of(chain.joint, draws);
+        JointType const type = floating ? FreeJoint::type : type_of(chain.joint, draws);
         random_frame(bodies, draws, type, chain);
         joints.add(draws, type);
         bool const loaded = draws.uniform() < 0.25;

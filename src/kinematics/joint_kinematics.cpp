@@ -1,6 +1,8 @@
 // Initial states in joint coordinates, and the index lists that the kinematics needs.
 #include "kinematics/joint_kinematics.hpp"
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena {
 
 JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
@@ -17,7 +19,7 @@ JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
         state.base_velocity.set(static_cast<std::int64_t>(p), b.free_velocity);
     }
     for (LocalDrive const& d : group.drives) {
-        bool const two = group.joint[d.body] == JointType::universal;
+        bool const two = has_two_axes(group.joint[d.body]);
         state.q.set(d.body, {{scene::value_at(d.first, 0), two ? scene::value_at(d.second, 0) : 0.0,
                               0, 0}});
         state.qd.set(d.body,

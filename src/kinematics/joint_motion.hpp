@@ -7,6 +7,7 @@
 #pragma once
 
 #include "chain/chain_group.hpp"
+#include "chain/joints/joint_models.hpp"
 #include "dca/lane_access.hpp"
 #include "dca/leaf.hpp"
 #include "scene/pose.hpp"
@@ -67,13 +68,6 @@ CATENA_HD MotionOf<Real> compose(MotionOf<Real> const& ab, MotionOf<Real> const&
     return ac;
 }
 
-/// Relative motion that a joint's rates q' produce: angular and linear velocity of the outboard
-/// side relative to the inboard side, M axes.
-template <class Real>
-struct JointRate {
-    Vector<Real, 3> angular, linear;
-};
-
 /// State of bodies in joint coordinates: q and its rates qd, with the conventions of BodyArrays.
 struct StateView {
     View<4> q;
@@ -107,6 +101,9 @@ struct MeetingOf {
     Matrix<Real, 3, 3> axes;
 };
 using Meeting = MeetingOf<double>;
+
+template <class Place>
+struct JointAt;
 
 /// Inboard joints of a group's bodies, as plain pointers for loops over bodies. ChainGroup
 /// documents the arrays.
@@ -169,7 +166,7 @@ struct JointsView {
     /// True if the coordinates of joint k are a unit quaternion.
     template <class Place>
     CATENA_HD bool has_quaternion(Place k) const {
-        return type(k) == JointType::free || type(k) == JointType::spherical;
+        return catena::has_quaternion(type(k));
     }
     /// Index of the piece that contains body k; a binary search.
     CATENA_HD std::int64_t piece_of(std::int64_t k) const {
@@ -199,27 +196,16 @@ struct JointsView {
     /// Rotation of B in M that the coordinates of joint k describe.
     template <class Place>
     CATENA_HD QuatAt<Place> turn_of(StateView const& state, Place k) const {
-        switch (type(k)) {
-            case JointType::free:
-            case JointType::spherical:
-                return as_quaternion(read(state.q, k));
-            case JointType::universal:
-                return from_axis_angle(axis(k), read(state.q, k, 1));
-            case JointType::weld:
-            case JointType::link:
-                return QuatAt<Place>::identity();
-            default:
-                auto const s = screw_of(k);
-                return from_axis_angle(axis(k), s[0] * s[2] * read(state.q, k, 0));
-        }
+        JointAt<Place> const joint_k{*this, state, k};
+        return with_motion(type(k), [&](auto motion) { return motion.turn(joint_k); });
     }
     /// Rotation of the meeting frame M of joint k in the inboard body's axes. It differs from the
     /// joint frame's rotation only in universal joints.
     template <class Place>
     CATENA_HD QuatAt<Place> meeting_rotation(StateView const& state, Place k) const {
+        JointAt<Place> const joint_k{*this, state, k};
         QuatAt<Place> const frame = as_quaternion(read(joint_rotation, k));
-        if (type(k) != JointType::universal) return frame;
-        return frame * from_axis_angle(read(first_axis, k), read(state.q, k, 0));
+        return with_motion(type(k), [&](auto motion) { return motion.meeting(joint_k, frame); });
     }
     /// Meeting point of joint k from the inboard body's origin, in the inboard body's axes. In a
     /// prismatic or helical joint it slides along the axis.
@@ -234,26 +220,13 @@ struct JointsView {
     /// True if joint k slides along its axis.
     template <class Place>
     CATENA_HD bool slides(Place k) const {
-        return has_screws && (type(k) == JointType::prismatic || type(k) == JointType::helical);
+        return has_screws && catena::slides(type(k));
     }
     /// Velocity of body k relative to the inboard side of its joint, M axes.
     template <class Place>
     CATENA_HD JointRate<RealAt<Place>> rate(StateView const& state, Place k) const {
-        using Vector3 = Vec3At<Place>;
-        Vector3 const qd = read(state.qd, k);
-        switch (type(k)) {
-            case JointType::free:
-            case JointType::spherical:
-                return {to_matrix(turn_of(state, k)) * qd, Vector3::zero()};
-            case JointType::universal:
-                return {qd[0] * read(first_axis, k) + qd[1] * axis(k), Vector3::zero()};
-            case JointType::weld:
-            case JointType::link:
-                return {Vector3::zero(), Vector3::zero()};
-            default:
-                Vector3 const s = screw_of(k), along = axis(k);
-                return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
-        }
+        JointAt<Place> const joint_k{*this, state, k};
+        return with_motion(type(k), [&](auto motion) { return motion.rate(joint_k); });
     }
     /// Motion of body k relative to its inboard body; on a free base, relative to the ground.
     /// `rotation` must be turn_of().
@@ -262,28 +235,21 @@ struct JointsView {
                                              QuatAt<Place> const& rotation) const {
         using Vector3 = Vec3At<Place>;
         if constexpr (is_one_body<Place>)
-            if (joint[k] == JointType::free) {
+            if (floats(joint[k])) {
                 std::int64_t const p = piece_of(k);
                 return {rotation, state.qd.load(k), state.base_position.load(p),
                         transposed_times(to_matrix(rotation), state.base_velocity.load(p))};
             }
         MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * rotation, Vector3::zero(),
                                   meeting_point(state, k), Vector3::zero()};
-        switch (type(k)) {
-            case JointType::spherical:
-                m.omega = read(state.qd, k);
-                break;
-            case JointType::revolute:  // The axis has the same components in B and M.
-                m.omega = read(state.qd, k, 0) * axis(k);
-                break;
-            case JointType::weld:
-                break;
-            default:
-                Mat3At<Place> const to_meeting = to_matrix(rotation);
-                auto const r = rate(state, k);
-                m.omega = transposed_times(to_meeting, r.angular);
-                m.velocity = transposed_times(to_meeting, r.linear);
-        }
+        JointAt<Place> const joint_k{*this, state, k};
+        if (with_motion(type(k), [&](auto motion) { return motion.sets_omega(joint_k, m); }))
+            return m;
+        // The code below serves all other motions: copies of it would not be inlined on a GPU.
+        Mat3At<Place> const to_meeting = to_matrix(rotation);
+        auto const r = rate(state, k);
+        m.omega = transposed_times(to_meeting, r.angular);
+        m.velocity = transposed_times(to_meeting, r.linear);
         return m;
     }
     /// Meeting point and joint axes of joint k in its inboard body.
@@ -310,12 +276,36 @@ struct JointsView {
     CATENA_HD void follow_course(StateView const& state, std::int64_t k, double time) const {
         LocalDrive const* const d = drives > 0 ? drive_of(k) : nullptr;
         if (!d) return;
-        bool const two = joint[k] == JointType::universal;
+        bool const two = has_two_axes(joint[k]);
         state.q.store(k, Vector<double, 4>{{scene::value_at(d->first, time),
                                             two ? scene::value_at(d->second, time) : 0.0, 0, 0}});
         state.qd.store(k, Vec3{{scene::rate_at(d->first, time),
                                 two ? scene::rate_at(d->second, time) : 0.0, 0}});
     }
+};
+
+/// Inboard joint of the bodies at a place, as the motions of joints read it (motion_terms.hpp).
+template <class Place>
+struct JointAt {
+    using Real = RealAt<Place>;
+    using Vector3 = Vec3At<Place>;
+    using Rotation = QuatAt<Place>;
+
+    JointsView const& joints;
+    StateView const& state;
+    Place k;
+
+    CATENA_HD Mat3At<Place> axes() const { return joints.axes(k); }
+    CATENA_HD Vector3 axis() const { return joints.axis(k); }
+    CATENA_HD Vector3 first_axis() const { return read(joints.first_axis, k); }
+    CATENA_HD Vector3 screw() const { return joints.screw_of(k); }
+    CATENA_HD bool has_screws() const { return joints.has_screws; }
+    CATENA_HD Real coordinate(int i) const { return read(state.q, k, i); }
+    CATENA_HD Rotation quaternion() const { return as_quaternion(read(state.q, k)); }
+    CATENA_HD Real rate(int i) const { return read(state.qd, k, i); }
+    CATENA_HD Vector3 rates() const { return read(state.qd, k); }
+    CATENA_HD bool floats() const { return catena::floats(joints.type(k)); }
+    CATENA_HD bool pivots() const { return catena::pivots(joints.type(k)); }
 };
 
 }  // namespace catena

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -73,7 +74,7 @@ Solution solution_of(ChainSystem& system) {
             JointType const joint = chain.bodies.joint[k];
             for (int i = 0; i < std::min(3, scene::coordinates_of(joint)); ++i)
                 s.acceleration.push_back(a.joint_acceleration[body][i]);
-            if (joint == JointType::free) append(s.acceleration, a.base_acceleration[body]);
+            if (floats(joint)) append(s.acceleration, a.base_acceleration[body]);
             s.joint_force.insert(s.joint_force.end(), a.joint_force[body].data,
                                  a.joint_force[body].data + 6);
         }
@@ -103,8 +104,7 @@ double largest_difference(Scene const& scene, Solution const& found,
                  i < found.acceleration_offset[body + 1]; ++i) {
                 bool const linear =
                     accelerations_of(chain, k) == 6 && i >= found.acceleration_offset[body] + 3;
-                bool const slides =
-                    chain.bodies.size() > 0 && chain.bodies.joint[k] == JointType::prismatic;
+                bool const slides = chain.bodies.size() > 0 && has_lengths(chain.bodies.joint[k]);
                 int const kind =
                     chain.is_beads() || (chain.is_linked() && accelerations_of(chain, k) == 3)
                         ? bead

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
 #include "generate/random.hpp"
 
@@ -104,7 +105,7 @@ ChainSpec bridge(std::uint64_t seed, double angle) {
     ChainSpec chain;
     chain.base = Base::fixed;
     chain.tip = Tip::jointed;
-    chain.tip_joint.type = JointType::link;
+    chain.tip_joint.type = LinkJoint::type;
     chain.tip_joint.anchor = points.back();
     chain.tip_joint.length = 1;
     points.pop_back();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "observe/observables.hpp"
 
 namespace catena {
@@ -62,25 +63,21 @@ class Pushes {
 void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
     Vec3 const& torque = b.torque[k];
     double size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
-    if (b.joint[k] == JointType::universal)
+    if (has_two_axes(b.joint[k]))
         size /= norm(cross(b.first_axis[k],
                            b.axis[k]));  // axes that are not perpendicular require larger torques
     Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
-    switch (b.joint[k]) {
-        case JointType::revolute:
-            pushes[k].torque(torque[0] * b.axis[k]);
-            if (inboard) inboard->torque(torque[0] * (b.rotation[k] * b.axis[k]));
-            return;
-        case JointType::prismatic:
-            pushes[k].force(size), pushes[k].torque(size * norm(b.com[k]));
-            if (inboard)
-                inboard->force(size),
-                    inboard->torque(size *
-                                    (norm(b.translation[k] - b.com[k - 1]) + std::abs(b.q[k][0])));
-            return;
-        default:
-            pushes[k].torque(size);
-            if (inboard) inboard->torque(size);
+    if (pivots(b.joint[k])) {
+        pushes[k].torque(torque[0] * b.axis[k]);
+        if (inboard) inboard->torque(torque[0] * (b.rotation[k] * b.axis[k]));
+    } else if (has_lengths(b.joint[k])) {
+        pushes[k].force(size), pushes[k].torque(size * norm(b.com[k]));
+        if (inboard)
+            inboard->force(size), inboard->torque(size * (norm(b.translation[k] - b.com[k - 1]) +
+                                                          std::abs(b.q[k][0])));
+    } else {
+        pushes[k].torque(size);
+        if (inboard) inboard->torque(size);
     }
 }
 

@@ -1,5 +1,6 @@
 #include <string>
 
+#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
 #include "oracle/linked.hpp"
 
@@ -148,7 +149,7 @@ Motion<S> solve_free(Articulated<S> const& a) {
 template <class S>
 V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S> motion) {
     if (link.driven) return link.prescribed;
-    if (link.type == JointType::spherical)
+    if (is_ball(link.type))
         return Cholesky<S, 3>(a.inertia.rot)
             .solve(link.effort - a.bias.torque - (a.inertia * motion).torque);
     V3<S> qdd = V3<S>::zero();
@@ -167,7 +168,7 @@ class Solver {
   public:
     Solver(std::vector<Link<S>> const& links, V3<S> const& gravity)
         : links_(links), attitude_(attitudes(links_)), bodies_(links_.size()), gravity_(gravity) {
-        if (!links_.empty() && links_[0].type == JointType::free) refer_to_com();
+        if (!links_.empty() && floats(links_[0].type)) refer_to_com();
     }
 
     OracleResult<S> solve() {
@@ -193,7 +194,7 @@ class Solver {
         Articulated<S>& a = bodies_[k];
         Link<S> const& link = links_[k];
         add_rigid_body(link, attitude_[k], gravity_, a);
-        if (link.type == JointType::free) return;
+        if (floats(link.type)) return;
         V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega,
                     w_here = attitude_[k].omega - link.rate;
         a.closure = {cross(w_here, link.rate) + link.drift,
@@ -201,7 +202,7 @@ class Solver {
                          S(2) * cross(w_here, link.slide)};
         if (link.driven) a.closure = a.closure + along(link, link.prescribed);
         a.closure = a.closure + link.gap;
-        if (link.type == JointType::spherical)
+        if (is_ball(link.type))
             pass_spherical(link, k, a);
         else
             pass_coordinates(link, k, a);
@@ -215,7 +216,7 @@ class Solver {
         Link<S> const& link = links_[k];
         Articulated<S> const& a = bodies_[k];
         M3<S> const& to_world = attitude_[k].orientation;
-        if (link.type == JointType::free) {
+        if (floats(link.type)) {
             Motion<S> const motion = solve_free(a);
             V3<S> const &w = attitude_[k].omega, r = -from_origin_;
             result.base_acceleration =

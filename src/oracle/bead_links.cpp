@@ -1,11 +1,12 @@
 // Links between beads, and forces on beads.
+#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
 #include "oracle/joint.hpp"
 
 namespace catena::oracle {
 
 Vec3 tip_anchor(ChainSpec const& chain) {
-    if (chain.tip_joint.type != JointType::link || !chain.tip_joint.anchor)
+    if (!is_rod(chain.tip_joint.type) || !chain.tip_joint.anchor)
         throw ComputationError("a chain of links ends in a link to an anchor only (" + chain.name +
                                ": tip): give it type link and an anchor");
     return *chain.tip_joint.anchor;

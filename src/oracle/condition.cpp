@@ -1,6 +1,7 @@
 // Condition numbers of the joint-space inertia and of the links' matrix.
 #include <Eigen/Eigenvalues>
 
+#include "chain/joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
 #include "oracle/linked.hpp"
@@ -12,7 +13,7 @@ namespace {
 /// free base come first.
 template <class S>
 std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
-    Index dof = !links.empty() && links[0].type == JointType::free ? 3 : 0;
+    Index dof = !links.empty() && floats(links[0].type) ? 3 : 0;
     std::vector<Index> first;
     for (Link<S> const& link : links) {
         first.push_back(dof);

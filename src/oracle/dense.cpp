@@ -1,5 +1,6 @@
 #include <optional>
 
+#include "chain/joints/joint_models.hpp"
 #include "oracle/system.hpp"
 
 // One linear system for all accelerations and joint forces. Its equations are Newton's and Euler's
@@ -44,7 +45,7 @@ class Assembly {
             b.to_inboard = -(r * link.com);
             b.motion = 6 * static_cast<Index>(k);
             b.joint = size_;
-            if (link.type != JointType::free) add_joint(k, b);
+            if (!floats(link.type)) add_joint(k, b);
             bodies_.push_back(b);
         }
         if (chain.tip == Tip::jointed) close_tip(chain);
@@ -56,7 +57,7 @@ class Assembly {
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
             add_body(k, s);
             Body<S> const& b = bodies_[k];
-            if (links_[k].type == JointType::free) continue;
+            if (floats(links_[k].type)) continue;
             add_joint_end(b, b.to_inboard, b, S(1), s);
             if (k > 0) add_joint_end(bodies_[k - 1], to_outboard(k), b, S(-1), s);
             add_closure(b, s);
@@ -79,7 +80,7 @@ class Assembly {
             result.qdd.push_back(joint_acceleration(k, x));
             result.joint_force.emplace_back();
             result.constraint_force.emplace_back();
-            if (links_[k].type == JointType::free) {
+            if (floats(links_[k].type)) {
                 result.base_acceleration = at_point(b, b.to_inboard, x).linear;
                 continue;
             }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chain/joints/joint_models.hpp"
 #include "oracle/joint.hpp"
 
 namespace catena::oracle {
@@ -80,9 +81,9 @@ class Inverse {
             b.from_inboard = inboard * link.translation;  // includes the joint's displacement
             linear =
                 linear + cross(alpha, b.from_inboard) + cross(omega, cross(omega, b.from_inboard));
-            if (link.type == JointType::free) linear = base_acceleration;
+            if (floats(link.type)) linear = base_acceleration;
             Motion<S> const relative = along(link, qdd[k]);
-            if (link.type != JointType::free)
+            if (!floats(link.type))
                 linear = linear + S(2) * cross(omega, r * link.slide) + r * relative.linear;
             alpha = alpha + r * (relative.angular + link.drift) + cross(omega, r * link.rate);
             omega = r * attitude_[k].omega;

@@ -1,6 +1,7 @@
 // Least-squares projection of velocities on the constraints of tips and links.
 #include <Eigen/QR>
 
+#include "chain/joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/linked.hpp"
 
@@ -53,7 +54,7 @@ void project_bodies(ChainSpec& chain, double time) {
     for (std::size_t k = 0; k < links.size(); ++k) {
         for (int i = 0; i < links[k].unknown(); ++i)
             add(chain.bodies.qd[k][i], k, links[k].free[static_cast<std::size_t>(i)]);
-        if (links[k].type != JointType::free) continue;
+        if (!floats(links[k].type)) continue;
         for (int i = 0; i < 3; ++i) {
             Motion<double> unit;
             unit.linear[i] = 1;

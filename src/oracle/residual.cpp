@@ -1,6 +1,7 @@
 // Residuals of given accelerations by inverse dynamics.
 #include <Eigen/QR>
 
+#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
@@ -34,8 +35,7 @@ std::vector<S> errors(std::vector<Link<S>> const& links, Inverse<S> const& inver
     for (std::size_t k = 0; k < links.size(); ++k) {
         V3<S> const error = inverse.needed(k, bodies[k]) - links[k].effort;
         for (int i = 0; i < links[k].unknown(); ++i) all.push_back(error[i]);
-        for (int i = 0; i < 3 && links[k].type == JointType::free; ++i)
-            all.push_back(bodies[k].force.sum[i]);
+        for (int i = 0; i < 3 && floats(links[k].type); ++i) all.push_back(bodies[k].force.sum[i]);
     }
     return all;
 }
@@ -95,7 +95,7 @@ S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<
         if (links[k].unknown() > 0)
             worst =
                 std::max(worst, joint_residual(links[k], inverse.needed(k, bodies[k]), bodies[k]));
-        if (links[k].type == JointType::free)
+        if (floats(links[k].type))
             worst = std::max(worst, ratio(norm(bodies[k].force.sum), bodies[k].force.largest));
     }
     return worst;

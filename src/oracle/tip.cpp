@@ -1,6 +1,7 @@
 // Chains with a jointed tip: closure of the tip joint, and the wrench that satisfies it.
 #include <cmath>
 
+#include "chain/joints/joint_models.hpp"
 #include "oracle/full_pivoting.hpp"
 #include "oracle/joint.hpp"
 #include "oracle/rotations.hpp"
@@ -126,7 +127,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         g.rotation = transposed_times(last.orientation, first.orientation);
         g.translation = transposed_times(last.orientation, first.origin - last.origin);
         // This is the first axis in G, where it is not constant.
-        if (g.type == JointType::universal)
+        if (has_two_axes(g.type))
             g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
     }
     // The velocity of G relative to the last body, in G's axes, gives the joint rates.
@@ -145,7 +146,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
     if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
     V3<S> drift = V3<S>::zero();
-    if (g.type == JointType::universal)
+    if (has_two_axes(g.type))
         drift = S(rates[0] * rates[1]) * cross(g.free[0].angular, g.free[1].angular);
     tip.closure = {cross(omega, axes * moving.angular) + axes * drift,
                    S(2) * cross(omega, axes * moving.linear)};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
 #include "scene/freedom.hpp"
 
@@ -20,18 +21,15 @@ constexpr std::pair<RandomJoint, char const*> joint_names[] = {
     {RandomJoint::revolute, "revolute"},   {RandomJoint::prismatic, "prismatic"},
     {RandomJoint::weld, "weld"},           {RandomJoint::mixed, "mixed"}};
 
-/// True if a joint of the chain, its jointed tip included, has one of the types.
-bool any_joint(ChainSpec const& chain, std::initializer_list<JointType> types) {
-    auto const among = [&](JointType type) {
-        return std::find(types.begin(), types.end(), type) != types.end();
-    };
-    return std::any_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among) ||
-           (chain.tip == Tip::jointed && among(chain.tip_joint.type));
+/// True if the type of a joint of the chain, its jointed tip included, has the property.
+bool any_joint(ChainSpec const& chain, bool (*has)(JointType)) {
+    return std::any_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), has) ||
+           (chain.tip == Tip::jointed && has(chain.tip_joint.type));
 }
 
 /// Returns the random joint that represents a chain of rigid bodies in measurements.
 RandomJoint joint_of(ChainSpec const& chain) {
-    bool const slides = any_joint(chain, {JointType::prismatic, JointType::helical});
+    bool const sliding = any_joint(chain, slides);
     switch (scene::handle_kind(chain)) {
         case HandleKind::planar:
             return RandomJoint::planar;
@@ -40,10 +38,10 @@ RandomJoint joint_of(ChainSpec const& chain) {
         case HandleKind::universal:
             return RandomJoint::universal;
         case HandleKind::revolute:
-            return slides ? RandomJoint::prismatic : RandomJoint::revolute;
+            return sliding ? RandomJoint::prismatic : RandomJoint::revolute;
         default:
-            return slides || any_joint(chain, {JointType::universal}) ? RandomJoint::mixed
-                                                                      : RandomJoint::weld;
+            return sliding || any_joint(chain, has_two_axes) ? RandomJoint::mixed
+                                                             : RandomJoint::weld;
     }
 }
 

@@ -1,8 +1,10 @@
 // Estimates the memory of a scene from the sizes of the arrays on one rank.
 #include <algorithm>
 
+#include "chain/joints/joint_models.hpp"
 #include "dca/articulated.hpp"
 #include "dca/simd/side_by_side.hpp"
+#include "math/with_number.hpp"
 #include "plan/describe.hpp"
 #include "scene/freedom.hpp"
 #include "tree/tree.hpp"
@@ -65,20 +67,7 @@ SolverSizes sizes_for(int directions, Handles handles) {
                 static_cast<double>(sizeof(dca::ArticulatedJoint<double, 6>) +
                                     sizeof(dca::ArticulatedOffset<double, 6>) +
                                     sizeof(dca::HandleState<double, 6>))};
-    switch (directions) {
-        case 1:
-            return sizes<1>();
-        case 2:
-            return sizes<2>();
-        case 3:
-            return sizes<3>();
-        case 4:
-            return sizes<4>();
-        case 5:
-            return sizes<5>();
-        default:
-            return sizes<6>();
-    }
+    return with_number<1, 6>(directions, [](auto count) { return sizes<count>(); });
 }
 
 // Doubles per body in the arrays of the model and the dynamics (chain/chain_group.hpp and

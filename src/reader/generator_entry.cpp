@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "chain/joints/joint_models.hpp"
 #include "generate/random.hpp"
 #include "keys/maps.hpp"
 
@@ -146,16 +147,16 @@ void GeneratorEntry::read_polygon() {
     Polygon& shape = polygon_.emplace();
     size_ = shape.sides = whole(fields.need("bodies", "bodies: 12"), 3);
     shape.joint = choice<JointType>(fields.need("joint", "joint: spherical"),
-                                    {{"spherical", JointType::spherical},
-                                     {"revolute", JointType::revolute},
-                                     {"link", JointType::link}});
+                                    {{SphericalJoint::name, SphericalJoint::type},
+                                     {RevoluteJoint::name, RevoluteJoint::type},
+                                     {LinkJoint::name, LinkJoint::type}});
     shape.base = request_.base;
     if (Node const* const mass = fields.find("mass")) shape.mass = positive(*mass);
     if (Node const* const length = fields.find("length")) shape.length = positive(*length);
     Node const *const radius = fields.find("radius"), *const spin = fields.find("spin");
     shape.radius = radius ? positive(*radius) : 0.05 * shape.length;
     if (spin) shape.spin = vector3(*spin);
-    beads_ = shape.joint == JointType::link;
+    beads_ = is_rod(shape.joint);
     velocities_ = !beads_;
     for (Node const* const given : {radius, spin})
         if (given && beads_)

@@ -13,6 +13,7 @@
 
 #include "bodies/joint_entry.hpp"
 #include "bodies/ring.hpp"
+#include "chain/joints/joint_models.hpp"
 #include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
 #include "keys/maps.hpp"
@@ -163,9 +164,8 @@ std::vector<Vec3> points_of_bridge(ChainSpec const& chain) {
 /// parallel, its matrix is singular.
 void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
     auto const& joints = chain.bodies.joint;
-    bool const spherical = chain.tip_joint.type == JointType::spherical && !joints.empty() &&
-                           std::all_of(joints.begin(), joints.end(),
-                                       [](JointType t) { return t == JointType::spherical; });
+    bool const spherical = is_ball(chain.tip_joint.type) && !joints.empty() &&
+                           std::all_of(joints.begin(), joints.end(), is_ball);
     if (chain.base != Base::fixed || !(chain.is_beads() || spherical)) return;
     std::vector<Vec3> const points = points_of_bridge(chain);
     // The test needs two handle vectors.
@@ -226,7 +226,7 @@ ReadTip read_tip(Fields const& chain) {
     read.kind = Tip::jointed;
     read.bare = true;
     read.joint.ring = word == Word::ring;
-    read.joint.type = read.joint.ring ? JointType::link : JointType::weld;
+    read.joint.type = read.joint.ring ? LinkJoint::type : WeldJoint::type;
     return read;
 }
 
@@ -237,8 +237,7 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, ChainRequest const& request)
     Node const& written = *request.node.find("tip");
     bool const ring = tip.joint.ring;
     Node const& node = tip.bare ? written : *written.find(ring ? "ring" : "joint");
-    bool const links = chain.is_beads() || chain.is_linked(),
-               link = tip.joint.type == JointType::link;
+    bool const links = chain.is_beads() || chain.is_linked(), link = is_rod(tip.joint.type);
     if (links && tip.bare && !ring)
         fail(node, fmt::format("a fixed tip of {}", kind_of(chain)),
              "write `tip: {joint: {type: link, anchor: [x, y, z]}}`");

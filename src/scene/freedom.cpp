@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena::scene {
 
 namespace {
@@ -21,12 +23,13 @@ class ParallelAxes {
     /// True if the joint keeps all axes so far parallel. `rotation` is that of J in the inboard
     /// body.
     bool add(JointType type, Vec3 const& axis, Mat3 const& rotation) {
-        if (type == JointType::free) return !any_;
-        if (type == JointType::weld) {
+        PlaneRole const role = role_in_plane(type);
+        if (role == PlaneRole::starts) return !any_;
+        if (role == PlaneRole::carries) {
             axis_ = transposed_times(rotation, axis_);
             return true;
         }
-        if (type != JointType::revolute) return false;
+        if (role != PlaneRole::turns) return false;
         bool const parallel = !any_ || norm(cross(rotation * axis, axis_)) <= tolerance_;
         axis_ = axis;
         any_ = true;
@@ -55,8 +58,7 @@ bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& firs
     ParallelAxes axes(tolerance);
     if (!add_all(chain.bodies, axes, first_odd)) return false;
     bool const pinned =
-        chain.tip == Tip::jointed &&
-        chain.tip_joint.type == JointType::spherical;  // allows rotation about any axis
+        chain.tip == Tip::jointed && is_ball(chain.tip_joint.type);  // rotates about any axis
     if (chain.tip == Tip::jointed && !pinned &&
         !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation))
         return false;
@@ -70,35 +72,13 @@ bool is_planar(ChainSpec const& chain) {
     return chain.base == Base::fixed && parallel_within(rounding, chain, odd);
 }
 
-bool are_parallel(Vec3 const& a, Vec3 const& b) {
-    return norm(cross(a, b)) <= rounding * norm(a) * norm(b);
-}
-
-/// Second axis of the universal joint, in J, at the angles of its q.
-Vec3 second_axis(TipJoint const& tip) {
-    Vec3 const &first = tip.first_axis, &axis = tip.axis;
-    double const c = std::cos(tip.q[0]), s = std::sin(tip.q[0]);
-    return c * axis + s * cross(first, axis) + (1 - c) * dot(first, axis) * first;
-}
-
 /// Number of a plane's three directions that the tip's joint restricts. `normal` is in J of the
 /// tip.
 int restricted_in_plane(TipJoint const& tip, Vec3 const& normal) {
-    switch (tip.type) {
-        case JointType::spherical:
-            return 2;
-        case JointType::revolute:
-            return are_parallel(tip.axis, normal) ? 2 : 3;
-        case JointType::universal:
-            return are_parallel(tip.first_axis, normal) || are_parallel(second_axis(tip), normal)
-                       ? 2
-                       : 3;
-        case JointType::prismatic:
-            return std::abs(dot(tip.axis, normal)) <= rounding * norm(tip.axis) * norm(normal) ? 2
-                                                                                               : 3;
-        default:
-            return 3;
-    }
+    JointShape const shape{tip.axis, tip.first_axis, tip.pitch};
+    return with_joint(tip.type, [&](auto model) {
+        return decltype(model)::restricted_in_plane(shape, tip.q, normal);
+    });
 }
 
 /// Number of directions that the tip's joint restricts. If the other joints keep the chain in a
@@ -123,25 +103,7 @@ std::int64_t freedom_of_links(ChainSpec const& chain) {
 
 }  // namespace
 
-int coordinates_of(JointType type) {
-    switch (type) {
-        case JointType::free:
-            return 6;
-        case JointType::link:
-            return 5;
-        case JointType::spherical:
-            return 3;
-        case JointType::universal:
-            return 2;
-        case JointType::revolute:
-        case JointType::prismatic:
-        case JointType::helical:
-            return 1;
-        case JointType::weld:
-            break;
-    }
-    return 0;
-}
+int coordinates_of(JointType type) { return freedom_of(type); }
 
 bool resists(BodyArrays const& bodies, std::size_t body) {
     auto const any = [&](std::vector<Vec3> const& v) {
@@ -208,14 +170,11 @@ std::int64_t degrees_of_freedom(ChainSpec const& chain) {
 
 std::optional<std::pair<std::size_t, JointType>> joint_without_absolute_coordinates(
     ChainSpec const& chain) {
-    auto const held = [](JointType t) {
-        return t == JointType::free || t == JointType::spherical || t == JointType::link;
-    };
     auto const& joints = chain.bodies.joint;
-    auto const found = std::find_if_not(joints.begin(), joints.end(), held);
+    auto const found = std::find_if_not(joints.begin(), joints.end(), is_absolute);
     if (found != joints.end())
         return std::pair{static_cast<std::size_t>(found - joints.begin()), *found};
-    if (chain.tip == Tip::jointed && !held(chain.tip_joint.type))
+    if (chain.tip == Tip::jointed && !is_absolute(chain.tip_joint.type))
         return std::pair{joints.size(), chain.tip_joint.type};
     return std::nullopt;
 }

@@ -1,6 +1,8 @@
 // Implements joint motions and the composition of poses.
 #include "scene/pose.hpp"
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena::scene {
 
 Pose operator*(Pose const& a, Pose const& b) {
@@ -10,23 +12,8 @@ Pose operator*(Pose const& a, Pose const& b) {
 
 Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch,
                   std::array<double, 4> const& q) {
-    switch (type) {
-        case JointType::revolute:
-            return {from_axis_angle(axis, q[0]), Vec3::zero()};
-        case JointType::prismatic:
-            return {Quat::identity(), q[0] * axis};
-        case JointType::helical:
-            return {from_axis_angle(axis, q[0]), (pitch * q[0]) * axis};
-        case JointType::universal:
-            return {from_axis_angle(first_axis, q[0]) * from_axis_angle(axis, q[1]), Vec3::zero()};
-        case JointType::spherical:
-        case JointType::free:
-            return {{q[0], q[1], q[2], q[3]}, Vec3::zero()};
-        case JointType::weld:
-        case JointType::link:
-            break;
-    }
-    return {};
+    JointDisplacement const motion = displacement_of(type, {axis, first_axis, pitch}, q);
+    return {motion.turn, motion.shift};
 }
 
 Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard) {
@@ -34,8 +21,7 @@ Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard) {
     double const pitch = bodies.pitch.empty() ? 0 : bodies.pitch[k];
     Pose const motion =
         joint_motion(bodies.joint[k], bodies.axis[k], first_axis, pitch, bodies.q[k]);
-    if (bodies.joint[k] == JointType::free)
-        return {normalized(motion.orientation), bodies.free_position};
+    if (floats(bodies.joint[k])) return {normalized(motion.orientation), bodies.free_position};
     Pose const frame{to_quaternion(bodies.rotation[k]), bodies.translation[k]};
     return (k == 0 ? Pose{} : inboard) * frame * motion;
 }

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena {
 
 std::int64_t Scene::bodies() const {
@@ -31,25 +33,7 @@ GpuLevels SolverSpec::levels_on_gpu() const {
 }
 
 char const* name_of(JointType type) {
-    switch (type) {
-        case JointType::free:
-            return "free";
-        case JointType::link:
-            return "link";
-        case JointType::spherical:
-            return "spherical";
-        case JointType::revolute:
-            return "revolute";
-        case JointType::universal:
-            return "universal";
-        case JointType::weld:
-            return "weld";
-        case JointType::prismatic:
-            return "prismatic";
-        case JointType::helical:
-            return "helical";
-    }
-    return "?";
+    return with_joint(type, [](auto model) { return decltype(model)::name; });
 }
 
 std::string DynamicsSpec::why_host_alone() const {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "chain/joints/joint_type.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
 #include "math/simd_level.hpp"
@@ -17,21 +18,6 @@
 
 namespace catena {
 
-/// Kind of motion that a joint allows between its inboard and its outboard body.
-enum class JointType : std::uint8_t {
-    free,
-    link,
-    spherical,
-    revolute,
-    universal,
-    weld,
-    prismatic,
-    helical
-};
-/// True if the outboard body moves along the joint's axis.
-CATENA_HD bool slides(JointType type) {
-    return type == JointType::prismatic || type == JointType::helical;
-}
 /// Base of a chain: body 1 moves freely, or its inboard joint attaches it to the ground.
 enum class Base { free, fixed };
 /// Tip of a chain: free, or attached by a TipJoint.
@@ -81,7 +67,7 @@ struct BodyArrays {
     std::vector<Vec3> com;
     /// Inertia about the centre of mass, B.
     std::vector<Sym3> inertia;
-    /// Joint types; entry 0 of a free base is JointType::free.
+    /// Joint types; entry 0 of a free base is `free`.
     std::vector<JointType> joint;
     /// Unit axis in B; its components in J are equal. Universal joint: the second axis, B.
     std::vector<Vec3> axis;

@@ -2,6 +2,7 @@
 // difference of its two orders, in any Space.
 #pragma once
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_dynamics.hpp"
 #include "dynamics/joint/joint_steps.hpp"
 
@@ -171,9 +172,9 @@ struct EmbeddedSteps {
     }
 
   private:
-    /// True unless joint k is prismatic.
+    /// True unless the coordinates of joint k are lengths.
     CATENA_HD bool is_angular(std::int64_t k) const {
-        return steps.chains.joints().joint[k] != JointType::prismatic;
+        return !has_lengths(steps.chains.joints().joint[k]);
     }
     /// Maximum that keeps NaN.
     CATENA_HD static double worse(double a, double b) { return b > a || b != b ? b : a; }

@@ -2,6 +2,7 @@
 // the rates that follow from its acceleration.
 #pragma once
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_loads.hpp"
 
 namespace catena {
@@ -50,27 +51,13 @@ struct JointChains : JointLoads {
     template <class Place>
     CATENA_HD Vec3At<Place> rate_of_joint(Place k, Vec3At<Place> const& relative_alpha,
                                           RealAt<Place> const& relative_slide) const {
-        using Vector3 = Vec3At<Place>;
-        RealAt<Place> const none(0);
-        switch (joints().type(k)) {
-            case JointType::universal: {
-                auto const axes = joints().axes(k);
-                Vector3 linear;
-                Vector3 const relative =
-                    relative_alpha - transposed_times(axes, joint_velocity_term(k, linear));
-                // First axis, (0, y, z) in the joint's axes, where the second axis is (0, 0, 1).
-                Vector3 const first = transposed_times(axes, read(joints().first_axis, k));
-                auto const u1 = relative[1] / first[1];
-                return {{u1, relative[2] - first[2] * u1, none}};
-            }
-            case JointType::weld:
-            case JointType::link:
-                return Vector3::zero();
-            default:
-                if (!joints().has_screws) return {{relative_alpha[2], none, none}};
-                auto const s = read(joints().screw, k);
-                return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], none, none}};
-        }
+        auto const drift = [&] {
+            Vec3At<Place> linear;
+            return joint_velocity_term(k, linear);
+        };
+        return with_axis_motion(joints().type(k), [&](auto motion) {
+            return motion.acceleration(joint_at(k), relative_alpha, relative_slide, drift);
+        });
     }
     /// True if the solver returned the acceleration of joint k itself.
     template <class Place>
@@ -93,17 +80,16 @@ struct JointChains : JointLoads {
         if constexpr (is_one_body<Place>)
             if (LocalDrive const* const d = drive_of(k))
                 return {{scene::acceleration_at(d->first, time),
-                         joints().joint[k] == JointType::universal
-                             ? scene::acceleration_at(d->second, time)
-                             : 0.0,
+                         has_two_axes(joints().joint[k]) ? scene::acceleration_at(d->second, time)
+                                                         : 0.0,
                          0}};
         if (goes_by_revolute(k)) return {{rate_of_revolute(k), RealAt<Place>(0), RealAt<Place>(0)}};
         Vector3 const turning = read(alpha, k);
-        if (joints().type(k) == JointType::free) return turning;
+        if (floats(joints().type(k))) return turning;
         auto const axes1 = joints().axes(k), to_meeting = rotation(k);
         auto const before = inboard_end_of(k);
         Vector3 const inboard{{before[0], before[1], before[2]}};
-        if (joints().type(k) == JointType::spherical)
+        if (is_ball(joints().type(k)))
             return turning - transposed_times(to_meeting, axes1 * inboard) +
                    cross(read(scan.state.qd, k), omega(k));
         RealAt<Place> slide(0);
@@ -126,9 +112,7 @@ struct JointChains : JointLoads {
                given.gravity;
     }
     /// True if body k is the base of a free chain.
-    CATENA_HD bool on_free_base(std::int64_t k) const {
-        return joints().joint[k] == JointType::free;
-    }
+    CATENA_HD bool on_free_base(std::int64_t k) const { return floats(joints().joint[k]); }
     /// Stores the rates of body k, and of its base if that is free.
     template <class Place>
     CATENA_HD void set_rates(Place k, RatesView const& out) const {

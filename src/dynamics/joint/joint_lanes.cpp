@@ -1,6 +1,8 @@
 // The choice of bodies and runs to place side by side in vector lanes.
 #include "dynamics/joint/joint_lanes.hpp"
 
+#include "chain/joints/joint_models.hpp"
+
 namespace catena {
 namespace {
 
@@ -10,18 +12,7 @@ namespace {
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
     if (k == 0 || k + lanes >= group.size) return false;
     JointType const type = group.joint[static_cast<std::size_t>(k)];
-    switch (type) {
-        case JointType::spherical:
-            if (springs) return false;
-            break;
-        case JointType::revolute:
-        case JointType::universal:
-        case JointType::prismatic:
-        case JointType::helical:
-            break;
-        default:
-            return false;
-    }
+    if (numbers_of_joint(type) == 0 || (springs && is_ball(type))) return false;
     for (std::int64_t i = k; i <= k + lanes;
          // Includes the joint after them, whose motion moves their handle 2.
          ++i) {

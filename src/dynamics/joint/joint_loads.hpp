@@ -3,6 +3,7 @@
 // columns of ChainGroup::axes1 in M.
 #pragma once
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/body_loads.hpp"
 #include "dynamics/joint/jointed_tips.hpp"
 #include "kinematics/carried_beads.hpp"
@@ -95,6 +96,11 @@ struct JointLoads {
     View<4> outboard_end;
 
     CATENA_HD JointsView const& joints() const { return scan.joints; }
+    /// Inboard joint of the bodies at a place, for the motions of joints.
+    template <class Place>
+    CATENA_HD JointAt<Place> joint_at(Place k) const {
+        return {scan.joints, scan.state, k};
+    }
     // Members below take a place k: one body, or several consecutive bodies side by side
     // (dca/lane_access.hpp, JointsView::type).
     /// Rotation of B in M.
@@ -175,7 +181,7 @@ struct JointLoads {
         if (given.springs) {
             auto const stiffness = read(given.stiffness, k);
             auto const rest = read(given.rest, k);
-            if (joints().type(k) != JointType::spherical) {
+            if (!is_ball(joints().type(k))) {
                 for (int i = 0; i < 2; ++i) along[i] = along[i] - stiffness[i] * (q[i] - rest[i]);
             } else if constexpr (is_one_body<Place>) {
                 along = along +
@@ -208,20 +214,10 @@ struct JointLoads {
     /// Columns of P of an implicit joint: motion along the joint's axes per unit rate of each
     /// coordinate. Returns the number of coordinates.
     CATENA_HD int free_motions(std::int64_t k, Mat3& motions) const {
-        Mat3 const axes = joints().axes(k);
         motions = Mat3::zero();
-        switch (joints().joint[k]) {
-            case JointType::spherical:
-                motions = transposed_times(axes, rotation(k));
-                return 3;
-            case JointType::universal:
-                motions.set_column(0, transposed_times(axes, joints().first_axis.load(k)));
-                motions.set_column(1, Vec3{{0, 0, 1}});
-                return 2;
-            default:
-                motions.set_column(0, Vec3{{0, 0, joints().screw_of(k)[2]}});
-                return 1;
-        }
+        return with_motion(joints().joint[k], [&](auto motion) {
+            return motion.free_motions(joint_at(k), [&] { return rotation(k); }, motions);
+        });
     }
     /// Sets compliance and acceleration of implicit joint k from the torque along its coordinates.
     CATENA_HD void set_implicit(std::int64_t k, Vec3 const& torque_along) const {
@@ -258,29 +254,9 @@ struct JointLoads {
     /// Component 3 is the force along the last axis.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> load_along_axes(Place k, Vec3At<Place> const& along) const {
-        using Real = RealAt<Place>;
-        Real const none(0);
-        auto const axes = joints().axes(k);
-        switch (joints().type(k)) {
-            case JointType::spherical: {
-                auto const t = transposed_times(axes, rotation(k) * along);
-                return {{t[0], t[1], t[2], none}};
-            }
-            case JointType::universal: {
-                auto const first = read(joints().first_axis, k), second = axes.column(2);
-                Real const g = dot(first, second),
-                           x = (along[0] - g * along[1]) / (Real(1) - g * g), y = along[1] - g * x;
-                auto const t = transposed_times(axes, plus_scaled(x * first, y, second));
-                return {{t[0], t[1], t[2], none}};
-            }
-            case JointType::free:
-            case JointType::link:
-            case JointType::weld:
-                return Vector<Real, 4>::zero();
-            default:
-                auto const s = joints().screw_of(k);
-                return {{none, none, s[0] / s[2] * along[0], s[1] / s[2] * along[0]}};
-        }
+        return with_motion(joints().type(k), [&](auto motion) {
+            return motion.load(joint_at(k), [&] { return rotation(k); }, along);
+        });
     }
     /// Adds the known loads of the joints at both ends of body k, along their free directions, to
     /// its moment and force, B.
@@ -335,22 +311,16 @@ struct JointLoads {
         // The inboard or the outboard body's angular velocity: both give the same product.
         Vector3 angular = cross(w, rate.angular);
         linear = Real(2) * cross(w - rate.angular, rate.linear);
-        bool const universal = joints().type(k) == JointType::universal;
-        auto const axes = joints().axes(k);
-        if (universal) {
-            Vector3 const qd = read(scan.state.qd, k);
-            angular = plus_scaled(angular, qd[0] * qd[1],
-                                  cross(read(joints().first_axis, k), axes.column(2)));
-        }
+        auto const type = joints().type(k);
+        angular =
+            with_motion(type, [&](auto motion) { return motion.with_drift(joint_at(k), angular); });
         if constexpr (is_one_body<Place>)
             if (LocalDrive const* const drive = drive_of(k)) {
-                double const first = scene::acceleration_at(drive->first, time),
-                             second = scene::acceleration_at(drive->second, time);
-                if (universal)
-                    return angular + first * joints().first_axis.load(k) + second * axes.column(2);
-                Vec3 const s = joints().screw_of(k);
-                linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));
-                return plus_scaled(angular, s[0] * s[2] * first, axes.column(2));
+                Vec3 const qdd{{scene::acceleration_at(drive->first, time),
+                                scene::acceleration_at(drive->second, time), 0}};
+                return with_motion(type, [&](auto motion) {
+                    return motion.with_prescribed(joint_at(k), qdd, angular, linear);
+                });
             }
         return angular;
     }
@@ -406,14 +376,14 @@ struct JointLoads {
         // Velocity terms -c along the joint's axes.
         Vector3 linear = Vector3::zero(), angular = Vector3::zero();
         JointType const type = joints().type(k);
-        bool const any_axis = type == JointType::spherical && !implicit.has(k);
-        if (type != JointType::free && !any_axis && type != JointType::weld && !joints().planar) {
+        bool const any_axis = is_ball(type) && !implicit.has(k);
+        if (!floats(type) && !any_axis && !is_rigid(type) && !joints().planar) {
             angular = -transposed_times(axes1, joint_velocity_term(k, linear));
             linear = -transposed_times(axes1, linear);
         }
         // The ground accelerates by -g.
         if constexpr (is_one_body<Place>)
-            if (joints().is_first[k] && type != JointType::free)
+            if (joints().is_first[k] && !floats(type))
                 linear = linear +
                          transposed_times(
                              axes1, to_meeting * transposed_times(orientation(k), given.gravity));

@@ -1,5 +1,6 @@
 // Accelerations and joint forces of a solution in joint coordinates, in ground axes, and its
 // potential energy.
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_solution.hpp"
 #include "dynamics/joint/out_of_plane.hpp"
 
@@ -110,10 +111,10 @@ PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Fi
         if (!given.springs) continue;
         Vec3 const stiffness = given.stiffness[k];
         Vector<double, 4> const rest = given.rest[k], at = q[k];
-        if (group.joint[k] == JointType::spherical)
+        if (is_ball(group.joint[k]))
             e.springs.back() =
                 spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(at));
-        else if (group.joint[k] != JointType::free)
+        else if (!floats(group.joint[k]))
             for (int i = 0; i < 2; ++i)
                 e.springs.back() += 0.5 * stiffness[i] * (at[i] - rest[i]) * (at[i] - rest[i]);
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/body_loads.hpp"
 
 namespace catena {
@@ -21,7 +22,7 @@ JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vec3 const& screw, in
     tip.axes = axes;
     tip.screw = {screw[0], screw[1]};
     tip.restricted = restricted;
-    tip.pitched = joint.type == JointType::helical && joint.pitch != 0;
+    tip.pitched = has_pitch(joint.type) && joint.pitch != 0;
     tip.cosine = dot(joint.first_axis, joint.axis);
     return tip;
 }

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <vector>
 
+#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
 #include "kinematics/joint_kinematics.hpp"
+#include "math/with_number.hpp"
 
 namespace catena {
 
@@ -48,19 +50,12 @@ double reach_of(ChainGroup const&, Scene const&);
 template <class Place>
 CATENA_HD void store_first(DirectionsView view, Place k, int directions,
                            Vector<RealAt<Place>, 6> const& v) {
-    using Real = RealAt<Place>;
-    switch (directions) {
-        case 2:
-            return write_directions(view, k, Vector<Real, 2>{{v[0], v[1]}});
-        case 3:
-            return write_directions(view, k, Vector<Real, 3>{{v[0], v[1], v[2]}});
-        case 4:
-            return write_directions(view, k, Vector<Real, 4>{{v[0], v[1], v[2], v[3]}});
-        case 5:
-            return write_directions(view, k, Vector<Real, 5>{{v[0], v[1], v[2], v[3], v[4]}});
-        default:
-            return write_directions(view, k, v);
-    }
+    with_number<2, 6>(directions, [&](auto count) {
+        constexpr int K = decltype(count)::value;
+        Vector<RealAt<Place>, K> first;
+        for (int i = 0; i < K; ++i) first[i] = v[i];
+        write_directions(view, k, first);
+    });
 }
 
 /// Extends a vector to six numbers by zeros.
@@ -72,18 +67,8 @@ CATENA_HD Vector<double, 6> with_zeros(Vector<double, K> const& v) {
 }
 /// Loads `directions` numbers of body k and extends them by zeros.
 CATENA_HD Vector<double, 6> load_first(ConstDirectionsView view, std::int64_t k, int directions) {
-    switch (directions) {
-        case 2:
-            return with_zeros(view.load<2>(k));
-        case 3:
-            return with_zeros(view.load<3>(k));
-        case 4:
-            return with_zeros(view.load<4>(k));
-        case 5:
-            return with_zeros(view.load<5>(k));
-        default:
-            return view.load<6>(k);
-    }
+    return with_number<2, 6>(
+        directions, [&](auto count) { return with_zeros(view.load<decltype(count)::value>(k)); });
 }
 
 /// Tips of a rank and the motions of their two sides, with the operations on one tip.
@@ -136,7 +121,7 @@ struct JointedTips {
     CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
         Place m{t.translation - t.com, t.rotation * t.axes};
         if (slides(t.type)) m.point = e.apart() - t.com;
-        if (t.type == JointType::universal) {
+        if (has_two_axes(t.type)) {
             Vec3 const first = t.rotation * t.first_axis, second = e.to_last(t.axis);
             Vec3 const normal = cross(first, second), p = (1 / norm(normal)) * normal;
             m.axes.set_column(0, p);
@@ -166,18 +151,13 @@ struct JointedTips {
         return {transposed_times(m.axes, e.to_last(e.other.omega) - w),
                 transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
-    /// True if the joint has one axis, fixed in both bodies: revolute, prismatic, helical.
-    CATENA_HD static bool turns_about_axis(JointType type) {
-        return type == JointType::revolute || slides(type);
-    }
     /// Velocity-dependent part c of the joint's relative acceleration (src/dca/README.md, "Joint
     /// bias"), with the rates that follow from the bodies' motion.
     CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
-        if (t.type != JointType::universal && !turns_about_axis(t.type))
-            return {Vec3::zero(), Vec3::zero()};
+        if (!has_two_axes(t.type) && !has_one_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
         Pair const rate = opening_rate(t, e, m);
-        if (t.type == JointType::universal) {
+        if (has_two_axes(t.type)) {
             // First axis: (0, y, z).
             Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);
             Vec3 const u{{0, rate.angular[1], rate.angular[2]}};
@@ -196,13 +176,13 @@ struct JointedTips {
         // Rotation of G in J.
         Quat const relative =
             conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;
-        if (t.type == JointType::weld) open.angular = rotation_vector(relative);
-        if (t.type == JointType::universal) {
+        if (is_rigid(t.type)) open.angular = rotation_vector(relative);
+        if (has_two_axes(t.type)) {
             Vec3 const second = to_matrix(relative) * t.axis;
             open.angular[0] =
                 -(dot(t.first_axis, second) - t.cosine) / norm(cross(t.first_axis, second));
         }
-        if (turns_about_axis(t.type)) {
+        if (has_one_axis(t.type)) {
             open.angular = transposed_times(t.axes, cross(t.axis, to_matrix(relative) * t.axis));
             double turned = dot(rotation_vector(relative), t.axis);
             // The number of whole revolutions follows from the sliding.

@@ -4,6 +4,7 @@
 // JointLanes has the counterpart with runs side by side.
 #pragma once
 
+#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_loads.hpp"
 
 namespace catena {
@@ -67,7 +68,7 @@ struct RevoluteScan {
         std::int64_t const k = run.body + i;
         if (joint_by_joint) return s.load<false>(k);
         // All loads come first, so that a GPU waits for them together.
-        bool const is_revolute = !may_begin || i > 0 || s.joints.joint[k] == JointType::revolute;
+        bool const is_revolute = !may_begin || i > 0 || pivots(s.joints.joint[k]);
         Vec3 const axis = s.joints.axis(k);
         double const angle = s.state.q.at(k, 0), rate = s.state.qd.at(k, 0);
         Quat const frame = as_quaternion(read(s.joints.joint_rotation, k));

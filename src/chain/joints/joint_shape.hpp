@@ -1,0 +1,120 @@
+// Geometry that joint models compute on the host, and the properties that a model need not state.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "chain/joints/joint_type.hpp"
+#include "math/linear.hpp"
+#include "math/rotation.hpp"
+
+namespace catena {
+
+/// Constants of a joint, as BodyArrays and TipJoint define them. A type ignores what it has not.
+struct JointShape {
+    /// Unit axis (universal: the second axis, B), and the first axis of a universal joint, J.
+    Vec3 axis, first_axis;
+    /// Translation per radian of a helical joint.
+    double pitch = 0;
+};
+
+/// Motion X(q) of the outboard body's frame B in the joint frame J.
+struct JointDisplacement {
+    Quat turn = Quat::identity();
+    Vec3 shift = Vec3::zero();
+};
+
+/// Distance of the frame B from the nearest pose that a joint allows, and angle from it in rad.
+struct JointOpening {
+    double distance = 0, angle = 0;
+};
+
+/// {c, s, rate}: a coordinate q rotates the joint by c rate q about its axis and slides it by
+/// s rate q; c^2 + s^2 = 1 (ChainGroup::screw).
+inline constexpr Vec3 pure_rotation{{1, 0, 1}};
+
+/// Effect of a joint on the normal of a plane in which the bodies before it move. breaks: the
+/// bodies after it leave the plane. starts: no joint before it, so any plane may follow. carries:
+/// the normal is fixed in both bodies. turns: the bodies stay in the plane if the axis is normal.
+enum class PlaneRole : std::uint8_t { breaks, starts, carries, turns };
+
+/// True if two vectors are parallel up to rounding.
+inline bool are_parallel(Vec3 const& a, Vec3 const& b) {
+    double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();
+    return norm(cross(a, b)) <= rounding * norm(a) * norm(b);
+}
+/// True if two vectors are perpendicular up to rounding.
+inline bool are_perpendicular(Vec3 const& a, Vec3 const& b) {
+    double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();
+    return std::abs(dot(a, b)) <= rounding * norm(a) * norm(b);
+}
+
+/// Properties of a joint model, with the values that hold unless the model states others.
+struct JointDefaults {
+    /// Degrees of freedom of a body on this joint, and number of directions that the joint
+    /// restricts.
+    static constexpr int freedom = 1, restricted = 5;
+    /// Number of components of torque, stiffness and damping, and of the rates qd.
+    static constexpr int numbers = 1, rates = 1;
+    /// Number of axes that a scene gives.
+    static constexpr int axes = 0;
+    /// True if q is a unit quaternion, and if the coordinates are lengths.
+    static constexpr bool quaternion = false, lengths = false;
+    /// True if the joint slides along its axis, and if it does so by a pitch as it rotates.
+    static constexpr bool slides = false, pitched = false;
+    /// True for the joint that attaches body 1 of a free base to nothing.
+    static constexpr bool floats = false;
+    /// True for a rod of fixed length between two points.
+    static constexpr bool rod = false;
+    /// True if the joint rotates about every axis, with rates and torques as vectors in B.
+    static constexpr bool ball = false;
+    /// True if the joint rotates about one axis and does nothing else.
+    static constexpr bool pivots = false;
+    /// True if the joint allows no motion.
+    static constexpr bool rigid = false;
+    /// True if the solvers in absolute coordinates support the joint.
+    static constexpr bool absolute = false;
+    /// True if random chains of kind `mixed` contain it. A type that is added later stays out:
+    /// the chains of a seed must not change.
+    static constexpr bool mixed = false;
+    /// Name of the type for chains that promise to move in a plane; null if there is none.
+    static constexpr char const* name_in_plane = nullptr;
+    static constexpr PlaneRole plane = PlaneRole::breaks;
+
+    /// Screw {c, s, rate} of the joint, see pure_rotation.
+    static Vec3 screw(double) { return pure_rotation; }
+    /// Closure error of a ring: `turn` and `origin` are the pose of B in J.
+    static JointOpening opening(JointShape const&, Quat const&, Vec3 const& origin) {
+        return {norm(origin), 0};
+    }
+    /// Number of a plane's three directions that a tip's joint restricts at position q. `normal` is
+    /// the plane's, in J.
+    static int restricted_in_plane(JointShape const&, std::array<double, 4> const&, Vec3 const&) {
+        return 3;
+    }
+    /// Position of a joint without coordinates; draws nothing.
+    template <class Draws>
+    static std::array<double, 4> random_position(Draws&) {
+        return {0, 0, 0, 0};
+    }
+};
+
+/// Draws a uniform angle in [-pi, pi].
+template <class Draws>
+double random_angle(Draws& draws) {
+    return draws.between(-Draws::pi, Draws::pi);
+}
+/// Draws a uniform rotation as a unit quaternion.
+template <class Draws>
+std::array<double, 4> random_quaternion(Draws& draws) {
+    Quat const q = draws.rotation();
+    return {q.w, q.x, q.y, q.z};
+}
+/// Sine of the angle between a joint's axis on both of its sides.
+inline double tilt_of(Vec3 const& axis, Quat const& turn) {
+    return norm(cross(axis, to_matrix(turn) * axis));
+}
+
+}  // namespace catena

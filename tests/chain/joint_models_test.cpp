@@ -1,0 +1,144 @@
+// The list of joint models: what every model states fits together, and what files rely on stays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "chain/joints/joint_models.hpp"
+#include "generate/generators.hpp"
+#include "generate/random.hpp"
+#include "scene/freedom.hpp"
+
+namespace catena::test {
+namespace {
+
+std::vector<JointType> types() {
+    std::vector<JointType> all;
+    for_each_joint([&](auto model) { all.push_back(decltype(model)::type); });
+    return all;
+}
+
+/// Shape of a joint with random axes and a pitch.
+JointShape random_shape(scene::Draws& draws) {
+    Vec3 const axis = draws.on_sphere();
+    Vec3 first = draws.on_sphere();
+    while (norm(cross(first, axis)) < 0.5) first = draws.on_sphere();
+    return {axis, first, 0.2};
+}
+
+TEST(JointModels, names_and_codes_of_files_stay) {
+    std::map<int, std::string> names;
+    for_each_joint([&](auto model) { names[decltype(model)::code] = decltype(model)::name; });
+    EXPECT_EQ(names, (std::map<int, std::string>{{0, "free"},
+                                                 {1, "link"},
+                                                 {2, "spherical"},
+                                                 {3, "revolute"},
+                                                 {4, "universal"},
+                                                 {5, "weld"},
+                                                 {6, "prismatic"},
+                                                 {7, "helical"}}));
+    for_each_joint(
+        [](auto model) { EXPECT_STREQ(name_of(decltype(model)::type), decltype(model)::name); });
+}
+
+TEST(JointModels, every_type_is_listed_once) {
+    std::set<JointType> distinct;
+    for (JointType const type : types()) distinct.insert(type);
+    EXPECT_EQ(distinct.size(), types().size());
+    for (int code = 0; code < static_cast<int>(types().size()); ++code)
+        EXPECT_TRUE(distinct.count(static_cast<JointType>(code)));
+}
+
+TEST(JointModels, free_and_restricted_directions_are_six) {
+    for (JointType const type : types()) {
+        EXPECT_EQ(freedom_of(type) + restricted_by(type), 6) << name_of(type);
+        EXPECT_EQ(scene::coordinates_of(type), freedom_of(type));
+        if (!floats(type) && !is_rod(type)) {
+            EXPECT_EQ(numbers_of_joint(type), freedom_of(type)) << name_of(type);
+        }
+    }
+}
+
+TEST(JointModels, every_type_has_one_motion) {
+    for (JointType const type : types()) {
+        int const motions =
+            joints::has_motion<QuaternionMotion>(type) + joints::has_motion<UniversalMotion>(type) +
+            joints::has_motion<RigidMotion>(type) + joints::has_motion<ScrewMotion>(type);
+        EXPECT_EQ(motions, 1) << name_of(type);
+        EXPECT_EQ(has_quaternion(type), joints::has_motion<QuaternionMotion>(type));
+    }
+}
+
+TEST(JointModels, random_positions_keep_the_joint_closed) {
+    scene::Draws draws(1, 0);
+    for_each_joint([&](auto model) {
+        using Model = decltype(model);
+        for (int i = 0; i < 20; ++i) {
+            JointShape const shape = random_shape(draws);
+            auto const q = Model::random_position(draws);
+            JointDisplacement const x = displacement_of(Model::type, shape, q);
+            JointOpening const closed = Model::opening(shape, x.turn, x.shift);
+            EXPECT_LT(closed.distance, 1e-14) << Model::name;
+            EXPECT_LT(closed.angle, 1e-7) << Model::name;
+            Vec3 const across = cross(shape.axis, shape.first_axis);
+            JointOpening const open = Model::opening(shape, x.turn, x.shift + 0.1 * across);
+            EXPECT_GT(open.distance, 0.04) << Model::name;
+        }
+    });
+}
+
+TEST(JointModels, rest_position_is_the_identity) {
+    scene::Draws draws(2, 0);
+    JointShape const shape = random_shape(draws);
+    for (JointType const type : types()) {
+        if (is_rigid(type) || is_rod(type)) continue;
+        JointDisplacement const x = displacement_of(type, shape, rest_position(type));
+        EXPECT_EQ(norm(rotation_vector(x.turn)), 0) << name_of(type);
+        EXPECT_EQ(norm(x.shift), 0) << name_of(type);
+    }
+}
+
+TEST(JointModels, screws_are_normalised) {
+    for_each_joint([](auto model) {
+        Vec3 const s = decltype(model)::screw(0.3);
+        EXPECT_NEAR(s[0] * s[0] + s[1] * s[1], 1, 1e-15);
+        EXPECT_EQ(s[1] != 0, slides(decltype(model)::type)) << decltype(model)::name;
+    });
+}
+
+TEST(JointModels, mixed_chains_keep_their_order) {
+    std::vector<std::string> mixed;
+    for_each_joint([&](auto model) {
+        if (decltype(model)::mixed) mixed.emplace_back(decltype(model)::name);
+    });
+    EXPECT_EQ(mixed, (std::vector<std::string>{"revolute", "universal", "spherical", "prismatic",
+                                               "helical", "weld"}));
+    scene::RandomChain chain;
+    chain.bodies = 8;
+    chain.joint = scene::RandomJoint::mixed;
+    std::string names;
+    for (JointType const type : scene::random_bodies(chain).joint)
+        names += std::string(name_of(type)) + " ";
+    EXPECT_EQ(names,
+              "helical revolute spherical prismatic prismatic prismatic revolute spherical ");
+}
+
+TEST(JointModels, tips_in_a_plane_restrict_two_or_three_directions) {
+    JointShape const along{{{0, 0, 1}}, {{1, 0, 0}}, 0.2}, across{{{1, 0, 0}}, {{0, 1, 0}}, 0.2};
+    Vec3 const normal{{0, 0, 1}};
+    std::array<double, 4> const q{0, 0, 0, 0};
+    EXPECT_EQ(RevoluteJoint::restricted_in_plane(along, q, normal), 2);
+    EXPECT_EQ(RevoluteJoint::restricted_in_plane(across, q, normal), 3);
+    EXPECT_EQ(PrismaticJoint::restricted_in_plane(along, q, normal), 3);
+    EXPECT_EQ(PrismaticJoint::restricted_in_plane(across, q, normal), 2);
+    EXPECT_EQ(UniversalJoint::restricted_in_plane(along, q, normal), 2);
+    EXPECT_EQ(UniversalJoint::restricted_in_plane(across, q, normal), 3);
+    EXPECT_EQ(SphericalJoint::restricted_in_plane(across, q, normal), 2);
+    EXPECT_EQ(WeldJoint::restricted_in_plane(across, q, normal), 3);
+}
+
+}  // namespace
+}  // namespace catena::test
