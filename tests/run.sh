@@ -162,7 +162,7 @@ mathematics=(dca dca_stage_kernels dca_levels dca_articulated dca_campaign dca_c
 runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
       trajectory bench_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
 # What neither build can run, and what reads no input.
-without_input=(gpu gpu_quick gpu_run gpu_exchange bench measure math physics page outcome generate)
+without_input=(gpu gpu_quick gpu_run gpu_exchange bench measure math physics outcome generate)
 unbuilt=("${mathematics[@]}" "${runs[@]}" "${without_input[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then

@@ -84,6 +84,8 @@ foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings cons
     foreign::SceneDraft draft;
     draft.title = name_of(files);
     draft.file = request.output.empty() ? draft.title + ".yaml" : request.output;
+    if (draft.file == "-")
+        throw InputError("the scene cannot go to standard output", "--output -", "name a file");
     require_writable("--output", draft.file);
     refuse_existing(draft.file, request.overwrite);
     draft.source = scene::shown_path(request.source);

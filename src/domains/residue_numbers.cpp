@@ -163,17 +163,20 @@ std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
     if (!two || colon == 0)
         fail(node, describe(node) + " is not a range of residues",
              "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
-    if (colon == std::string::npos) refuse_missing_colon(node, written);
+    if (colon == std::string::npos && !residues_.contains(ends[0].label))
+        refuse_missing_colon(node, written);
     return ends;
 }
 
-/// Throws InputError for "A1-72", where A is a chain of the file and no residue is called A1.
+/// Throws InputError for "A1-72", where A is a chain of the file. Names that end in a digit could
+/// be the first digits of a number. Precondition: no residue is called A1.
 void Numbering::refuse_missing_colon(Node const& node, std::string const& written) const {
-    if (residues_.contains(written.substr(0, written.find('-', 1)))) return;
     std::vector<std::string> names = numbers_.other_chains;
     for (auto const& [name, label] : numbers_.chains) names.insert(names.end(), {name, label});
     for (std::string const& name : names) {
-        if (name.empty() || !written.starts_with(name) || written.size() == name.size()) continue;
+        if (name.empty() || !written.starts_with(name) || written.size() == name.size() ||
+            std::isdigit(static_cast<unsigned char>(name.back())) != 0)
+            continue;
         std::string const rest = written.substr(name.size());
         bool const numbered = std::isdigit(static_cast<unsigned char>(rest[0])) != 0 ||
                               (rest[0] == '-' && rest.find('-', 1) != std::string::npos);

@@ -23,17 +23,20 @@ constexpr double femtosecond = 1e-3;  // ps
 struct Arguments {
     std::map<std::string, double> numbers;
     std::string integrator;  // in lower case; empty if it cannot be read
+    /// True if the integrator chooses its steps.
+    bool varies() const { return integrator.starts_with("variable"); }
 };
 
-/// Reads a scalar attribute as a number, if it is one.
+/// Reads a scalar attribute. Throws std::runtime_error if it is there and is no number.
 void read_number(hdf5::File const& file, std::string const& name, Arguments& found) {
     if (H5Aexists(file.get(), name.c_str()) <= 0) return;
     hdf5::Attribute const attribute(H5Aopen(file.get(), name.c_str(), H5P_DEFAULT));
     hdf5::Space const space(H5Aget_space(attribute.get()));
     double value = 0;
-    if (space && H5Sget_simple_extent_npoints(space.get()) == 1 &&
-        H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0)
-        found.numbers[name] = value;
+    if (!space || H5Sget_simple_extent_npoints(space.get()) != 1 ||
+        H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0)
+        throw std::runtime_error(name + " is no number");
+    found.numbers[name] = value;
 }
 
 /// Reads the attribute `integrator`, a text of variable length as h5py writes it.
@@ -82,8 +85,12 @@ Arguments arguments_of(std::string const& file) {
     } catch (std::exception const& error) {
         refuse(error.what());
     }
-    for (auto const& [key, value] : found.numbers)
-        if (!(value > 0 && std::isfinite(value))) refuse(fmt::format("{} is {:.6g}", key, value));
+    for (auto const& [key, value] : found.numbers) {
+        // Without friction or at 0 K, polychrom runs; a variable integrator ignores the step.
+        bool const may_be_zero = key != "timestep" || found.varies();
+        if (!(value >= 0 && std::isfinite(value)) || (value == 0 && !may_be_zero))
+            refuse(fmt::format("{} is {:.6g}", key, value));
+    }
     return found;
 }
 
@@ -101,8 +108,7 @@ Settings polychrom_settings(Files const& files) {
     };
     bool const warm = take("temperature", settings.temperature, 1),
                damped = take("collision_rate", settings.friction, 1),
-               varies = found.integrator.starts_with("variable"),
-               timed = !varies && take("timestep", settings.step, femtosecond);
+               timed = !found.varies() && take("timestep", settings.step, femtosecond);
     settings.notes.push_back(settings_note(
         name, found.integrator.empty() ? "unknown integrator" : scene::shown(found.integrator),
         settings, {warm, damped, timed}));

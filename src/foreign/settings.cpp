@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string_view>
 
 #include "error.hpp"
@@ -21,22 +22,10 @@ namespace catena::foreign {
 
 namespace {
 
-/// Value of an attribute in the first tag of an XML text; empty if it has none.
-std::string attribute(std::string_view tag, std::string const& name) {
-    for (char const quote : {'"', '\''}) {
-        std::string const key = " " + name + "=" + quote;
-        auto const at = tag.find(key);
-        if (at == std::string_view::npos) continue;
-        auto const begin = at + key.size();
-        return std::string(tag.substr(begin, tag.find(quote, begin) - begin));
-    }
-    return "";
-}
-
-/// Tag of a serialised Integrator.
+/// Attributes of a serialised Integrator.
 struct IntegratorTag {
     std::string file;
-    std::string_view text;
+    std::map<std::string, std::string> attributes;
 
     [[noreturn]] void refuse(std::string const& what) const {
         throw InputError(what, scene::shown_path(file),
@@ -46,11 +35,13 @@ struct IntegratorTag {
     /// Sets `value` to the attribute, which must not be below `least`. Returns false if there is
     /// none.
     bool take(char const* name, double& value, double least) const {
-        std::string const written = attribute(text, name);
-        if (written.empty()) return false;
+        auto const written = attributes.find(name);
+        if (written == attributes.end()) return false;
         double read = 0;
-        if (scene::parse_number(written, read) != scene::NumberFault::none || !(read >= least))
-            refuse(fmt::format("{} of the integrator is `{}`", name, scene::shown(written)));
+        if (scene::parse_number(written->second, read) != scene::NumberFault::none ||
+            !(read >= least))
+            refuse(
+                fmt::format("{} of the integrator is `{}`", name, scene::shown(written->second)));
         value = read;
         return true;
     }
@@ -62,9 +53,7 @@ Settings integrator_settings(std::string const& file) {
     std::string const xml = read_text_file(file);
     XmlOutline const outline =
         scan_system_xml(xml, scene::shown_path(file), "settings of the dynamics");
-    auto const begin = std::min(xml.find("<Integrator"), xml.size());
-    IntegratorTag const tag{file,
-                            std::string_view(xml).substr(begin, xml.find('>', begin) - begin)};
+    IntegratorTag const tag{file, outline.attributes};
     if (outline.root != "Integrator" || !outline.type.ends_with("Integrator"))
         tag.refuse("the file holds no serialised Integrator");
     Settings settings;
@@ -103,14 +92,15 @@ std::string integrator_note(std::string const& kind, Settings const& settings) {
             "Brownian dynamics has no inertia, Catena's has: the scene is Langevin dynamics with "
             "the same friction, {:.6g}/ps, whose motion agrees at times far above {:.3g} ps.",
             settings.friction, settings.friction > 0 ? 1 / settings.friction : HUGE_VAL);
+    std::string note;
     if (is("variable"))
-        return fmt::format("The steps of that integrator vary, the scene's are {:.6g} ps.",
+        note = fmt::format("The steps of that integrator vary, the scene's are {:.6g} ps.",
                            settings.step);
     if (is("verlet"))
-        return fmt::format(
-            "That integrator has no thermostat, the scene's has: {:.6g} K, friction {:.6g}/ps.",
-            settings.temperature, settings.friction);
-    if (is("langevin")) return "";
+        note += fmt::format(
+            "{}That integrator has no thermostat, the scene's has: {:.6g} K, friction {:.6g}/ps.",
+            note.empty() ? "" : " ", settings.temperature, settings.friction);
+    if (!note.empty() || is("langevin")) return note;
     return fmt::format(
         "The scene is Langevin dynamics at {:.6g} K with friction {:.6g}/ps; what else that "
         "integrator does is not taken over.",

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <set>
 #include <utility>
@@ -39,12 +40,9 @@ bool is_number(string_view text) {
     return !copy.empty() && !is_blank(copy[0]) && *end == '\0' && end == copy.c_str() + copy.size();
 }
 
-/// True for NaN as any C++ or Python program writes it, and with a sign.
-bool is_nan(string_view number) {
-    if (number.starts_with('-') || number.starts_with('+')) number.remove_prefix(1);
-    auto const lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-    return number.size() >= 3 && lower(number[0]) == 'n' && lower(number[1]) == 'a' &&
-           lower(number[2]) == 'n';
+/// True for NaN as any C++ or Python program writes it, and with a sign: nan, NaN, nan(1).
+bool is_nan(string_view text) {
+    return is_number(text) && std::isnan(std::strtod(std::string(text).c_str(), nullptr));
 }
 
 /// True if the text begins with a sign, point or digit of a number.
@@ -60,9 +58,18 @@ bool is_one_of(string_view name, std::array<string_view, N> const& names) {
 }
 
 /// Attributes that hold words.
-constexpr std::array<string_view, 9> words{"name",     "type",          "types",
-                                           "energy",   "expression",    "formula",
-                                           "function", "openmmVersion", "typeName"};
+constexpr std::array<string_view, 12> words{"name",
+                                            "type",
+                                            "types",
+                                            "energy",
+                                            "expression",
+                                            "formula",
+                                            "function",
+                                            "openmmVersion",
+                                            "typeName",
+                                            "computationVariable",
+                                            "computationExpression",
+                                            "kineticEnergyExpression"};
 /// Elements whose other attributes are all numbers.
 constexpr std::array<string_view, 11> records{"A",         "B",         "C",         "Bond",
                                               "Angle",     "Torsion",   "Particle",  "Value",
@@ -251,8 +258,9 @@ class Scanner {
     void check_numbers(Element const& element, Attributes const& attributes) const {
         bool const all = is_one_of(element.name, records), entry = element.name == "Value";
         for (auto const& [key, value] : attributes) {
-            if (is_one_of(key, words) || !(all || begins_as_number(value))) continue;
-            if (!is_number(value) || (!entry && is_nan(value)))
+            if (is_one_of(key, words)) continue;
+            bool const wrong = (all || begins_as_number(value)) && !is_number(value);
+            if (wrong || (!entry && is_nan(value)))
                 fail(element.at, fmt::format("`{}` of {} is no number", shown(value), shown(key)));
         }
     }
@@ -270,6 +278,7 @@ class Scanner {
             outline_.root = element.name;
             outline_.type = value_of(attributes, "type");
             outline_.version = value_of(attributes, "openmmVersion");
+            for (auto const& [key, value] : attributes) outline_.attributes.emplace(key, value);
             return;
         }
         Element& parent = open_.back();
@@ -280,7 +289,10 @@ class Scanner {
             fail(parent.at,
                  fmt::format("a <Force> is not closed before the next begins ({} lines below)",
                              lines(parent.at, element.at)));
-        if (open_.size() != 1 && parent.name != "Force") return;
+        // A CompoundIntegrator holds Integrators, and a NoseHooverIntegrator several thermostats.
+        bool const once =
+            parent.name == "Force" || (open_.size() == 1 && parent.name != "Integrator");
+        if (!once) return;
         if (!parent.has.insert(element.name).second)
             fail(element.at, fmt::format("<{}> is there twice in <{}>", shown(element.name),
                                          shown(parent.name)));

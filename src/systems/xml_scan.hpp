@@ -2,6 +2,7 @@
 // header does not need OpenMM.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,8 @@ struct XmlOutline {
     std::string root;
     /// Attributes `type` and `openmmVersion` of the root element.
     std::string type, version;
+    /// All attributes of the root element.
+    std::map<std::string, std::string> attributes;
     /// Types of the elements in its <Forces>, in order.
     std::vector<std::string> forces;
 };

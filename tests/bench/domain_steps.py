@@ -35,10 +35,11 @@ def run(asked, step):
     with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
         summary = json.load(file)
     seen = summary["observables"]
-    errors = [radius["error_by_blocking"] or 0, radius["error_between_copies"] or 0]
+    errors = [each for each in (radius["error_by_blocking"], radius["error_between_copies"]) if each is not None] or [float("nan")]
     return {"step_ps": step, "steps": steps, "ps_per_copy": asked.duration, "valid": summary["valid"], "verdict": summary["verdict"],
             "radius_of_gyration_nm": radius["value"], "radius_of_gyration_error_nm": max(errors), "plateau": radius["plateau"],
-            "temperature_K": seen["temperature"]["mean"], "temperature_error_K": seen["temperature"]["standard_error"],
+            "temperature_K": seen["temperature"]["mean"],
+            "temperature_error_K": float("nan") if seen["temperature"]["standard_error"] is None else seen["temperature"]["standard_error"],
             "potential_energy": seen["potential_energy"]["mean"], "potential_energy_error": seen["potential_energy"]["standard_error"],
             "speed": summary["speed"]}
 
@@ -48,7 +49,7 @@ def biases(row, reference, temperature):
     first, own = reference["radius_of_gyration_nm"], row["radius_of_gyration_nm"]
     error = (row["radius_of_gyration_error_nm"] ** 2 + reference["radius_of_gyration_error_nm"] ** 2) ** 0.5 if row is not reference else 0.0
     return {"radius": (100 * (own / first - 1), 100 * error / first),
-            "temperature": (100 * (row["temperature_K"] / temperature - 1), 100 * (row["temperature_error_K"] or 0) / temperature)}
+            "temperature": (100 * (row["temperature_K"] / temperature - 1), 100 * row["temperature_error_K"] / temperature)}
 
 
 def main():
@@ -74,7 +75,7 @@ def main():
         row["usable"] = row["valid"] and all(abs(value) < MOST and error < MOST for value, error in found.values())
         row["shown"] = row["usable"] and all(abs(value) + 2 * error < MOST for value, error in found.values())
         print(f"| {1000 * row['step_ps']:g} fs | {row['radius_of_gyration_nm']:.3f} +- {row['radius_of_gyration_error_nm']:.3f} | "
-              f"{found['radius'][0]:+.2f} +- {found['radius'][1]:.2f} % | {row['temperature_K']:.1f} +- {row['temperature_error_K'] or 0:.1f} | "
+              f"{found['radius'][0]:+.2f} +- {found['radius'][1]:.2f} % | {row['temperature_K']:.1f} +- {row['temperature_error_K']:.1f} | "
               f"{found['temperature'][0]:+.2f} % | {row['speed'].get('ns_per_day', 0):.0f} | {'VALID' if row['valid'] else 'INVALID'} | "
               f"{'shown' if row['shown'] else 'yes' if row['usable'] else 'no'} |")
     if asked.json:

@@ -99,9 +99,13 @@ def run_catena(asked):
     if not os.path.exists(os.path.join(folder, "summary.json")):
         words = [asked.catena, "run", SCENE, "--output", folder, "--steps", str(asked.steps), "--quiet", "--set", f"output.every={asked.every}",
                  "--set", f"output.checkpoint_every={asked.steps}"]
-        subprocess.run(words + (["--backend", asked.backend] if asked.backend else []), check=True)
+        status = subprocess.run(words + (["--backend", asked.backend] if asked.backend else []), check=False).returncode
+        if status not in (0, 1):  # 1: INVALID, which the comparison says
+            sys.exit(f"the run of Catena ended with status {status}")
     with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
         summary = json.load(file)
+    if summary["run"]["last_step"] != asked.steps:
+        sys.exit(f"the run in {folder} has {summary['run']['last_step']} steps, not {asked.steps}: name another --output")
     return summary["start"]["potential_energy"], summary["speed"], summary["valid"]
 
 
@@ -175,6 +179,8 @@ def compare(asked):
     start, speed, valid = run_catena(asked)
     with open(os.path.join(asked.output, "openmm.json"), encoding="utf-8") as file:
         other = json.load(file)
+    if other["frames"] != asked.steps // asked.every + 1:
+        sys.exit(f"the run of OpenMM has {other['frames']} frames, not {asked.steps // asked.every + 1}: repeat it with --only openmm")
     ours, quantities = profile(asked, os.path.join(asked.output, "catena"))
     theirs, their_quantities = profile(asked, as_run(asked))
     squares = [(a - b) ** 2 / (e**2 + f**2) for (_, a, e), (_, b, f) in zip(ours, theirs) if e > 0 and f > 0]

@@ -144,6 +144,29 @@ TEST_F(ToolFolder, DynamicsThatCatenaDoesNotHaveIsNoted) {
     expect_noted("That integrator has no thermostat, the scene's has: 300 K, friction 0.01/ps.");
     serialize(OpenMM::VariableLangevinIntegrator(300, 1, 0.001), "Integrator", "integrator.xml");
     expect_noted("The steps of that integrator vary, the scene's are 0.01 ps.");
+    serialize(OpenMM::VariableVerletIntegrator(0.001), "Integrator", "integrator.xml");
+    expect_noted(
+        "The steps of that integrator vary, the scene's are 0.01 ps. That integrator has no "
+        "thermostat, the scene's has: 300 K, friction 0.01/ps.");
+}
+
+TEST_F(ToolFolder, IntegratorsOfSeveralPartsAndOfExpressionsAreRead) {
+    write_pdb("start.pdb", beads, 10);
+    OpenMM::CompoundIntegrator two;
+    two.addIntegrator(new OpenMM::VerletIntegrator(0.001));
+    two.addIntegrator(new OpenMM::VerletIntegrator(0.002));
+    serialize(two, "Integrator", "integrator.xml");
+    expect_noted("integrator.xml (CompoundIntegrator): 300 K assumed");
+    OpenMM::CustomIntegrator custom(0.004);
+    custom.addGlobalVariable("ke", 0);
+    custom.addComputeSum("ke", "0.5*m*v*v");
+    custom.setKineticEnergyExpression("0.5*m*v*v");
+    serialize(custom, "Integrator", "integrator.xml");
+    expect_noted("steps of 0.004 ps");
+    write("integrator.xml",
+          "<Integrator type = \"LangevinMiddleIntegrator\"\n stepSize = \"0.005\"\n friction= "
+          "'0.2' temperature = \"310\"/>\n");
+    expect_noted("310 K, friction 0.2/ps, steps of 0.005 ps.");
 }
 
 TEST_F(ToolFolder, ACutStateIsToldFromASystem) {
@@ -242,6 +265,12 @@ TEST_F(ToolFolder, ArgumentsOfPolychromAreTheSettings) {
     expect_noted("initArgs_1.h5 (langevin): 300 K, friction 0.05/ps, steps of 0.08 ps.");
     EXPECT_NE(text_in("mine.yaml").find("step: 0.08,"), std::string::npos);
     EXPECT_NE(text_in("mine.yaml").find("(polychrom)"), std::string::npos);
+    write_arguments(file("initArgs_1.h5"), "verlet",
+                    {{"temperature", 0.0}, {"collision_rate", 0.0}, {"timestep", 20.0}});
+    expect_noted("0 K, friction 0/ps, steps of 0.02 ps");
+    write_arguments(file("initArgs_1.h5"), "langevin", {{"timestep", 0.0}});
+    expect_refused(import(), 2, "polychrom's arguments cannot be read: timestep is 0");
+    write_arguments(file("initArgs_1.h5"), "langevin", {{"timestep", 80.0}});
     cut("initArgs_1.h5", 0.5);
     expect_refused(import(), 2, "polychrom's arguments cannot be read: ");
     fs::remove(file("initArgs_1.h5")), fs::remove(file("system.xml"));

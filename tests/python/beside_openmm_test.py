@@ -20,7 +20,7 @@ words = sys.argv[1:]
 value = dict(zip(words[3::2], words[4::2]))
 with open({folder!r} + "/calls", "a") as calls:
     calls.write(os.path.basename(words[2]) + "\\n")
-row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "valid": True}}
+row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "every_ps": 1.0, "valid": True}}
 radius = lambda mean: {{"radius_of_gyration": {{"mean": mean, "error": 0.01, "plateau": True}}}}
 json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "results": [
     {{"method": "rigid", **row, **radius({rigid})}}, {{"method": "bonds", **row, **radius(1.5)}}]}}, open(value["--json"], "w"))
@@ -59,6 +59,9 @@ def main():
             check(file.read().split() == ["gly.yaml", "ser.yaml"], "results that are there are kept")
         other = call(folder, 1.5, "--duration", "100")
         check(other.returncode == 2 and "other copies, times or steps" in other.stderr, f"results of another time are refused: {other.stderr}")
+        os.remove(os.path.join(folder, "out", "gly.json"))
+        no_error = call(folder, "None", "--only", "gly")
+        check(no_error.returncode == 1 and "INVALID: gly:" in no_error.stdout, f"an unknown radius fails: {no_error.stdout}{no_error.stderr}")
         unknown = call(folder, 1.5, "--only", "ala")
         check(unknown.returncode == 2 and "no protein ala" in unknown.stderr, f"an unknown protein is refused: {unknown.stderr}")
 

@@ -76,7 +76,11 @@ TEST(XmlScan, NamesTheFaultAndItsLine) {
     expect_fault(in_system("<Bond d=\"0.3x8\"/>"), "`0.3x8` of d is no number");
     expect_fault(in_system("<Bond d=\"x\"/>"), "`x` of d is no number");
     for (std::string const nan : {"nan", "NaN", "-nan", "nan(1)"})
-        expect_fault(in_system("<Particle q=\"" + nan + "\"/>"), "`" + nan + "` of q is no number");
+        for (std::string const element : {"Particle", "Parameter", "Force"})
+            expect_fault(in_system("<" + element + " q=\"" + nan + "\"/>"),
+                         "`" + nan + "` of q is no number");
+    EXPECT_NO_THROW(scan_system_xml(in_system("<Value v=\"nan\"/>"), "s.xml", where));
+    EXPECT_NO_THROW(scan_system_xml(in_system("<Force name=\"nan\"/>"), "s.xml", where));
     expect_fault(in_system("<Force cutoff=\"2n\"/>"), "`2n` of cutoff is no number");
     expect_fault(in_system("<Forces/><Forces/>"), "<Forces> is there twice in <System>");
     expect_fault(in_system("<Forces><Force type=\"A\"><Bonds/><Bonds/></Force></Forces>"),
