@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/json_fault.hpp"
+#include "json_fault.hpp"
 #include "scene/files.hpp"
 
 namespace catena::scene {

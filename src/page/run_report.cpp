@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "error.hpp"
-#include "io/json_fault.hpp"
 #include "io/observables_table.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
+#include "json_fault.hpp"
 #include "page/html.hpp"
 #include "page/line_chart.hpp"
 #include "page/observable_statistics.hpp"

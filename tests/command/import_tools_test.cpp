@@ -266,8 +266,8 @@ TEST_F(ToolFolder, ArgumentsOfPolychromAreTheSettings) {
     EXPECT_NE(text_in("mine.yaml").find("step: 0.08,"), std::string::npos);
     EXPECT_NE(text_in("mine.yaml").find("(polychrom)"), std::string::npos);
     write_arguments(file("initArgs_1.h5"), "verlet",
-                    {{"temperature", 0.0}, {"collision_rate", 0.0}, {"timestep", 20.0}});
-    expect_noted("0 K, friction 0/ps, steps of 0.02 ps");
+                    {{"temperature", 300.0}, {"collision_rate", 0.0}, {"timestep", 20.0}});
+    expect_noted("300 K, friction 0/ps, steps of 0.02 ps");
     write_arguments(file("initArgs_1.h5"), "langevin", {{"timestep", 0.0}});
     expect_refused(import(), 2, "polychrom's arguments cannot be read: timestep is 0");
     write_arguments(file("initArgs_1.h5"), "langevin", {{"timestep", 80.0}});

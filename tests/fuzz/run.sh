@@ -81,8 +81,7 @@ target pdb -lyaml-cpp "${files[@]}" src/structure/{pdb_file,pdb_sites,structure_
 target fasta -lyaml-cpp "${files[@]}" src/structure/fasta.cpp src/structure/residue_names.cpp src/structure/residue_table.cpp
 target residues -lyaml-cpp "${files[@]}" src/structure/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
-domains=(src/domains/{assembly,confident_domains,domain_file,predicted_error,residue_numbers,rigid_entry}.cpp src/keys/chain_keys.cpp
-    src/io/json_fault.cpp)
+domains=(src/domains/{assembly,confident_domains,domain_file,predicted_error,residue_numbers,rigid_entry}.cpp src/keys/chain_keys.cpp)
 target dcd -lyaml-cpp "${tree[@]}" src/frames/dcd_file.cpp
 target domains -lyaml-cpp "${files[@]}" "${domains[@]}"
 target pae -lyaml-cpp "${files[@]}" "${domains[@]}"

@@ -1,17 +1,18 @@
-// Implements the text on faults of JSON files.
-#include "io/json_fault.hpp"
+// Text on a fault of a JSON file, in place of the library's own.
+#pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
 
 namespace catena {
-namespace {
 
-/// Longest line in which the number of the line is enough.
-constexpr std::size_t longest_plain_line = 200;
-
-}  // namespace
-
-std::string json_fault(std::string_view text, std::size_t byte) {
+/// Returns where a parser of JSON stopped: "not well-formed JSON, line 3" or, for a position in a
+/// very long line, "not well-formed JSON, line 1, character 5000". A text that ends too early is
+/// said to be cut. `byte` counts from 1, as nlohmann::json::parse_error does.
+inline std::string json_fault(std::string_view text, std::size_t byte) {
+    std::size_t constexpr longest_plain_line = 200;  // in which the number of the line is enough
     std::string_view const before = text.substr(0, byte == 0 ? 0 : byte - 1);
     std::size_t const begin = before.rfind('\n') + 1;  // 0 without a line feed
     std::string fault = "not well-formed JSON, line " +
