@@ -15,6 +15,7 @@ import replicas
 from replicas import ROOT, UserError
 
 MODEL = "calvados2"
+LONGEST_STEP = 0.1  # ps
 KNOWN = -0.012  # of the radius: what rigid links in place of stiff bonds change, by `catena bench sampling` of alpha-synuclein
 
 
@@ -55,12 +56,16 @@ def sample(name, asked):
             raise UserError(f"cannot start the program ({program}): {error.strerror}; build it, or name it by CATENA_PROGRAM") from None
         if status not in (0, 1):  # 1: a row is INVALID, which the table says
             raise UserError(f"sampling of {name} ended with status {status} ({path}.part): see the line above")
+        if not os.path.exists(path + ".part"):
+            raise UserError(f"the program wrote no result ({program}): name catena by CATENA_PROGRAM")
         os.replace(path + ".part", path)
     try:
         with open(path, encoding="utf-8") as file:
             found = json.load(file)
     except (OSError, ValueError):
         raise UserError(f"a result cannot be read ({path}): delete it") from None
+    if not found.get("results"):
+        raise UserError(f"a result has no rows ({path}): delete it")
     other = [key for key, value in conditions.items() if found.get(key) != value]
     steps = {row["step_ps"] for row in found["results"]}
     # Whole blocks of steps are sampled, so that times differ from what was asked for by one block at most.
@@ -134,6 +139,8 @@ def main():
     asked = parse_arguments()
     if asked.copies < 2 or not (asked.duration > 0 and asked.discard >= 0 and asked.step > 0):
         raise UserError("--copies is 2 at least; --duration and --step are above 0, --discard is not below")
+    if asked.step > LONGEST_STEP:
+        raise UserError(f"--step {asked.step:g} ps is too long for either method: give 0.01 to 0.06 (ps)")
     if asked.picture:
         replicas.check_picture(asked)
     proteins = chosen(replicas.read_proteins(asked.proteins), asked.only)

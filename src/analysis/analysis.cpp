@@ -25,7 +25,11 @@ std::size_t first_frame(TrajectoryFile const& trajectory, Options const& options
     auto const discarded =
         static_cast<std::size_t>(std::floor(options.discard * static_cast<double>(frames)));
     std::size_t const first = std::max(options.first, discarded);
-    if (first >= frames || first > options.last)
+    if (first < frames && first > options.last)
+        throw InputError(
+            fmt::format("the last frame, {}, is before the first, {}", options.last, first),
+            "--last", "frames count from 0: choose a later one");
+    if (first >= frames)
         throw InputError(
             fmt::format("there is no frame from {} on, the trajectory has {}", first, frames),
             "--first", "frames count from 0: choose fewer");

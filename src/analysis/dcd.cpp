@@ -112,7 +112,11 @@ void require_writable(TrajectoryFile const& trajectory, DcdRequest const& reques
     if (trajectory.topology().si)
         throw InputError("a DCD file holds Angstrom, and the trajectory is in m", trajectory.name(),
                          "read the trajectory itself, for example with h5py");
-    if (request.first >= frames || request.first > request.last)
+    if (request.first < frames && request.first > request.last)
+        throw InputError(
+            fmt::format("the last frame, {}, is before the first, {}", request.last, request.first),
+            "--last", "frames count from 0: choose a later one");
+    if (request.first >= frames)
         throw InputError(
             fmt::format("no frame from {} on, the trajectory has {}", request.first, frames),
             "--first", "frames count from 0: choose fewer");

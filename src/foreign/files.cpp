@@ -259,8 +259,8 @@ void take_only_one(Contents const& contents, Files& files) {
             names(contents.states), shown(fs::path(files.topology).filename())));
 }
 
-/// Sets the only Integrator, where no configuration has the settings. Throws InputError for a file
-/// that is an Integrator by its name alone.
+/// Sets the only Integrator, where no configuration has the settings. Throws InputError for several
+/// of them, and for a file that is an Integrator by its name alone.
 void take_integrator(Contents const& contents, Files& files) {
     if (!files.config.empty()) return;
     if (!contents.no_integrators.empty())
@@ -268,11 +268,11 @@ void take_integrator(Contents const& contents, Files& files) {
                          shown(contents.no_integrators.front()),
                          "write it with OpenMM's XmlSerializer.serialize(integrator), or move it "
                          "out of the folder and set the dynamics yourself");
-    if (contents.integrators.size() == 1) files.integrator = contents.integrators.front();
     if (contents.integrators.size() > 1)
-        files.notes.push_back(
-            fmt::format("{} serialised Integrators are not read: leave one in the folder.",
-                        contents.integrators.size()));
+        throw InputError(fmt::format("the folder holds {} Integrators: {}",
+                                     contents.integrators.size(), names(contents.integrators)),
+                         shown(files.folder), "leave the one of the run in the folder");
+    if (!contents.integrators.empty()) files.integrator = contents.integrators.front();
 }
 
 }  // namespace

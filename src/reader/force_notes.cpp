@@ -73,8 +73,7 @@ void note_forces(Scene& scene) {
             openmm.builder.empty() ? "the System's bonds are judged"
                                    : "water's permittivity and the Debye length are those",
             openmm.temperature));
-    if (openmm.builder.empty()) return;
-    if (openmm.ionic_strength > most_salt)
+    if (!openmm.builder.empty() && openmm.ionic_strength > most_salt)
         scene.note(fmt::format(
             "forces.openmm.ionic_strength is {:.6g} mol/l, more than the solubility of any salt: "
             "did you mean {:.6g} (for {:.6g} "
@@ -88,9 +87,10 @@ void note_forces(Scene& scene) {
 }
 
 void note_cold_water(Scene& scene) {
-    if (!scene.forces.openmm || scene.forces.openmm->builder.empty()) return;
+    if (!scene.forces.openmm) return;
     double const temperature = scene.forces.openmm->temperature;
-    bool const charged = temperature < coldest_water && has_charges(scene);
+    bool const charged =
+        !scene.forces.openmm->builder.empty() && temperature < coldest_water && has_charges(scene);
     if (temperature < coldest_usual && (charged || has_amino_acids(scene)))
         scene.note(fmt::format(
             "the temperature is {0:.6g} K: did you mean {1:.6g} K ({0:.6g} degrees Celsius)?",

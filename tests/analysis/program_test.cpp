@@ -72,6 +72,11 @@ TEST_F(Trajectories, WhatCannotBeComputedIsRefusedInOneLine) {
     expect_refused(in_folder({"analyse", "run", "--slab", "w"}), 2, "`w` is not a value of --slab");
     expect_refused(in_folder({"analyse", "run", "--first", "2"}), 2,
                    "there is no frame from 2 on, the trajectory has 2 (--first)");
+    for (Words const& command : {Words{"analyse", "run"}, Words{"convert", "run", "a.dcd"}}) {
+        Words words = command;
+        words.insert(words.end(), {"--first", "1", "--last", "0"});
+        expect_refused(in_folder(words), 2, "the last frame, 0, is before the first, 1 (--last)");
+    }
     expect_refused(in_folder({"analyse", "run", "--discard", "1"}), 2, "(--discard)");
     expect_refused(in_folder({"analyse", "run", "--first", "1", "--discard", "0.1"}), 2,
                    "both --first and --discard");

@@ -169,6 +169,15 @@ TEST_F(ToolFolder, IntegratorsOfSeveralPartsAndOfExpressionsAreRead) {
     expect_noted("310 K, friction 0.2/ps, steps of 0.005 ps.");
 }
 
+TEST_F(ToolFolder, SeveralIntegratorsAndWrongUnitsAreSaid) {
+    write_pdb("start.pdb", beads, 10);
+    serialize(OpenMM::LangevinMiddleIntegrator(25, 0.5, 1), "Integrator", "integrator.xml");
+    expect_noted("the temperature is 25 K: did you mean 298.15 K (25 degrees Celsius)?");
+    expect_noted("dynamics.step is 1 ps, that is 1000 fs:");
+    serialize(OpenMM::LangevinMiddleIntegrator(300, 0.5, 0.01), "Integrator", "old.xml");
+    expect_refused(import(), 2, "the folder holds 2 Integrators: integrator.xml, old.xml (mine)");
+}
+
 TEST_F(ToolFolder, ACutStateIsToldFromASystem) {
     write_state("state.xml");
     cut("state.xml", 0.6);
