@@ -105,13 +105,7 @@ def print_table(lines):
 
 
 def draw(lines, path):
-    try:
-        import matplotlib
-    except ImportError:
-        raise UserError("a Python package is missing (matplotlib): use build/venv/bin/python, or install it there") from None
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "catena"
-    from matplotlib import pyplot
+    pyplot = replicas.plotting()
     figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
     places = range(len(lines))
     for shift, key, label, colour in ((-0.2, "measured", "measured", "#5b6773"), (0, "openmm", "OpenMM, harmonic bonds", "#d9822b"),

@@ -229,7 +229,8 @@ def write_table(lines, path):
         writer.writerows(lines)
 
 
-def draw(lines, path):
+def plotting():
+    """matplotlib's pyplot, for files whose bytes depend on what is drawn alone."""
     try:
         import matplotlib
     except ImportError:
@@ -237,6 +238,11 @@ def draw(lines, path):
     matplotlib.use("Agg")
     matplotlib.rcParams["svg.hashsalt"] = "catena"
     from matplotlib import pyplot
+    return pyplot
+
+
+def draw(lines, path):
+    pyplot = plotting()
     figure, axes = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
     largest = 1.1 * max(max(each["measured_nm"], each["simulated_nm"]) for each in lines)
     axes.plot([0, largest], [0, largest], color="#9aa7b4", linewidth=1)

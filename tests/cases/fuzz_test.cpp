@@ -103,7 +103,7 @@ TEST(Messages, HaveNoMarksThatTurnLinesAround) {
 // 900,000 chains need at least 2.7 GB, each entry of 300,000 fits into 2 GB.
 TEST(Memory, IsJudgedForAllChainsTogether) {
 #ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "the address sanitizer needs more address space than the limit";
+    GTEST_SKIP() << "NOT RUN: the address sanitizer needs more address space than the limit";
 #endif
     TemporaryFolder const folder;
     std::string const entry =
