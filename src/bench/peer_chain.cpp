@@ -6,8 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/body_loads.hpp"
+#include "joints/joint_models.hpp"
 #include "math/rotation.hpp"
 
 namespace catena::command {

@@ -9,7 +9,7 @@
 #include "bodies/carried_beads.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 

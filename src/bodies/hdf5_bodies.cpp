@@ -9,9 +9,9 @@
 #include "bodies/hdf5_table.hpp"
 #include "bodies/joint_entry.hpp"
 #include "bodies/physics.hpp"
-#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
 #include "io/trial.hpp"
+#include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 

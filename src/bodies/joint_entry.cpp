@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "bodies/physics.hpp"
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"

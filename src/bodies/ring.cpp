@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "scene/pose.hpp"
 
 namespace catena::scene {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "chain/chain_order.hpp"
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {

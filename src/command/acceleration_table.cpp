@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "measure/accelerations_file.hpp"
 
 namespace catena::command {

@@ -1,7 +1,7 @@
 // Start, results and residual of bead chains on the host.
 #include "dynamics/bead_dynamics.hpp"
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

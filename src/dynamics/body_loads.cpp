@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
+#include "joints/joint_models.hpp"
 #include "kinematics/link_geometry.hpp"
 
 namespace catena {

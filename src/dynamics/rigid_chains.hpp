@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
 #include "dynamics/body_loads.hpp"
 #include "dynamics/constrained_step.hpp"
 #include "dynamics/joint_rotors.hpp"
+#include "joints/joint_models.hpp"
 #include "kinematics/carried_beads.hpp"
 #include "kinematics/link_geometry.hpp"
 #include "kinematics/ring_ends.hpp"

@@ -1,8 +1,8 @@
 // Results, residual and potential energy of rigid chains.
 #include "dynamics/rigid_solution.hpp"
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/rigid_chains.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
 #include "generate/conformation.hpp"
 #include "generate/random.hpp"
+#include "joints/joint_models.hpp"
 #include "math/philox.hpp"
 
 namespace catena::scene {

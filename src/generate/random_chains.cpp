@@ -1,8 +1,8 @@
 // Implements random chains: all joint types, physically possible bodies.
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena::scene {
 

@@ -1,7 +1,7 @@
 // Initial states in joint coordinates, and the index lists that the kinematics needs.
 #include "kinematics/joint_kinematics.hpp"
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

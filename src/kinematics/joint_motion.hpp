@@ -7,9 +7,9 @@
 #pragma once
 
 #include "chain/chain_group.hpp"
-#include "chain/joints/joint_models.hpp"
 #include "dca/lane_access.hpp"
 #include "dca/leaf.hpp"
+#include "joints/joint_models.hpp"
 #include "scene/pose.hpp"
 
 namespace catena {

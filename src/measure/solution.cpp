@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
 #include "generate/random.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 namespace {

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/linked.hpp"
 
 // Articulated-body algorithm. For every body, F = I A + p. F = [torque; force] acts through the

@@ -1,6 +1,6 @@
 // Links between beads, and forces on beads.
-#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/joint.hpp"
 
 namespace catena::oracle {

@@ -1,7 +1,7 @@
 // Condition numbers of the joint-space inertia and of the links' matrix.
 #include <Eigen/Eigenvalues>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
 #include "oracle/linked.hpp"

@@ -1,6 +1,6 @@
 #include <optional>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/system.hpp"
 
 // One linear system for all accelerations and joint forces. Its equations are Newton's and Euler's

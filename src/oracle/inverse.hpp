@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/joint.hpp"
 
 namespace catena::oracle {

@@ -1,7 +1,7 @@
 // Least-squares projection of velocities on the constraints of tips and links.
 #include <Eigen/QR>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/linked.hpp"
 

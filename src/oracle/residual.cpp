@@ -1,8 +1,8 @@
 // Residuals of given accelerations by inverse dynamics.
 #include <Eigen/QR>
 
-#include "chain/joints/joint_models.hpp"
 #include "error.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
 

@@ -1,7 +1,7 @@
 // Chains with a jointed tip: closure of the tip joint, and the wrench that satisfies it.
 #include <cmath>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 #include "oracle/full_pivoting.hpp"
 #include "oracle/joint.hpp"
 #include "oracle/rotations.hpp"

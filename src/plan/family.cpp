@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
+#include "joints/joint_models.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena::plan {

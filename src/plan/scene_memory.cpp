@@ -1,9 +1,9 @@
 // Estimates the memory of a scene from the sizes of the arrays on one rank.
 #include <algorithm>
 
-#include "chain/joints/joint_models.hpp"
 #include "dca/articulated.hpp"
 #include "dca/simd/side_by_side.hpp"
+#include "joints/joint_models.hpp"
 #include "math/with_number.hpp"
 #include "plan/describe.hpp"
 #include "scene/freedom.hpp"

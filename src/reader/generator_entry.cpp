@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "chain/joints/joint_models.hpp"
 #include "generate/random.hpp"
+#include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
 
 namespace catena::scene {

@@ -13,9 +13,9 @@
 
 #include "bodies/joint_entry.hpp"
 #include "bodies/ring.hpp"
-#include "chain/joints/joint_models.hpp"
 #include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
+#include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"

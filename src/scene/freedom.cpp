@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena::scene {
 

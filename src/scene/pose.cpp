@@ -1,7 +1,7 @@
 // Implements joint motions and the composition of poses.
 #include "scene/pose.hpp"
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena::scene {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

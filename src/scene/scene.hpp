@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "chain/joints/joint_type.hpp"
+#include "joints/joint_type.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
 #include "math/simd_level.hpp"

@@ -2,9 +2,9 @@
 // difference of its two orders, in any Space.
 #pragma once
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_dynamics.hpp"
 #include "dynamics/joint/joint_steps.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

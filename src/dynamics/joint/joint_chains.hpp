@@ -2,8 +2,8 @@
 // the rates that follow from its acceleration.
 #pragma once
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_loads.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

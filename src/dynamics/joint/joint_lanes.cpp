@@ -1,7 +1,7 @@
 // The choice of bodies and runs to place side by side in vector lanes.
 #include "dynamics/joint/joint_lanes.hpp"
 
-#include "chain/joints/joint_models.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 namespace {

@@ -3,9 +3,9 @@
 // columns of ChainGroup::axes1 in M.
 #pragma once
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/body_loads.hpp"
 #include "dynamics/joint/jointed_tips.hpp"
+#include "joints/joint_models.hpp"
 #include "kinematics/carried_beads.hpp"
 #include "kinematics/joint_scan.hpp"
 #include "math/philox.hpp"

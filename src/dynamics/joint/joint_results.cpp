@@ -1,8 +1,8 @@
 // Accelerations and joint forces of a solution in joint coordinates, in ground axes, and its
 // potential energy.
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_solution.hpp"
 #include "dynamics/joint/out_of_plane.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

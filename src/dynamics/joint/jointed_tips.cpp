@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/body_loads.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "chain/joints/joint_models.hpp"
 #include "dca/solver.hpp"
+#include "joints/joint_models.hpp"
 #include "kinematics/joint_kinematics.hpp"
 #include "math/with_number.hpp"
 

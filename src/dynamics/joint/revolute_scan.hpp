@@ -4,8 +4,8 @@
 // JointLanes has the counterpart with runs side by side.
 #pragma once
 
-#include "chain/joints/joint_models.hpp"
 #include "dynamics/joint/joint_loads.hpp"
+#include "joints/joint_models.hpp"
 
 namespace catena {
 

@@ -1,7 +1,7 @@
 // Joint model of body 1 of a free base: it moves relative to the ground without restriction.
 #pragma once
 
-#include "chain/joints/quaternion_motion.hpp"
+#include "joints/quaternion_motion.hpp"
 
 namespace catena {
 

@@ -2,8 +2,8 @@
 // first axis.
 #pragma once
 
-#include "chain/joints/joint_shape.hpp"
-#include "chain/joints/motion_terms.hpp"
+#include "joints/joint_shape.hpp"
+#include "joints/motion_terms.hpp"
 
 namespace catena {
 

@@ -1,7 +1,7 @@
 // Joint model of a weld: the outboard body is fixed in the inboard body.
 #pragma once
 
-#include "chain/joints/rigid_motion.hpp"
+#include "joints/rigid_motion.hpp"
 
 namespace catena {
 

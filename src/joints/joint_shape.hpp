@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "chain/joints/joint_type.hpp"
+#include "joints/joint_type.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
 

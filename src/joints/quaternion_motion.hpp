@@ -1,8 +1,8 @@
 // Motion of joints whose position is a unit quaternion: spherical joints and free bodies.
 #pragma once
 
-#include "chain/joints/joint_shape.hpp"
-#include "chain/joints/motion_terms.hpp"
+#include "joints/joint_shape.hpp"
+#include "joints/motion_terms.hpp"
 
 namespace catena {
 

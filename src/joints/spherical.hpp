@@ -1,7 +1,7 @@
 // Joint model of a spherical joint: rotation about every axis through one point.
 #pragma once
 
-#include "chain/joints/quaternion_motion.hpp"
+#include "joints/quaternion_motion.hpp"
 
 namespace catena {
 

@@ -2,10 +2,11 @@
 //
 // A motion reads its joint through an accessor `Joint` (JointAt in kinematics/joint_motion.hpp):
 // axis(), axes() and first_axis() in the meeting frame M, screw(), coordinate(i), quaternion(),
-// rate(i), rates() and type(), with the types Real, Vector3, Matrix3 and Rotation.
+// rate(i) and rates(); has_screws(), floats() and pivots() say what the chain's joints need. Its
+// types are Real, Vector3 and Rotation.
 #pragma once
 
-#include "chain/joints/joint_shape.hpp"
+#include "joints/joint_shape.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
 

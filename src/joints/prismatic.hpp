@@ -1,7 +1,7 @@
 // Joint model of a prismatic joint: translation by q along one axis.
 #pragma once
 
-#include "chain/joints/screw_motion.hpp"
+#include "joints/screw_motion.hpp"
 
 namespace catena {
 

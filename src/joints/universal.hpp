@@ -2,7 +2,7 @@
 // body, then by q[1] about the second one, fixed in the outboard body.
 #pragma once
 
-#include "chain/joints/universal_motion.hpp"
+#include "joints/universal_motion.hpp"
 
 namespace catena {
 

@@ -1,8 +1,8 @@
 // Motion of joints without coordinates: none.
 #pragma once
 
-#include "chain/joints/joint_shape.hpp"
-#include "chain/joints/motion_terms.hpp"
+#include "joints/joint_shape.hpp"
+#include "joints/motion_terms.hpp"
 
 namespace catena {
 

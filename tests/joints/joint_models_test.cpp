@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "chain/joints/joint_models.hpp"
 #include "generate/generators.hpp"
 #include "generate/random.hpp"
+#include "joints/joint_models.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena::test {

@@ -1,7 +1,7 @@
 // Joint model of a link: a rod of fixed length, in absolute coordinates.
 #pragma once
 
-#include "chain/joints/rigid_motion.hpp"
+#include "joints/rigid_motion.hpp"
 
 namespace catena {
 

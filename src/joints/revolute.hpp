@@ -1,7 +1,7 @@
 // Joint model of a revolute joint: rotation by q about one axis.
 #pragma once
 
-#include "chain/joints/screw_motion.hpp"
+#include "joints/screw_motion.hpp"
 
 namespace catena {
 

@@ -2,7 +2,7 @@
 // it.
 #pragma once
 
-#include "chain/joints/screw_motion.hpp"
+#include "joints/screw_motion.hpp"
 
 namespace catena {
 

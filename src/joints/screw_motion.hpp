@@ -2,8 +2,8 @@
 // prismatic and helical joints.
 #pragma once
 
-#include "chain/joints/joint_shape.hpp"
-#include "chain/joints/motion_terms.hpp"
+#include "joints/joint_shape.hpp"
+#include "joints/motion_terms.hpp"
 
 namespace catena {
 

@@ -5,14 +5,14 @@
 #include <string_view>
 #include <type_traits>
 
-#include "chain/joints/free.hpp"
-#include "chain/joints/helical.hpp"
-#include "chain/joints/link.hpp"
-#include "chain/joints/prismatic.hpp"
-#include "chain/joints/revolute.hpp"
-#include "chain/joints/spherical.hpp"
-#include "chain/joints/universal.hpp"
-#include "chain/joints/weld.hpp"
+#include "joints/free.hpp"
+#include "joints/helical.hpp"
+#include "joints/link.hpp"
+#include "joints/prismatic.hpp"
+#include "joints/revolute.hpp"
+#include "joints/spherical.hpp"
+#include "joints/universal.hpp"
+#include "joints/weld.hpp"
 
 namespace catena {
 
