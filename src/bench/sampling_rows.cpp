@@ -72,16 +72,12 @@ class CatenaMover final : public Mover {
 };
 
 /// Gives the bonds lengths as at the temperature. A friction of 0.01/ps would take hundreds of ps
-/// to do so.
+/// to do so. Each bead moves on its own: changes of length that added up along a chain would push
+/// beads far apart in the sequence into each other.
 void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
-    std::normal_distribution<double> longer(0, std::sqrt(kt / calvados2::bond_stiffness));
-    std::vector<Vec3>& x = chain.beads.position;
-    Vec3 shift = Vec3::zero();
-    for (std::size_t k = 1; k < x.size(); ++k) {
-        Vec3 const bond = x[k] + shift - x[k - 1];
-        shift = plus_scaled(shift, longer(draw) / norm(bond), bond);
-        x[k] = x[k] + shift;
-    }
+    std::normal_distribution<double> along_axis(0, std::sqrt(0.5 * kt / calvados2::bond_stiffness));
+    for (Vec3& x : chain.beads.position)
+        for (int axis = 0; axis < 3; ++axis) x[axis] += along_axis(draw);
 }
 
 /// Moves the copies by OpenMM's own integrator.
