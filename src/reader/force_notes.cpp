@@ -18,8 +18,8 @@ namespace {
 
 /// Largest plausible ionic strength, mol/l; saturated brine has 6.
 double constexpr most_salt = 10;
-/// Lowest temperature of the measurements behind the permittivity, K.
-double constexpr coldest_water = 273;
+/// Lowest and highest temperature of the measurements behind the permittivity, K.
+double constexpr coldest_water = 273, hottest_water = 373;
 /// Lowest temperature of biomolecules that is not taken for one in degrees Celsius, K.
 double constexpr coldest_usual = 200;
 /// Zero of the Celsius scale, K.
@@ -27,8 +27,9 @@ double constexpr celsius_zero = 273.15;
 /// Relative difference below which temperatures count as equal.
 double constexpr same_temperature = 1e-9;
 
-/// Longest plausible step, ps, of residues with friction.
-double constexpr longest_usual_step = 0.2;
+/// Longest plausible step of residues with friction, and longest one that was shown to sample
+/// them rightly (`catena bench sampling`), ps.
+double constexpr longest_usual_step = 0.2, longest_shown_step = 0.06;
 
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
     return chain.is_beads() ? chain.beads.residue : chain.carried().residue;
@@ -79,26 +80,34 @@ void note_forces(Scene& scene) {
             "did you mean {:.6g} (for {:.6g} "
             "mmol/l)?",
             openmm.ionic_strength, openmm.ionic_strength / 1000, openmm.ionic_strength));
-    if (run.given && !scene.si && run.step > longest_usual_step && !is_implicit(run.integrator))
+    if (!run.given || scene.si || is_implicit(run.integrator)) return;
+    if (run.step > longest_usual_step)
         scene.note(
             fmt::format("dynamics.step is {0:.6g} ps, that is {1:.6g} fs: steps of such chains are "
                         "0.01 to 0.06 ps. Did you mean {2:.6g}?",
                         run.step, 1000 * run.step, run.step / 1000));
+    else if (run.step > longest_shown_step && !openmm.builder.empty())
+        scene.note(
+            fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to "
+                        "sample such chains rightly, longer ones were not.",
+                        1000 * run.step, 1000 * longest_shown_step));
 }
 
-void note_cold_water(Scene& scene) {
+void note_water(Scene& scene) {
     if (!scene.forces.openmm) return;
     double const temperature = scene.forces.openmm->temperature;
-    bool const charged =
-        !scene.forces.openmm->builder.empty() && temperature < coldest_water && has_charges(scene);
+    bool const cold = temperature<coldest_water, hot = temperature> hottest_water,
+               charged =
+                   !scene.forces.openmm->builder.empty() && (cold || hot) && has_charges(scene);
     if (temperature < coldest_usual && (charged || has_amino_acids(scene)))
         scene.note(fmt::format(
             "the temperature is {0:.6g} K: did you mean {1:.6g} K ({0:.6g} degrees Celsius)?",
             temperature, temperature + celsius_zero));
     if (charged)
-        scene.note(fmt::format(
-            "water is frozen at {:.6g} K: its permittivity is extrapolated below {:.6g} K.",
-            temperature, coldest_water));
+        scene.note(
+            fmt::format("water {} at {:.6g} K: its permittivity is extrapolated {} {:.6g} K.",
+                        cold ? "is frozen" : "boils", temperature, cold ? "below" : "above",
+                        cold ? coldest_water : hottest_water));
 }
 
 void note_missing_forces(Scene& scene) {

@@ -6,9 +6,9 @@
 
 namespace catena::scene {
 
-/// Notes water that is frozen where beads are charged, and temperatures of biomolecules that look
-/// like degrees Celsius. The chains must be there.
-void note_cold_water(Scene&);
+/// Notes water that is frozen or boils where beads are charged, and temperatures of biomolecules
+/// that look like degrees Celsius. The chains must be there.
+void note_water(Scene&);
 
 /// Notes a temperature of the force field that differs from the run's, and implausible ionic
 /// strength, pH or step. Water outside the range of measured permittivity is noted, too.

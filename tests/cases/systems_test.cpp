@@ -218,6 +218,15 @@ TEST(Slips, StepsInFemtosecondsAreNoted) {
               "Did you mean 0.01?"));
 }
 
+TEST(Slips, StepsBeyondThoseShownAreNoted) {
+    auto const at = [](std::string const& step) {
+        return notes_of("22-slips-of-the-pen/temperatures.yaml",
+                        {"--set", "dynamics.step=" + step});
+    };
+    EXPECT_TRUE(holds(at("0.1"), "dynamics.step is 100 fs: steps up to 60 fs were shown"));
+    EXPECT_FALSE(holds(at("0.06"), "dynamics.step"));
+}
+
 TEST(Slips, ResiduesWithoutForcesAreNoted) {
     std::vector<std::string> const without{"--set", "forces.openmm=null"};
     EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml", without),
@@ -239,6 +248,8 @@ TEST(Slips, FrozenWaterAndCelsiusAreNoted) {
     EXPECT_FALSE(holds(at("210"), "did you mean"));
     EXPECT_TRUE(holds(at("25"), "the temperature is 25 K: " + celsius + " (25 degrees Celsius)?"));
     EXPECT_FALSE(holds(at("298"), frozen));
+    EXPECT_TRUE(holds(at("500"), "water boils at 500 K"));
+    EXPECT_FALSE(holds(at("370"), "boils"));
 }
 
 /// Nothing depends on water where nothing is charged.
