@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clock.hpp"
+#include "dca/contracts.hpp"
 #include "dca/fused_sweep.hpp"
 #include "dca/host_space.hpp"
 #include "dca/inverse_sweep.hpp"
@@ -18,7 +19,7 @@ namespace catena::dca {
 
 /// Solver of one group of chains with one kind of leaf in one Space. The views that its members
 /// take must be in the memory of that Space.
-template <class Leaf, class Space>
+template <TreeLeaf Leaf, SolverSpace Space>
 class TreeSolver final : public ChainSolver {
     static constexpr int K = Leaf::K;
     using Sweeps = typename SweepsOf<Leaf>::Sweeps;
