@@ -6,6 +6,7 @@
 #include "integrate/chain_system.hpp"
 #include "observe/observables.hpp"
 #include "plan/describe.hpp"
+#include "plan/host_memory.hpp"
 #include "start/concentrations.hpp"
 #include "start/start_relaxation.hpp"
 #include "start/start_report.hpp"
@@ -20,14 +21,15 @@ struct Found {
     StartReport start;
 };
 
-/// Relaxes the start if the scene asks for it and evaluates OpenMM's forces once. Collective.
-Found find(Scene const& scene, Communicator const& communicator) {
-    std::optional<RelaxedScene> relaxed =
-        relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
+/// Relaxes the start if the scene asks for it and evaluates OpenMM's forces once, if they find room
+/// in memory. Collective.
+Found find(Scene const& scene, Communicator const& communicator, bool too_large) {
+    std::optional<RelaxedScene> relaxed;
+    if (!too_large) relaxed = relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
     Found found;
     found.start.change = scene.start;
     if (relaxed) found.start.relaxation = relaxed->relaxation;
-    if (!scene.forces.openmm) return found;
+    if (!scene.forces.openmm || too_large) return found;
     if (!relaxed) refuse_coinciding(scene, communicator);
     ChainSystem system(relaxed ? relaxed->scene : scene, Axes::joint, communicator);
     found.openmm = system.openmm()->description();
@@ -120,10 +122,11 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("integrator", dynamics_text(scene));
     if (limit) text.entry("longest stable step", catena::text_of(*limit, scene));
     text.heading("memory");
-    text.entry(ranks == 1 ? "estimate" : "estimate per rank",
-               fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()),
-                           bytes_text(memory.scene), bytes_text(memory.state),
-                           bytes_text(memory.solver), openmm.empty() ? "" : "; without OpenMM"));
+    text.entry(
+        ranks == 1 ? "estimate" : "estimate per rank",
+        fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()),
+                    bytes_text(memory.scene), bytes_text(memory.state), bytes_text(memory.solver),
+                    scene.forces.openmm ? "; without OpenMM" : ""));
     for (std::string const& note : notes_on(scene, limit)) text.note(note);
     text.heading("The scene is valid.");
     return text;
@@ -131,9 +134,14 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
 
 }  // namespace
 
-Outcome check_scene(Scene const& scene, Communicator const& communicator, bool json) {
+Outcome check_scene(Scene scene, Communicator const& communicator, bool json) {
     choose_backend(scene, communicator);  // throws for those of later versions
-    Found const found = find(scene, communicator);
+    auto const lacking = lacking_memory(scene, communicator);
+    bool const too_large = communicator.max(lacking ? 1 : 0) > 0;
+    if (lacking)
+        scene.note(lacking->note() +
+                   (scene.forces.openmm ? "; its forces were not evaluated here" : ""));
+    Found const found = find(scene, communicator, too_large);
     Memory const memory = memory_of(scene, communicator.size());
     std::optional<StepLimit> const limit = estimate_step_limit(scene);
     Outcome outcome;

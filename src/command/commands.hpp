@@ -10,7 +10,7 @@ namespace catena::command {
 
 /// Describes the scene: chains, bodies, degrees of freedom, handle kinds, forces and memory. `json`
 /// is true if the outcome's JSON is needed; its list of chains takes about a kilobyte per chain.
-Outcome check_scene(Scene const&, Communicator const&, bool json);
+Outcome check_scene(Scene, Communicator const&, bool json);
 
 /// Writes the picture that `check --picture` asks for, on rank 0. Throws InputError if no chain of
 /// the scene decides its domains by a prediction. Collective.

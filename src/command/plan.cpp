@@ -9,6 +9,7 @@
 #include "integrate/joint_integrators.hpp"
 #include "plan/cache.hpp"
 #include "plan/describe.hpp"
+#include "plan/host_memory.hpp"
 #include "plan/plan_messages.hpp"
 #include "plan/plan_steps.hpp"
 #include "plan/predictions.hpp"
@@ -290,10 +291,12 @@ void add_left_out(Text& text, Json& json, ChainSystem const& system, PlanRequest
     if (request.explain) add_savings(text, json, scene, system);
 }
 
-/// Adds the notes on the scene.
-void add_notes(Text& text, Json& json, Scene const& scene) {
+/// Adds the notes on the scene, and on memory that this host lacks.
+void add_notes(Text& text, Json& json, Scene const& scene, Communicator const& communicator) {
+    std::vector<std::string> notes = notes_on(scene, estimate_step_limit(scene));
+    if (auto const lacking = lacking_memory(scene, communicator)) notes.push_back(lacking->note());
     json["notes"] = Json::array();
-    for (std::string const& note : notes_on(scene, estimate_step_limit(scene))) {
+    for (std::string const& note : notes) {
         json["notes"].push_back(note);
         text.note(note);
     }
@@ -318,7 +321,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     add_output(text, json, scene);
     add_left_out(text, json, system, request);
     if (communicator.rank() == 0) add_predictions(text, json, predictions);
-    add_notes(text, json, scene);
+    add_notes(text, json, scene, communicator);
     if (request.measure) {
         plan::PhaseSeconds const measured = measure(scene, axes, communicator);
         if (communicator.rank() == 0) add_measured(text, json, predictions, measured);

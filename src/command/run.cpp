@@ -15,6 +15,7 @@
 #include "measure/forward_error.hpp"
 #include "page/run_facts.hpp"
 #include "plan/choice.hpp"
+#include "plan/host_memory.hpp"
 #include "run/simulation.hpp"
 
 namespace catena::command {
@@ -73,6 +74,7 @@ Outcome run_scene(Scene given, Communicator const& communicator, RunRequest cons
     look_at_forward_error(given, communicator);
     if (std::string const note = note_of_step(given, estimate_step_limit(given)); !note.empty())
         given.note(note);
+    if (auto const lacking = lacking_memory(given, communicator)) given.note(lacking->note());
     for (std::string const& note : given.notes) spdlog::warn("{}", note);
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator)
                           ? Axes::joint

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cuda/space/memory.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/cache.hpp"
 
@@ -165,13 +166,11 @@ void with_planner(Communicator const& communicator, int threads, std::int64_t la
 
 void share(Communicator const& communicator, Choice& choice) {
     std::int64_t numbers[] = {static_cast<std::int64_t>(choice.arrangement.backend),
-                              choice.arrangement.threads, choice.levels.up, choice.levels.down,
-                              std::ssize(choice.reason)};
-    communicator.broadcast(std::as_writable_bytes(std::span(numbers)));
+                              choice.arrangement.threads, choice.levels.up, choice.levels.down};
+    broadcast(communicator, numbers);
     choice.arrangement = {static_cast<Backend>(numbers[0]), static_cast<int>(numbers[1])};
     choice.levels = {static_cast<int>(numbers[2]), static_cast<int>(numbers[3])};
-    choice.reason.resize(static_cast<std::size_t>(numbers[4]));
-    communicator.broadcast(std::as_writable_bytes(std::span(choice.reason)));
+    broadcast(communicator, choice.reason);
 }
 
 Scene with_choice(Scene scene, Choice const& choice) {

@@ -1,0 +1,100 @@
+// Implements the comparison with what the host has free.
+#include "plan/host_memory.hpp"
+
+#include <fmt/format.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include "console/text.hpp"
+#include "plan/describe.hpp"
+
+namespace catena::command {
+namespace {
+
+/// Bytes that OpenMM takes for a bead at least. Its CPU platform took 1,500 to 1,700 for 300,000 to
+/// 3,000,000 beads of CALVADOS 2.
+constexpr double openmm_bytes = 1000;
+
+/// Returns the number that follows `key` in a file of lines such as "MemAvailable: 123 kB". An
+/// empty key stands for a file of one number. Returns nothing if there is none ("max").
+std::optional<double> number_in(std::string const& path, std::string const& key = "") {
+    std::ifstream file(path);
+    double number = 0;
+    for (std::string word; key.empty() || file >> word;) {
+        if (word != key) continue;
+        if (file >> number) return number;
+        break;
+    }
+    return std::nullopt;
+}
+
+/// Returns what the control group in `folder` allows beyond what it uses. Cached files count as
+/// free.
+std::optional<double> free_in_group(std::string const& folder) {
+    auto const most = number_in(folder + "/memory.max");
+    if (!most) return std::nullopt;
+    double const used = number_in(folder + "/memory.current").value_or(0),
+                 cached = number_in(folder + "/memory.stat", "inactive_file").value_or(0);
+    return std::max(0.0, *most - used + cached);
+}
+
+/// Returns what the control group of this process and those around it allow (version 2 of control
+/// groups).
+double free_in_groups(std::string const& root) {
+    double least = std::numeric_limits<double>::infinity();
+    std::ifstream file(root + "proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        if (line.rfind("0::/", 0) != 0) continue;
+        std::string path = line.substr(3);
+        while (true) {
+            if (auto const found = free_in_group(root + "sys/fs/cgroup" + path))
+                least = std::min(least, *found);
+            if (path.empty()) break;
+            path.resize(path.rfind('/'));
+        }
+    }
+    return least;
+}
+
+/// Returns what `ulimit -v` allows beyond the address space that is taken.
+double free_in_limit(std::string const& root) {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return std::numeric_limits<double>::infinity();
+    double const taken = 1024 * number_in(root + "proc/self/status", "VmSize:").value_or(0);
+    return std::max(0.0, static_cast<double>(limit.rlim_cur) - taken);
+}
+
+}  // namespace
+
+std::optional<double> free_host_memory(std::string const& root) {
+    auto const available = number_in(root + "proc/meminfo", "MemAvailable:");
+    if (!available) return std::nullopt;
+    return std::min({1024 * *available, free_in_groups(root), free_in_limit(root)});
+}
+
+std::string HostMemory::note() const {
+    return fmt::format(
+        "a run needs at least {} of memory on this host, {} are free: the system may "
+        "end it without a word; take more hosts or fewer chains",
+        bytes_text(needed), bytes_text(free));
+}
+
+std::optional<HostMemory> lacking_memory(Scene const& scene, Communicator const& communicator) {
+    auto const free = free_host_memory();
+    if (!free) return std::nullopt;
+    // The scene itself has been read: it is no longer part of what is free.
+    Memory const memory = memory_of(scene, communicator.size());
+    double const forces = scene.forces.openmm ? openmm_bytes * static_cast<double>(scene.bodies()) /
+                                                    communicator.size()
+                                              : 0;
+    double const needed = communicator.ranks_on_host() * (memory.state + memory.solver + forces);
+    if (needed <= *free) return std::nullopt;
+    return HostMemory{needed, *free};
+}
+
+}  // namespace catena::command
