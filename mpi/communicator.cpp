@@ -1,5 +1,6 @@
 // Default implementations that need no MPI.
 #include "mpi/communicator.hpp"
+#include "mpi/collectives.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -25,7 +26,7 @@ std::string variable_of_first_rank(Communicator const& communicator, char const*
     char text[64] = {};
     if (char const* const own = std::getenv(name); communicator.rank() == 0 && own)
         std::strncpy(text, own, sizeof(text) - 1);
-    communicator.broadcast(std::as_writable_bytes(std::span(text)));
+    broadcast(communicator, text);
     return text;
 }
 

@@ -1,5 +1,6 @@
 // Measurement of messages and gathers, and the model fitted to them.
 #include "mpi/network.hpp"
+#include "mpi/collectives.hpp"
 
 #include <unistd.h>
 
@@ -48,11 +49,8 @@ using HostName = std::array<char, 64>;
 std::vector<std::string> hosts_of_ranks(Communicator const& communicator) {
     HostName own{};
     ::gethostname(own.data(), own.size() - 1);
-    std::vector<HostName> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(all.size(), sizeof(HostName)));
     std::vector<std::string> names;
-    for (HostName const& name : all) names.emplace_back(name.data());
+    for (HostName const& name : all_gathered(communicator, own)) names.emplace_back(name.data());
     return names;
 }
 

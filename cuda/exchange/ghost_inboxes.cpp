@@ -1,5 +1,6 @@
 // Implements GhostInboxes on top of the mapped memory of peer_memory.hpp.
 #include "cuda/exchange/ghost_inboxes.hpp"
+#include "mpi/collectives.hpp"
 
 #include <algorithm>
 
@@ -20,7 +21,7 @@ GhostInboxes::~GhostInboxes() {
 
 bool GhostInboxes::fit(std::span<Halo::Message const> messages) {
     auto const ranks = static_cast<std::size_t>(communicator_.size());
-    std::vector<std::int64_t> first_of(ranks, 0), all(ranks * ranks);
+    std::vector<std::int64_t> first_of(ranks, 0);
     std::int64_t received = 0;
     for (Halo::Message const& m : messages) {
         first_of[static_cast<std::size_t>(m.rank)] = received;
@@ -28,9 +29,7 @@ bool GhostInboxes::fit(std::span<Halo::Message const> messages) {
     }
     auto const most = static_cast<std::int64_t>(communicator_.max(static_cast<double>(received)));
     if ((most > capacity_ || base_.empty()) && !map_anew(most)) return false;
-    communicator_.all_gather(
-        std::as_bytes(std::span(first_of)), std::as_writable_bytes(std::span(all)),
-        std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(ranks * sizeof(std::int64_t))));
+    std::vector<std::int64_t> const all = all_gathered_alike(communicator_, first_of);
     first_.resize(ranks);
     for (std::size_t r = 0; r < ranks; ++r)
         first_[r] = all[r * ranks + static_cast<std::size_t>(communicator_.rank())];

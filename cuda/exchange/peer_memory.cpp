@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cuda/device/gpu.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/gpu_exchange.hpp"
 #include "neighbours/device_path.hpp"
 
@@ -49,11 +50,7 @@ std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     cudaDeviceProp gpu{};
     check(cudaGetDevice(&device), "report its number");
     check(cudaGetDeviceProperties(&gpu, device), "report its properties");
-    std::vector<cudaUUID_t> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)),
-                            std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(all.size(), sizeof(cudaUUID_t)));
-    return all;
+    return all_gathered(communicator, gpu.uuid);
 }
 
 /// Returns the largest number of ranks that have the same GPU.
@@ -148,10 +145,7 @@ bool gpus_are_alike(Communicator const& communicator) {
     cudaDeviceProp gpu{};
     check(cudaGetDevice(&device), "report its number");
     check(cudaGetDeviceProperties(&gpu, device), "report its properties");
-    std::vector<char> all(static_cast<std::size_t>(communicator.size()) * sizeof(gpu.name));
-    communicator.all_gather(
-        std::as_bytes(std::span(gpu.name)), std::as_writable_bytes(std::span(all)),
-        std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), sizeof(gpu.name)));
+    std::vector<char> const all = all_gathered_alike(communicator, gpu.name);
     bool alike = true;
     for (std::size_t r = 0; r < all.size(); r += sizeof(gpu.name))
         alike = alike && std::strcmp(gpu.name, all.data() + r) == 0;
@@ -161,10 +155,7 @@ bool gpus_are_alike(Communicator const& communicator) {
 std::vector<void*> map_each_others(Communicator const& communicator, void* own) {
     cudaIpcMemHandle_t handle{};
     bool const shown = cudaIpcGetMemHandle(&handle, own) == cudaSuccess;
-    std::vector<cudaIpcMemHandle_t> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&handle, 1)),
-                            std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(all.size(), sizeof(handle)));
+    std::vector<cudaIpcMemHandle_t> const all = all_gathered(communicator, handle);
     std::vector<void*> base;
     bool opened = agreed(communicator, shown);
     for (std::size_t r = 0; opened && r < all.size(); ++r) {

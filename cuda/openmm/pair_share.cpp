@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mpi/collectives.hpp"
 #include "neighbours/pair_cuts.hpp"
 
 namespace catena::cuda {
@@ -60,11 +61,8 @@ bool PairShare::choose(OpenMmOnDevice& openmm, bool new_order) {
         openmm.share(*halo_.groups_of_share(), rank, ranks);
         cuts_ = equal_cuts(ranks);
     } else if (new_order || is_early(before)) {
-        double const own = openmm.tiles();
-        std::vector<double> all(static_cast<std::size_t>(ranks));
-        communicator.all_gather(std::as_bytes(std::span(&own, 1)),
-                                std::as_writable_bytes(std::span(all)),
-                                std::vector<std::int64_t>(all.size(), sizeof(own)));
+        std::vector<double> const all =
+            all_gathered(communicator, static_cast<double>(openmm.tiles()));
         cuts_ = evened_cuts(cuts_, all);
         has_list_ = *std::max_element(all.begin(), all.end()) > 0;
     }

@@ -11,6 +11,7 @@
 
 #include "chain/group_view.hpp"
 #include "math/executor.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 #include "tree/load_balance.hpp"
@@ -224,8 +225,7 @@ void exchange_by_host(Access const& access, Communicator const& communicator,
     if (!e) return;
     Vector<double, D> const send = access.get(e.from, e.i);
     Vector<double, D> receive = send;
-    communicator.exchange(std::as_bytes(std::span(send.data)), e.to,
-                          std::as_writable_bytes(std::span(receive.data)), e.source);
+    exchange(communicator, send.data, e.to, receive.data, e.source);
     if (e.source >= 0) access.put(e.into, e.j, receive);
 }
 /// Access to the bodies of fields in host memory.
@@ -289,15 +289,13 @@ template <class Value>
 std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGroup const& group,
                                        std::vector<LocalUnit> const& units,
                                        std::vector<Value> const& own) {
-    std::vector<Value> send, all(group.schedule.shared.size());
-    if (all.empty()) return all;
-    std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator.size()), 0);
-    for (dca::FrontierUnit const& unit : group.schedule.shared) bytes[unit.owner] += sizeof(Value);
+    if (group.schedule.shared.empty()) return {};
+    std::vector<Value> send;
+    std::vector<std::int64_t> counts(static_cast<std::size_t>(communicator.size()), 0);
+    for (dca::FrontierUnit const& unit : group.schedule.shared) ++counts[unit.owner];
     for (std::size_t i = 0; i < units.size(); ++i)
         if (!group.pieces[units[i].piece].whole()) send.push_back(own[i]);
-    communicator.all_gather(std::as_bytes(std::span(send)), std::as_writable_bytes(std::span(all)),
-                            bytes);
-    return all;
+    return all_gathered(communicator, send, counts);
 }
 
 /// Calls action(piece, i) for body i of every piece, on the executor's threads.

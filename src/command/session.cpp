@@ -86,21 +86,8 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
 Scene Session::load(std::string const& file) const {
     double const start = seconds_now();
     std::optional<Scene> scene;
-    std::string refusal;
-    try {
-        scene = load_scene(file, overrides_of(options_));
-    } catch (InputError const& error) {
-        refusal = error.what();
-    }
-    // Files that one rank alone cannot read, say for lack of memory there, must not leave the
-    // others waiting.
-    if (communicator_.max(refusal.empty() ? 0 : 1) > 0) {
-        auto const refuse = [&] {
-            if (!refusal.empty()) throw InputError(refusal);
-        };
-        on_first_rank(communicator_, refuse);
-        on_every_rank(communicator_, refuse);
-    }
+    // Files that one rank alone cannot read must not leave the others waiting.
+    on_every_rank(communicator_, [&] { scene = load_scene(file, overrides_of(options_)); });
     spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, seconds_now() - start,
                   scene->chains.size(), scene->bodies());
     return *std::move(scene);

@@ -16,6 +16,7 @@
 #include "force/path.hpp"
 #include "force/rank_forces.hpp"
 #include "force/worker.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 #include "scene/node.hpp"
 #include "structure/residue_table.hpp"
@@ -243,11 +244,11 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     }
     if (device_) device_->make_current();  // OpenMM may have left its own GPU context current
     char failed = failure.empty() ? 0 : 1;
-    communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
+    broadcast(communicator_, failed);
     if (failed != 0)
         throw ComputationError(fmt::format("OpenMM failed to compute the energies on rank 0{}{}",
                                            failure.empty() ? "" : ": ", failure));
-    communicator_.broadcast(std::as_writable_bytes(std::span(values)));
+    broadcast(communicator_, values);
     std::vector<EnergyTerm> terms;
     for (std::size_t i = 0; i < values.size(); ++i) terms.push_back({model_.terms[i], values[i]});
     return terms;
@@ -310,42 +311,6 @@ void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& wh
     }
 }
 
-/// Returns the text of the first rank whose text is not empty; empty if there is none. Collective.
-std::string first_words(Communicator const& communicator, std::string const& own) {
-    std::int64_t const own_length = std::ssize(own);
-    std::vector<std::int64_t> lengths(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&own_length, 1)),
-                            std::as_writable_bytes(std::span(lengths)),
-                            std::vector<std::int64_t>(lengths.size(), sizeof(std::int64_t)));
-    std::int64_t const first =
-        std::find_if(lengths.begin(), lengths.end(), [](std::int64_t n) { return n > 0; }) -
-        lengths.begin();
-    if (first == std::ssize(lengths)) return "";
-    std::int64_t total = 0, begin = 0;
-    for (std::int64_t r = 0; r < std::ssize(lengths); ++r) {
-        total += lengths[r];
-        if (r < first) begin += lengths[r];
-    }
-    std::string all(static_cast<std::size_t>(total), ' ');
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                            lengths);
-    return all.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(lengths[first]));
-}
-
-/// Runs `action` and throws the first rank's InputError on every rank. Errors can differ between
-/// ranks, because only ranks with beads make Contexts. Collective.
-template <class Action>
-void on_all(Communicator const& communicator, Action const& action) {
-    std::string error;
-    try {
-        action();
-    } catch (InputError const& e) {
-        error = e.what();
-    }
-    if (std::string const words = first_words(communicator, error); !words.empty())
-        throw InputError(words);
-}
-
 /// Builds the model that the scene asks for. Throws InputError.
 OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
                      Communicator const& communicator, std::string const& where) {
@@ -389,7 +354,7 @@ bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSys
                          beads.scene_file + ": forces.openmm.split", "leave one of them out");
     if (communicator.size() == 1 || spec.replicate || spec.split == "ghosts") return false;
     std::string why_not =
-        first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
+        first_text(communicator, cannot_share_pairs(spec, system, beads, why_no_device)).text;
     if (why_not.empty() && !cuda::gpus_are_alike(communicator)) why_not = "their GPUs differ";
     if (spec.split == "pairs" && !why_not.empty())
         throw InputError(fmt::format("ranks cannot divide OpenMM's pairs: {}", why_not),
@@ -423,7 +388,7 @@ std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const
     std::string const where = beads.scene_file + ": forces.openmm";
     OpenMmModel model;
     OpenMmPlatform platform;
-    on_all(communicator, [&] {
+    on_every_rank(communicator, [&] {
         model = model_of(spec, beads, communicator, where);
         refuse_box_beyond_cutoffs(*model.system, beads.scene_file + ": box");
         if (reach) shorten_pair_forces(*model.system, *reach);
@@ -431,10 +396,10 @@ std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const
             where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
     });
     std::string const why_no_device =
-        first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));
+        first_text(communicator, cannot_stay_on_device(spec, platform, communicator, chains)).text;
     bool const by_pairs = goes_by_pairs(spec, *model.system, beads, communicator, why_no_device);
     std::unique_ptr<OpenMmForce> force;
-    on_all(communicator, [&] {
+    on_every_rank(communicator, [&] {
         force = accepted(where, [&]() -> std::unique_ptr<OpenMmForce> {
             return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model),
                                                   std::move(platform), why_no_device, by_pairs);

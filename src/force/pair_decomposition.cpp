@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 #include "neighbours/ghost_lists.hpp"
 #include "systems/subset.hpp"
@@ -253,11 +254,7 @@ std::vector<Vec3> PairForces::forces_again() {
 void PairForces::find_energies(DevicePath*, std::span<double> of_group) {
     std::vector<double> own(of_group.size());
     on_every_rank(communicator_, [&] { context_->find_energies(own, groups_); });
-    std::vector<std::int64_t> const bytes(static_cast<std::size_t>(communicator_.size()),
-                                          static_cast<std::int64_t>(std::span(own).size_bytes()));
-    std::vector<double> all(own.size() * bytes.size());
-    communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                             bytes);
+    std::vector<double> const all = all_gathered_alike(communicator_, own);
     std::fill(of_group.begin(), of_group.end(), 0.0);
     for (std::size_t i = 0; i < all.size(); ++i) of_group[i % own.size()] += all[i];
 }

@@ -10,6 +10,7 @@
 #include "cuda/dynamics.hpp"
 #include "cuda/space/memory.hpp"
 #include "error.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/thread_limit.hpp"
 
 namespace catena {
@@ -29,16 +30,10 @@ constexpr char const* without_memory =
 template <class Error = InputError>
 void refuse_cuda(Communicator const& communicator, std::string const& backend,
                  std::string const& reason, char const* remedy) {
-    std::string own = reason, all(static_cast<std::size_t>(communicator.size()) * 200, ' ');
-    own.resize(200, ' ');
-    communicator.all_gather(
-        std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-        std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), 200));
-    auto const found = all.find_first_not_of(' ');
-    if (found == std::string::npos) return;
-    std::string text = all.substr(found, 200 - found % 200);
-    text.erase(text.find_last_not_of(' ') + 1);
-    if (communicator.size() > 1) text += ", rank " + std::to_string(found / 200);
+    RankText const first = first_text(communicator, reason);
+    if (first.text.empty()) return;
+    std::string text = first.text;
+    if (communicator.size() > 1) text += ", rank " + std::to_string(first.rank);
     throw Error(text, "solver.backend: " + backend, remedy);
 }
 

@@ -8,6 +8,7 @@
 
 #include "chain/gather.hpp"
 #include "error.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -254,11 +255,10 @@ std::vector<Vector<double, 6>> ChainSystem::joint_forces(
 std::vector<Vec3> ChainSystem::bead_forces() const {
     if (!openmm_) return {};
     std::vector<std::int64_t> const& first = bead_system_.first_of_rank;
-    std::vector<std::int64_t> bytes;
+    std::vector<std::int64_t> counts;
     for (int rank = 0; rank < communicator_.size(); ++rank)
-        bytes.push_back((first[rank + 1] - first[rank]) * static_cast<std::int64_t>(sizeof(Vec3)));
-    std::vector<Vec3> own,
-        all(communicator_.rank() == 0 ? static_cast<std::size_t>(bead_system_.size()) : 0);
+        counts.push_back(first[rank + 1] - first[rank]);
+    std::vector<Vec3> own;
     Field<3> again;
     if (on_device()) {
         again = Field<3>(openmm_force_.size());
@@ -266,8 +266,7 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     }
     Field<3> const& force = on_device() ? again : openmm_force_;
     for (std::int64_t k = 0; k < force.size(); ++k) own.push_back(force[k]);
-    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                         bytes);
+    std::vector<Vec3> all = catena::gathered(communicator_, own, counts);
     if (bead_system_.by_rank.empty()) return all;
     std::vector<Vec3> ordered(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -279,18 +278,7 @@ std::vector<TipForce> ChainSystem::tip_forces(std::vector<BodyResults> const& re
     std::vector<TipForce> own;
     for (BodyResults const& r : results)
         own.insert(own.end(), r.tip_force.begin(), r.tip_force.end());
-    auto const ranks = static_cast<std::size_t>(communicator_.size());
-    auto const bytes = static_cast<std::int64_t>(own.size() * sizeof(TipForce));
-    std::vector<std::int64_t> of_rank(ranks);
-    communicator_.all_gather(std::as_bytes(std::span(&bytes, 1)),
-                             std::as_writable_bytes(std::span(of_rank)),
-                             std::vector<std::int64_t>(ranks, sizeof(bytes)));
-    std::int64_t total = 0;
-    for (std::int64_t const b : of_rank) total += b;
-    std::vector<TipForce> all(
-        communicator_.rank() == 0 ? static_cast<std::size_t>(total) / sizeof(TipForce) : 0);
-    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                         of_rank);
+    std::vector<TipForce> all = gathered_blocks(communicator_, own).values;
     std::sort(all.begin(), all.end(),
               [](TipForce const& a, TipForce const& b) { return a.chain < b.chain; });
     return all;

@@ -11,6 +11,7 @@
 
 #include "error.hpp"
 #include "io/writers.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -39,7 +40,7 @@ Marks marks_of(std::string const& file) {
 int rank_without(Communicator const& communicator, std::string const& file) {
     Marks const own = marks_of(file);
     Marks of_root = own;
-    communicator.broadcast(std::as_writable_bytes(std::span(of_root)));
+    broadcast(communicator, of_root);
     return static_cast<int>(communicator.max(own == of_root ? -1 : communicator.rank()));
 }
 
@@ -74,7 +75,7 @@ ParallelIoMode choose_file_way(Communicator const& communicator, RequestedIoMode
                                std::string const& what) {
     if (communicator.size() == 1) return {};
     if (wish == RequestedIoMode::root) return by_the_root("CATENA_HDF5 says so");
-    communicator.broadcast(std::as_writable_bytes(std::span(&bytes, 1)));
+    broadcast(communicator, bytes);
     if (wish == RequestedIoMode::best && bytes < worth_it) return by_the_root(what + " are small");
     std::string const why = why_by_the_root(communicator, file);
     return why.empty() ? ParallelIoMode{true, "collective, " + std::to_string(communicator.size()) +
@@ -86,7 +87,7 @@ std::string why_not_together(Communicator const& communicator,
                              std::initializer_list<std::function<void()>> steps) {
     try {
         for (auto const& step : steps) on_every_rank(communicator, step);
-    } catch (SharedError const& error) {
+    } catch (std::runtime_error const& error) {  // of every rank
         return error.what();
     }
     return "";

@@ -4,6 +4,7 @@
 
 #include "error.hpp"
 #include "io/parallel_io_mode.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -22,7 +23,7 @@ RequestedIoMode requested_io_mode_of_run(Communicator const& communicator) {
         char const* const word = std::getenv("CATENA_HDF5");
         wish = file_wish(word != nullptr ? word : "");
     });
-    communicator.broadcast(std::as_writable_bytes(std::span(&wish, 1)));
+    broadcast(communicator, wish);
     return wish;
 }
 

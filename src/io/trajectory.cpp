@@ -10,6 +10,7 @@
 #include "io/trajectory_layout.hpp"
 #include "io/trial.hpp"
 #include "io/writers.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -385,7 +386,7 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
         standing = writer->standing();
         writer->close();
     });
-    communicator.broadcast(std::as_writable_bytes(std::span(&standing, 1)));
+    broadcast(communicator, standing);
     std::unique_ptr<Writers> all;
     std::string const why = why_not_together(
         communicator,

@@ -4,6 +4,7 @@
 
 #include "dca/host_space.hpp"
 #include "kinematics/link_geometry.hpp"
+#include "mpi/collectives.hpp"
 
 namespace catena {
 
@@ -19,8 +20,7 @@ std::vector<Vector<double, D>> beyond_tips_of(ChainGroup const& group,
             ring.first >= 0 ? of_first(ring.first) : Vector<double, D>::zero();
         Vector<double, D> found = own;
         if (!ring.is_whole())
-            communicator.exchange(std::as_bytes(std::span(own.data)), ring.neighbour,
-                                  std::as_writable_bytes(std::span(found.data)), ring.neighbour);
+            exchange(communicator, own.data, ring.neighbour, found.data, ring.neighbour);
         if (ring.last >= 0) all[group.tip_index(ring.last)] = found;
     }
     return all;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clock.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
 #include "neighbours/ghosts.hpp"
 
@@ -19,24 +20,10 @@ namespace {
 template <class T>
 std::vector<std::vector<T>> blocks_of_ranks(Communicator const& communicator,
                                             std::vector<T> const& own) {
-    auto const ranks = static_cast<std::size_t>(communicator.size());
-    std::int64_t const bytes = std::ssize(own) * static_cast<std::int64_t>(sizeof(T));
-    std::vector<std::int64_t> bytes_of_rank(ranks);
-    communicator.all_gather(std::as_bytes(std::span(&bytes, 1)),
-                            std::as_writable_bytes(std::span(bytes_of_rank)),
-                            std::vector<std::int64_t>(ranks, sizeof(bytes)));
-    std::int64_t total = 0;
-    for (std::int64_t const b : bytes_of_rank) total += b;
-    std::vector<T> all(static_cast<std::size_t>(total) / sizeof(T));
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                            bytes_of_rank);
     std::vector<std::vector<T>> blocks;
-    auto begin = all.begin();
-    for (std::int64_t const b : bytes_of_rank) {
-        auto const end = begin + b / static_cast<std::int64_t>(sizeof(T));
-        blocks.emplace_back(begin, end);
-        begin = end;
-    }
+    all_gathered_blocks(communicator, own).each([&](std::span<T const> block) {
+        blocks.emplace_back(block.begin(), block.end());
+    });
     return blocks;
 }
 
@@ -365,12 +352,11 @@ void GhostLists::exchange(std::vector<Outgoing> const& out, std::vector<Incoming
 }
 
 std::vector<Vec3> GhostLists::all_positions(std::span<Vec3 const> own) const {
-    std::vector<std::int64_t> bytes;
+    std::vector<std::int64_t> counts;
     for (int rank = 0; rank < communicator_.size(); ++rank)
-        bytes.push_back((plan_.first_of_rank[rank + 1] - plan_.first_of_rank[rank]) *
-                        static_cast<std::int64_t>(sizeof(Vec3)));
-    std::vector<Vec3> by_rank(place_.size()), all(place_.size());
-    communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(by_rank)), bytes);
+        counts.push_back(plan_.first_of_rank[rank + 1] - plan_.first_of_rank[rank]);
+    std::vector<Vec3> const by_rank = all_gathered(communicator_, own, counts);
+    std::vector<Vec3> all(place_.size());
     for (std::size_t bead = 0; bead < all.size(); ++bead) all[bead] = by_rank[place_[bead]];
     return all;
 }

@@ -8,6 +8,7 @@
 
 #include "clock.hpp"
 #include "integrate/chain_system.hpp"
+#include "mpi/collectives.hpp"
 #include "mpi/timed_communicator.hpp"
 
 namespace catena {
@@ -94,10 +95,7 @@ dca::Shares agree_on_shares(Communicator const& communicator,
                             std::vector<OwnCost> const& of_groups) {
     auto const ranks = static_cast<std::size_t>(communicator.size());
     std::size_t const groups = of_groups.size();
-    std::vector<OwnCost> all(ranks * groups);
-    communicator.all_gather(
-        std::as_bytes(std::span(of_groups)), std::as_writable_bytes(std::span(all)),
-        std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(groups * sizeof(OwnCost))));
+    std::vector<OwnCost> const all = all_gathered_alike(communicator, of_groups);
     std::vector<double> taken(ranks, 0), expected(ranks, 0), speeds;
     for (std::size_t g = 0; g < groups; ++g) {
         double bodies = 0, seconds = 0;

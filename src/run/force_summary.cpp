@@ -1,5 +1,6 @@
 // Implements the summary of OpenMM's forces.
 #include "run/force_summary.hpp"
+#include "mpi/collectives.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -10,22 +11,13 @@ namespace {
 
 using nlohmann::json;
 
-/// Values of all ranks, on every rank. Collective.
-std::vector<std::int64_t> of_ranks(Communicator const& communicator, std::int64_t own) {
-    std::vector<std::int64_t> all(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&own, 1)),
-                            std::as_writable_bytes(std::span(all)),
-                            std::vector<std::int64_t>(all.size(), sizeof(own)));
-    return all;
-}
-
 /// Summary of ghosts: beads of other ranks that a rank's forces need. Lists have one entry per
 /// rank. Collective.
 json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, std::int64_t steps) {
     Communicator const& communicator = system.communicator();
     auto const a_step = [&](std::int64_t own) {
         std::vector<double> shares;
-        for (std::int64_t const all : of_ranks(communicator, own))
+        for (std::int64_t const all : all_gathered(communicator, own))
             shares.push_back(static_cast<double>(all) /
                              static_cast<double>(std::max<std::int64_t>(1, steps)));
         return shares;
@@ -38,9 +30,9 @@ json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, s
             {"direct", traffic.direct},
             {"seconds_of_lists", system.communicator().max(traffic.seconds_of_lists)},
             {"own_beads", own},
-            {"ghosts", of_ranks(communicator, traffic.ghosts)},
-            {"most_ghosts", of_ranks(communicator, traffic.most_ghosts)},
-            {"contexts", of_ranks(communicator, system.openmm()->contexts())},
+            {"ghosts", all_gathered(communicator, traffic.ghosts)},
+            {"most_ghosts", all_gathered(communicator, traffic.most_ghosts)},
+            {"contexts", all_gathered(communicator, system.openmm()->contexts())},
             {"messages_a_step", a_step(traffic.messages)},
             {"bytes_a_step", a_step(traffic.bytes)}};
 }

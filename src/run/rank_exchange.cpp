@@ -1,5 +1,6 @@
 // Implements the exchange of checkpoints and timelines.
 #include "run/rank_exchange.hpp"
+#include "mpi/collectives.hpp"
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -24,22 +25,10 @@ json timeline_json(std::vector<StepTimeline> const& steps) {
 
 /// Returns the texts of all ranks, on rank 0 only. Collective.
 std::vector<std::string> gather_texts(Communicator const& communicator, std::string const& own) {
-    auto const ranks = static_cast<std::size_t>(communicator.size());
-    std::int64_t const length = static_cast<std::int64_t>(own.size());
-    std::vector<std::int64_t> lengths(ranks);
-    communicator.all_gather(std::as_bytes(std::span(&length, 1)),
-                            std::as_writable_bytes(std::span(lengths)),
-                            std::vector<std::int64_t>(ranks, sizeof(length)));
-    std::int64_t total = 0;
-    for (std::int64_t const l : lengths) total += l;
-    std::string all(communicator.rank() == 0 ? static_cast<std::size_t>(total) : 0, ' ');
-    communicator.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
-                        lengths);
+    auto const all = gathered_blocks(communicator, own);
     std::vector<std::string> texts;
-    std::size_t at = 0;
-    for (std::size_t r = 0; communicator.rank() == 0 && r < ranks;
-         at += static_cast<std::size_t>(lengths[r++]))
-        texts.push_back(all.substr(at, static_cast<std::size_t>(lengths[r])));
+    if (communicator.rank() == 0)
+        all.each([&](std::span<char const> text) { texts.emplace_back(text.begin(), text.end()); });
     return texts;
 }
 
@@ -47,27 +36,18 @@ std::vector<std::string> gather_texts(Communicator const& communicator, std::str
 
 void share(Communicator const& communicator, Checkpoint& c) {
     if (communicator.size() == 1) return;
-    auto const value = [&](auto& v) {
-        communicator.broadcast(std::as_writable_bytes(std::span(&v, 1)));
-    };
-    auto const text = [&](std::string& s) {
-        auto size = static_cast<std::int64_t>(s.size());
-        value(size);
-        s.resize(static_cast<std::size_t>(size));
-        communicator.broadcast(std::as_writable_bytes(std::span(s)));
-    };
-    value(c.step);
-    value(c.time);
+    broadcast(communicator, c.step);
+    broadcast(communicator, c.time);
     json names = {{"integers", c.integers}, {"arrays", json::object()}};
     for (auto const& [name, array] : c.arrays)
         if (array.size() <= largest_shared_array) names["arrays"][name] = array.size();
     std::string packed = names.dump();
-    text(packed);
+    broadcast(communicator, packed);
     names = json::parse(packed);
     c.integers = names["integers"].get<std::map<std::string, std::int64_t>>();
     for (auto const& [name, size] : names["arrays"].items()) {
         c.arrays[name].resize(size.get<std::size_t>());
-        communicator.broadcast(std::as_writable_bytes(std::span(c.arrays[name])));
+        broadcast(communicator, c.arrays[name]);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
+#include "mpi/collectives.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -44,7 +45,7 @@ Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& commun
     auto const shared = [&](char const* name, std::size_t width) {
         std::vector<double> values = arrays[name];  // absent if the scene has only beads
         values.resize(n * width);
-        communicator.broadcast(std::as_writable_bytes(std::span(values)));
+        broadcast(communicator, values);
         return values;
     };
     return {shared("velocity", 3), shared("omega", 3), shared("orientation", 4)};

@@ -313,7 +313,7 @@ TEST(FirstRank, ItsVariablesAreEverybodys) {
     EXPECT_EQ(variable_of_first_rank(world(), "CATENA_TEST_VARIABLE"), "");
 }
 
-/// Each set of ranks that fail; words of any length come from the last of them.
+/// Each set of ranks that fail; words of any length come from the first of them.
 TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
     auto const words = [](int rank) {
         return std::string(static_cast<std::size_t>(7 * rank % 3 * 100),
@@ -332,9 +332,9 @@ TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
         } catch (SharedError const& error) {
             thrown = error.what();
         }
-        int last = ranks - 1;
-        while (last >= 0 && (failing >> last & 1) == 0) --last;
-        EXPECT_EQ(thrown, last < 0 ? "nothing" : words(last)) << failing;
+        int first = 0;
+        while (first < ranks && (failing >> first & 1) == 0) ++first;
+        EXPECT_EQ(thrown, first == ranks ? "nothing" : words(first)) << failing;
         EXPECT_EQ(calls, 1);
     }
 }

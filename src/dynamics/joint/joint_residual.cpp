@@ -9,6 +9,7 @@
 #include "dynamics/joint/joint_solution.hpp"
 #include "kinematics/ring_ends.hpp"
 #include "math/executor.hpp"
+#include "mpi/collectives.hpp"
 
 namespace catena {
 
@@ -105,8 +106,8 @@ Vector<double, 8> JointSolution::handle_before_first(Communicator const& communi
         group.neighbour_outboard >= 0
             ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1))
             : before;
-    communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard,
-                          std::as_writable_bytes(std::span(before.data)), group.neighbour_inboard);
+    exchange(communicator, last.data, group.neighbour_outboard, before.data,
+             group.neighbour_inboard);
     return before;
 }
 
