@@ -33,6 +33,7 @@ def parse_arguments():
     parser.add_argument("--step", type=float, default=0.01, metavar="PS", help="time step of both, ps (default: 0.01)")
     parser.add_argument("--only", metavar="NAME,...", help="only these proteins of the table")
     parser.add_argument("--picture", metavar="FILE", help="also draw the table (PNG or SVG; needs matplotlib)")
+    parser.add_argument("--json", metavar="FILE", help="also write the table, the conditions and the hardware as JSON")
     return parser.parse_args()
 
 
@@ -118,6 +119,23 @@ def draw(lines, path):
     figure.savefig(path, dpi=110, metadata={"Date": None} if path.endswith(".svg") else None)
 
 
+def write_json(lines, found, asked):
+    """The table with its conditions. `found` has what the program wrote for each protein."""
+    asked_for = {"copies": asked.copies, "duration_ps": asked.duration, "discard_ps": asked.discard, "step_ps": asked.step}
+    last = found[-1]
+    table = {"bench": "radii beside OpenMM", "command": " ".join(["python3", "jobs/beside_openmm.py", *sys.argv[1:]]), **asked_for,
+             "known_difference": KNOWN, "hardware": last["hardware"], "build": last["build"], "results": lines,
+             "valid": all(is_right(line) for line in lines)}
+    with open(asked.json, "w", encoding="utf-8") as file:
+        json.dump(table, file, indent=1)
+        file.write("\n")
+
+
+def is_right(line):
+    """Whether a line's rows are VALID and agree within 3 standard errors."""
+    return bool(line["valid"] and abs(line["standard_errors_without_known"]) <= 3)
+
+
 def chosen(proteins, only):
     """The proteins of the table that --only names."""
     if not only:
@@ -142,7 +160,8 @@ def main():
     for row in proteins:
         replicas.refuse_other_scene(row, asked)
     replicas.write_scenes(proteins, asked)
-    lines = [line_of(row, sample(row["name"], asked)) for row in proteins]
+    found = [sample(row["name"], asked) for row in proteins]
+    lines = [line_of(row, each) for row, each in zip(proteins, found)]
     with open(os.path.join(asked.folder, "beside-openmm.csv"), "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(lines[0]))
         writer.writeheader()
@@ -150,7 +169,9 @@ def main():
     print_table(lines)
     if asked.picture:
         draw(lines, asked.picture)
-    wrong = [each["name"] for each in lines if not each["valid"] or not abs(each["standard_errors_without_known"]) <= 3]
+    if asked.json:
+        write_json(lines, found, asked)
+    wrong = [each["name"] for each in lines if not is_right(each)]
     if wrong:
         print(f"INVALID: {', '.join(wrong)}: more than 3 standard errors from OpenMM with the known difference, unknown errors, or an INVALID row")
         sys.exit(1)

@@ -244,6 +244,16 @@ def million_beads():
         "--set dynamics.steps=8000 --backend cuda"]
 
 
+def radii():
+    file, rows = "radii-beside-openmm-nvidia-h200", []
+    for r in rows_of("radii-beside-openmm-nvidia-h200"):
+        ours, theirs, measured = (f"{r[key + '_nm']:.{digits}f} +- {r[key + '_error_nm']:.{digits}f}"
+                                  for key, digits in (("simulated", 3), ("openmm", 3), ("measured", 2)))
+        rows.append([r["name"], str(r["residues"]), measured, ours, theirs, f"{r['difference_percent']:+.1f} %", f"{r['standard_errors_without_known']:+.1f}"])
+    return ["protein", "residues", "measured (nm)", "Catena (nm)", "OpenMM (nm)", "difference", "standard errors beyond the known -1.2 %"], rows, [file], [
+        load(file)["command"]]
+
+
 def plan():
     """Predictions over measurements of what was chosen."""
     files = ("plan-intel-xeon", "plan-large-intel-xeon", "plan-amd-epyc", "plan-nvidia-h200", "plan-large-nvidia-h200")
@@ -309,7 +319,7 @@ def every_walk():
 TABLES = {"one core": one_core, "two threads": two_threads, "sixteen cores": sixteen_cores, "scaling": scaling, "peers": peers, "peers' errors": peer_errors,
           "one GPU": one_gpu,
           "one GPU, joints": one_gpu_joints, "two GPUs": two_gpus, "four GPUs": four_gpus, "OpenMM on a GPU": openmm_gpu,
-          "OpenMM on two threads": openmm_cpu, "a million beads": million_beads, "plan": plan, "walks": walks, "every walk": every_walk}
+          "OpenMM on two threads": openmm_cpu, "a million beads": million_beads, "radii": radii, "plan": plan, "walks": walks, "every walk": every_walk}
 
 
 def markdown(name):

@@ -3,6 +3,7 @@
 
 The program is a stand-in that writes what `catena bench sampling` writes. Exit status 0: all as it should be; 1: not."""
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -22,7 +23,7 @@ with open({folder!r} + "/calls", "a") as calls:
     calls.write(os.path.basename(words[2]) + "\\n")
 row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "every_ps": 1.0, "valid": True}}
 radius = lambda mean: {{"radius_of_gyration": {{"mean": mean, "error": 0.01, "plateau": True}}}}
-json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "results": [
+json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "hardware": {{"gpu": "none"}}, "build": {{}}, "results": [
     {{"method": "rigid", **row, **radius({rigid})}}, {{"method": "bonds", **row, **radius(1.5)}}]}}, open(value["--json"], "w"))
 """
 
@@ -53,8 +54,12 @@ def main():
         check([row["name"] for row in rows] == ["gly"], "only the protein asked for")
         check(rows[0]["difference_percent"] == "-1.2" and rows[0]["standard_errors"] == "-1.27", f"difference of {rows[0]}")
         check(float(rows[0]["standard_errors_without_known"]) == 0, f"known difference of {rows[0]}")
-        both = call(folder, 1.55)  # 4.8 standard errors with the known difference
+        both = call(folder, 1.55, "--json", os.path.join(folder, "table.json"))  # 4.8 standard errors with the known difference
         check(both.returncode == 1 and "INVALID: ser:" in both.stdout, f"a large difference fails: {both.stdout}{both.stderr}")
+        with open(os.path.join(folder, "table.json"), encoding="utf-8") as file:
+            table = json.load(file)
+        check([row["name"] for row in table["results"]] == ["gly", "ser"] and not table["valid"], f"the table as JSON: {table}")
+        check(table["copies"] == 3 and table["hardware"] == {"gpu": "none"}, f"conditions of {table}")
         with open(os.path.join(folder, "calls"), encoding="utf-8") as file:
             check(file.read().split() == ["gly.yaml", "ser.yaml"], "results that are there are kept")
         other = call(folder, 1.5, "--duration", "100")
