@@ -17,7 +17,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   tidy        clang-tidy on the library's own sources, for a minute at most (what was left out is named)
 
   --quick  format and release alone
-  --slow-device-code  the GPU's code is compiled in half the time, and slower: for where nobody will run what is in build/release
+  --slow-device-code  the GPU's code is compiled in half the time, and runs some 200 times slower: for where nobody will run what is in build/release
   --long   also the long tests (statistics, drift; an hour or so), an hour of each damaged file's reader, two of changed scenes, most of those that sanitizers make slow,
            and a build without MPI alone
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
