@@ -17,8 +17,6 @@ namespace {
 
 using namespace hdf5;
 
-std::string const& writing = writing_checkpoint;
-
 /// Makes `previous` a second name of the existing file, so that a checkpoint exists at every
 /// moment.
 void keep_previous(std::string const& file) {
@@ -92,12 +90,13 @@ struct CheckpointWriter::Draft {
     /// Opens the file and the datasets of the arrays `later`.
     void open(std::unique_ptr<Writers> by) {
         writers = std::move(by);
-        Properties const access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
-        writers->prepare(access, file, writing);
-        handle = File(check(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.get()), file, writing));
-        writers->watch(handle, file, writing);
+        Properties const access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing_checkpoint));
+        writers->prepare(access, file, writing_checkpoint);
+        handle = File(
+            check(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.get()), file, writing_checkpoint));
+        writers->watch(handle, file, writing_checkpoint);
         for (auto const& [array, size] : later)
-            data[array] = open_array({handle.get(), file, writing}, array);
+            data[array] = open_array({handle.get(), file, writing_checkpoint}, array);
     }
     /// Leaves all objects open. The other ranks may not know that this rank stops here, and closing
     /// is collective.
@@ -109,8 +108,8 @@ struct CheckpointWriter::Draft {
     /// Writes parts of an array and adds them to the checksum.
     void put(std::string const& array, std::span<ArrayPart const> parts) {
         Dataset const& dataset = data.at(array);
-        Space const in_file(check(H5Dget_space(dataset.get()), file, writing));
-        check(H5Sselect_none(in_file.get()), file, writing);
+        Space const in_file(check(H5Dget_space(dataset.get()), file, writing_checkpoint));
+        check(H5Sselect_none(in_file.get()), file, writing_checkpoint);
         std::vector<double> joined;
         hsize_t numbers = 0;
         for (ArrayPart const& part : parts) {
@@ -118,23 +117,24 @@ struct CheckpointWriter::Draft {
             hsize_t const first = static_cast<hsize_t>(part.first), count = part.values.size();
             check(
                 H5Sselect_hyperslab(in_file.get(), H5S_SELECT_OR, &first, nullptr, &count, nullptr),
-                file, writing);
+                file, writing_checkpoint);
             if (parts.size() > 1)
                 joined.insert(joined.end(), part.values.begin(), part.values.end());
             of_values += checksum_of_values(array, part.first, part.values);
             numbers += count;
         }
-        Space const in_memory(check(H5Screate_simple(1, &numbers, nullptr), file, writing));
+        Space const in_memory(
+            check(H5Screate_simple(1, &numbers, nullptr), file, writing_checkpoint));
         double const* const values = parts.size() == 1 ? parts[0].values.data() : joined.data();
         check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(),
                        writers->transfer(), values),
-              file, writing);
+              file, writing_checkpoint);
     }
     /// Closes the file after a flush to disk.
     void close() {
-        for (auto& [array, dataset] : data) check(dataset.close(), file, writing);
-        writers->flush_to_disk(handle, file, writing);
-        check(handle.close(), file, writing);
+        for (auto& [array, dataset] : data) check(dataset.close(), file, writing_checkpoint);
+        writers->flush_to_disk(handle, file, writing_checkpoint);
+        check(handle.close(), file, writing_checkpoint);
     }
     /// Calls look(reader) on the ranks that have the file, for the share of the rank `apart`
     /// further on.
@@ -153,14 +153,14 @@ struct CheckpointWriter::Draft {
     Sealed sum_of_pieces(int apart) const {
         Sealed own;
         share(apart, [&](Reader reader) {
-            own = sum_pieces(name, reader.number, reader.of, file, writing);
+            own = sum_pieces(name, reader.number, reader.of, file, writing_checkpoint);
         });
         return {communicator.sum(own.bytes), sum_over(communicator, own.checksum)};
     }
     /// Writes the seal, then verifies that ranks see the same file. Collective.
     void seal() const {
         Sealed const sealed = sum_of_pieces(0);
-        on_first_rank(communicator, [&] { put_seal(name, sealed, file, writing); });
+        on_first_rank(communicator, [&] { put_seal(name, sealed, file, writing_checkpoint); });
         if (!way.collective) return;
         Sealed const again = sum_of_pieces(
             to_other_host);  // fails on a host that does not see yet what another one has written

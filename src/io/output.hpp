@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io/array_part.hpp"
+#include "io/members.hpp"
 #include "io/parallel_io_mode.hpp"
 #include "math/executor.hpp"
 #include "math/linear.hpp"
@@ -42,6 +43,8 @@ struct Topology {
     bool joint_states = false;  // the trajectory holds their joint coordinates and rates
     std::optional<Vec3> box;    // edges of the periodic box, nm
     bool si = false;            // SI units: m, s, kg, N in place of nm, ps, amu, kJ/mol/nm
+    /// Members of the chains, in sites; those of some chains, or of all chains, may be absent.
+    Members members = {};
 };
 
 /// Frame of all sites, or a part of it with consecutive sites and bodies. Units are nm and ps, or m

@@ -8,11 +8,12 @@
 #include <numeric>
 
 #include "error.hpp"
+#include "io/site_names.hpp"
 
 namespace catena::hdf5 {
 namespace {
 
-constexpr std::int64_t format_version = 1;
+constexpr std::int64_t trajectory_version = 1;
 std::string const position_group = "particles/trajectory/position";
 
 /// Texts of the attributes `unit`.
@@ -78,10 +79,11 @@ class Builder {
     /// Writes /catena, Catena's own group.
     void add_own_group() {
         Group const own = make_group(root_, "catena");
-        put_attribute(at(own), "format_version", format_version);
+        put_attribute(at(own), "format_version", trajectory_version);
         put_text(at(own), "title", topology_.title);
         put_text(at(own), "length_unit", units_.length);
         describe_chains(at(own));
+        if (!topology_.members.empty()) describe_members(at(own));
         if (contents_.bodies > 0) {
             Group const element = add_element(at(own), "orientation", {contents_.bodies, 4}, "",
                                               series_.orientation, "w x y z, body axes to W");
@@ -141,6 +143,29 @@ class Builder {
         put_array(at(chains), "beads", beads);
         put_array(at(chains), "ring", ring);
         put_array(at(chains), "name", name);
+    }
+
+    /// Writes /catena/members.
+    void describe_members(Place const& own) {
+        SiteNames const names(topology_);
+        Group const group = make_group(own, "members");
+        std::vector<std::string> identifier;
+        std::vector<std::int64_t> chain, member, place, number;
+        for (std::size_t m = 0; m < names.members(); ++m) {
+            identifier.push_back(names.identifier(m));
+            chain.push_back(static_cast<std::int64_t>(names.chain(m)));
+        }
+        for (ResidueRun const& run : names.runs())
+            for (std::int64_t k = 0; k < run.count; ++k) {
+                member.push_back(static_cast<std::int64_t>(run.member));
+                place.push_back(run.place + run.step * k);
+                number.push_back(run.number + run.step * k);
+            }
+        put_array(at(group), "identifier", identifier);
+        put_array(at(group), "chain", chain);
+        put_array(at(group), "member", member);
+        put_array(at(group), "place", place);
+        put_array(at(group), "number", number);
     }
 
     /// Creates a group {step, time, value}. The first call creates step and time; later calls link

@@ -10,6 +10,9 @@
 //       mass, id                  [sites], id from 1
 //   /catena                       format_version, title, length_unit: texts of fixed length
 //       chains                    first, count, beads, ring, name: [chains]
+//       members                   if a structure file names residues: identifier, chain [members];
+//                                 member, place, number [sites]: index of the site's member, its
+//                                 place along the member from 0, its residue number in the file
 //       orientation               [frames][bodies][4]: w x y z, body axes to ground axes;
 //                                 site [bodies] from 0: the body's site or its first bead's
 //       body_position, body_velocity, angular_velocity

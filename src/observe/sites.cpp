@@ -33,9 +33,22 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
         bool const all_beads =
             chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == count);
         if (chain.tip == Tip::jointed) topology_.tips.push_back(std::ssize(topology_.chains));
+        add_members(chain.members, static_cast<std::int64_t>(first));
         topology_.chains.push_back({chain.name, static_cast<std::int64_t>(first),
                                     static_cast<std::int64_t>(count), all_beads, chain.is_ring()});
     }
+}
+
+/// Adds the members of a chain whose first site is `first`.
+void Sites::add_members(Members const& members, std::int64_t first) {
+    Members& all = topology_.members;
+    for (ResidueRun run : members.runs) {
+        run.first += first;
+        run.member += all.identifiers.size();
+        all.runs.push_back(run);
+    }
+    all.identifiers.insert(all.identifiers.end(), members.identifiers.begin(),
+                           members.identifiers.end());
 }
 
 /// True if the next body is one of those in `runs_`.

@@ -36,6 +36,7 @@ class Sites {
     Sites(Scene const&, std::vector<SceneWindows::Run> const& runs, bool with_topology);
     /// Adds the sites of a chain's bodies.
     void add(ChainSpec const&, bool with_topology);
+    void add_members(Members const& members, std::int64_t first);
     /// Adds orientation and coordinates of the body `k` of `bodies`.
     void add_state(ChainSystem::Bodies const&, std::size_t k, Frame&) const;
     /// True if this rank has the next body.

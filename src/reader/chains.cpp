@@ -251,6 +251,7 @@ class ChainReader {
             velocities = generator_->gives_velocities();
         } else if (source_.key != "bodies") {
             chain.beads = read_sequence(request_, copy);
+            if (request_.part != nullptr) chain.members = request_.part->names;
             velocities = false;
             // Rigid domains become bodies; the other beads stay points.
             if (!request_.rigid.empty()) {

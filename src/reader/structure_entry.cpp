@@ -11,6 +11,7 @@
 #include "reader/missing_residues.hpp"
 #include "scene/files.hpp"
 #include "scene/unique_names.hpp"
+#include "structure/member_names.hpp"
 
 namespace catena::scene {
 
@@ -151,6 +152,7 @@ class Complex {
             made.members.push_back(own.empty() ? parts_[c].name : shown(own));
         }
         for (std::size_t const residue : one_.residues) add(residue, made);
+        made.names = names();
         made.order = order();
         made.from.chains[0].first = 0;
         made.from.chains[0].last = made.from.sites.size();
@@ -166,6 +168,19 @@ class Complex {
         if (residue + 1 == end && !parts_[chain].cut_back)
             made.ends.push_back({made.from.sites.size(), false});
         made.from.sites.push_back(parts_[chain].from.sites[residue - begin]);
+    }
+
+    /// Chain identifiers and residue numbers in the order of the beads.
+    Members names() const {
+        MemberNames collected;
+        std::vector<std::size_t> piece(parts_.size());
+        for (std::size_t const c : one_.chains)
+            piece[c] = collected.announce(parts_[c].from.chains[0], parts_[c].from.sites.size());
+        for (std::size_t const residue : one_.residues) {
+            std::size_t const c = numbers_.chain_of(residue), k = residue - numbers_.range_of(c)[0];
+            collected.add(piece[c], k, parts_[c].from.sites[k]);
+        }
+        return collected.take();
     }
 
     /// Residues of one chain that follow each other in either direction.
@@ -217,8 +232,11 @@ class StructureReader {
     std::vector<StructurePart> read() {
         read_parts();
         read_rigid();
-        for (StructurePart const& part : parts_)
-            if (!part.members.empty()) note_complex(part, request_.scene);
+        for (StructurePart& part : parts_)
+            if (part.members.empty())
+                part.names = members_of(part.from);
+            else
+                note_complex(part, request_.scene);
         if (parts_.size() > 1) refuse_keys_of_one_chain();
         return std::move(parts_);
     }

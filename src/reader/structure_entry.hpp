@@ -8,6 +8,7 @@
 
 #include "bodies/domains.hpp"
 #include "domains/rigid_entry.hpp"
+#include "io/members.hpp"
 #include "reader/chain_request.hpp"
 #include "structure/pdb_sites.hpp"
 
@@ -33,6 +34,8 @@ struct StructurePart {
     bool mass_centres = false;
     /// Names of the file's chains that a shared rigid body makes one chain; empty for one chain.
     std::vector<std::string> members = {};
+    /// Chain identifiers and residue numbers of the beads.
+    Members names = {};
     /// Termini of the members. Ends that were cut at a gap are not among them.
     std::vector<ComplexEnd> ends = {};
     /// Residues of the beads of a complex in words: "A 1-95, B 1-88".

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/members.hpp"
 #include "joints/joint_type.hpp"
 #include "math/linear.hpp"
 #include "math/rotation.hpp"
@@ -188,6 +189,9 @@ struct ChainSpec {
     BeadArrays beads;
     BodyArrays bodies;
     LinkedArrays linked;
+    /// Chain identifiers and residue numbers of the beads, for topology files; empty unless a
+    /// structure file gives them.
+    Members members = {};
 
     bool is_beads() const { return beads.size() > 0; }
     bool is_linked() const { return linked.size() > 0; }

@@ -1,5 +1,8 @@
 // Scenes with rigid bodies across chains.
+#include <fmt/format.h>
+
 #include "structure/calvados2.hpp"
+#include "structure/member_names.hpp"
 #include "tests/domains/helix.hpp"
 #include "tests/reader/scene_files.hpp"
 
@@ -191,6 +194,64 @@ TEST_F(Complexes, ranges_of_one_chain_that_touch_are_one) {
                              .replace(scene_of("").find("chain: all"), 10, "chain: A"));
     EXPECT_EQ(s.chains.at(0).linked.size(), 3u);
     EXPECT_EQ(s.chains.at(0).linked.carried.offset, (std::vector<std::int64_t>{0, 1, 11, 12}));
+}
+
+/// Members of a chain as text: identifier, first bead, first and last number, insertion codes.
+std::string text_of(Members const& members) {
+    std::string text;
+    for (ResidueRun const& run : members.runs)
+        text += fmt::format("{}{} {} {}-{}{}", text.empty() ? "" : ", ",
+                            members.identifiers[run.member], run.first, run.number,
+                            run.number + run.step * (run.count - 1),
+                            run.insertion == ' ' ? "" : std::string(1, run.insertion));
+    return text;
+}
+
+TEST_F(Complexes, name_their_members_as_the_file) {
+    write("a.pdb", pdb_text(helix(12, "A", 5) + helix(10, "B", -2, 12)));
+    Scene const s = read(scene_of("[[\"A:9-16\", \"B:-2-3\"]]"));
+    ASSERT_EQ(s.chains.size(), 1u);
+    EXPECT_EQ(text_of(s.chains[0].members), "A 0 5-16, B 12 -2-7");
+}
+
+TEST_F(Complexes, name_residues_in_the_order_of_their_beads) {
+    // Both tails are C-terminal: the path begins at the end of A.
+    Scene const s = read(scene_of("[[\"A:1-8\", \"B:1-6\"]]"));
+    ASSERT_EQ(s.chains.size(), 1u);
+    EXPECT_EQ(text_of(s.chains[0].members), "A 0 12-8, A 5 1-7, B 12 1-10");
+    EXPECT_EQ(s.chains[0].members.runs[0].place, 11);
+    EXPECT_EQ(s.chains[0].members.runs[0].step, -1);
+}
+
+TEST_F(Complexes, of_pieces_of_one_chain_are_one_member_with_a_gap) {
+    write("a.pdb", pdb_text(helix(6, "A") + helix(6, "A", 11, 0, 15)));
+    Scene const s = read(
+        "chains: [{pdb: a.pdb, model: calvados2, gaps: split, rigid: [[\"A:1-6\", \"A:11-16\"]]}]");
+    ASSERT_EQ(s.chains.size(), 1u);
+    EXPECT_EQ(text_of(s.chains[0].members), "A 0 1-6, A 6 11-16");
+    EXPECT_EQ(s.chains[0].members.runs[1].place, 7);
+}
+
+TEST_F(Complexes, and_single_chains_keep_the_numbers_of_the_file) {
+    Scene const s = read("chains: [{pdb: a.pdb, model: calvados2, chain: all}]");
+    ASSERT_EQ(s.chains.size(), 2u);
+    EXPECT_EQ(text_of(s.chains[0].members), "A 0 1-12");
+    EXPECT_EQ(text_of(s.chains[1].members), "B 0 1-10");
+    EXPECT_TRUE(read("chains: [{sequence: GGG, model: calvados2}]").chains[0].members.empty());
+}
+
+TEST_F(Complexes, number_residues_from_1_where_numbers_repeat) {
+    scene::PdbSites one{"a.pdb", {}};
+    for (std::int64_t const number : {7, 8, 8}) {
+        scene::PdbSite site;
+        site.number = number;
+        site.label = std::to_string(number);
+        one.sites.push_back(site);
+    }
+    one.chains = {{"C", "C", 0, 3}};
+    EXPECT_EQ(text_of(scene::members_of(one)), "C 0 1-3");
+    one.sites[2].label = "8A";
+    EXPECT_EQ(text_of(scene::members_of(one)), "C 0 7-8, C 2 8-8A");
 }
 
 }  // namespace

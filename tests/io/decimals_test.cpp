@@ -1,4 +1,4 @@
-#include "io/decimals.hpp"
+#include "io/topology/decimals.hpp"
 
 #include <gtest/gtest.h>
 

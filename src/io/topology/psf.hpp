@@ -4,22 +4,14 @@
 // NAMD.
 #pragma once
 
-#include <string>
-
 #include "io/output.hpp"
 #include "io/output_file.hpp"
+#include "io/site_names.hpp"
 
 namespace catena {
 
-/// Returns the chain name A, B, ..., Z, AA, AB, ..., of any length.
-std::string chain_name(std::size_t number);
-
-/// Residue name of a site in the form that the formats hold: at most three characters of printable
-/// ASCII. UNK if the site has no name.
-std::string residue_of(Topology const&, std::size_t site);
-
 /// Writes the whole file: one line per site, in the units of the scene. Charges are 0, because the
 /// force field's charges are not part of the topology.
-void write_psf(AtomicFile& out, Topology const&);
+void write_psf(AtomicFile& out, Topology const&, SiteNames const&);
 
 }  // namespace catena

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <future>
@@ -11,17 +12,16 @@
 #include <optional>
 #include <span>
 
-#include "io/decimals.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
-#include "io/psf.hpp"
+#include "io/site_names.hpp"
+#include "io/topology/decimals.hpp"
+#include "io/topology/psf.hpp"
 
 namespace catena {
 namespace {
 
 constexpr std::int64_t most_pdb_serials = 99999;  // largest serial number in five decimal columns
-constexpr std::string_view chain_letters =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
 /// Returns the text with all but printable ASCII replaced, which is all that these formats hold.
 std::string plain(std::string_view text) {
@@ -95,19 +95,27 @@ void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     }
 }
 
-/// Writes the bonds along chains and between the ends of rings (CONECT).
-void write_bonds(AtomicFile& out, Topology const& topology) {
-    for (Topology::Chain const& chain : topology.chains)
-        for (std::int64_t k = 0; k < chain.count; ++k) {
-            bool const ring = chain.ring && chain.count > 2;
-            std::string neighbours;
-            if (k > 0) neighbours += serial(chain.first + k);
-            if (k == 0 && ring) neighbours += serial(chain.first + chain.count);
-            if (k + 1 < chain.count) neighbours += serial(chain.first + k + 2);
-            if (k + 1 == chain.count && ring) neighbours += serial(chain.first + 1);
-            if (!neighbours.empty())
-                out.write("CONECT" + serial(chain.first + k + 1) + neighbours + "\n");
-        }
+/// Writes the bonds (CONECT), for each site that before its own.
+void write_bonds(AtomicFile& out, SiteNames const& names, std::int64_t sites) {
+    constexpr std::int64_t none = -1;
+    std::vector<std::array<std::int64_t, 2>> neighbours(static_cast<std::size_t>(sites),
+                                                        {none, none});
+    for (auto const& [from, to] : names.bonds()) {
+        neighbours[static_cast<std::size_t>(from)][1] = to;
+        neighbours[static_cast<std::size_t>(to)][0] = from;
+    }
+    for (std::int64_t site = 0; site < sites; ++site) {
+        std::string text;
+        for (std::int64_t const other : neighbours[static_cast<std::size_t>(site)])
+            if (other != none) text += serial(other + 1);
+        if (!text.empty()) out.write("CONECT" + serial(site + 1) + text + "\n");
+    }
+}
+
+/// Returns a residue number in the four columns of PDB. Numbers that need more lose their first
+/// digits.
+std::string four_columns(std::int64_t number) {
+    return fmt::format(FMT_COMPILE("{:4}"), number < 0 ? number % 1000 : number % 10000);
 }
 
 /// Writes topology.cif up to the column names of its atoms.
@@ -134,20 +142,6 @@ void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
 
 }  // namespace
 
-std::string chain_name(std::size_t number) {
-    std::string name;
-    for (++number; number > 0; number = (number - 1) / 26)
-        name.insert(name.begin(), static_cast<char>('A' + (number - 1) % 26));
-    return name;
-}
-
-std::string residue_of(Topology const& topology, std::size_t site) {
-    std::string const name = site < topology.residue.size() && !topology.residue[site].empty()
-                                 ? plain(topology.residue[site])
-                                 : "UNK";
-    return name.substr(0, 3);
-}
-
 /// State of a TopologyWriter between its calls.
 struct TopologyWriter::Files {
     /// Formatted lines of consecutive sites, for both files.
@@ -156,7 +150,7 @@ struct TopologyWriter::Files {
     };
 
     Files(std::string const& folder, Topology const& of)
-        : topology(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
+        : topology(of), names(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
         written.push_back((std::filesystem::path(folder) / "topology.pdb").string());
         for (Topology::Chain const& each : topology.chains) sites += each.count;
         if (sites <= most_pdb_serials) {
@@ -207,45 +201,41 @@ struct TopologyWriter::Files {
                 Lines& to) const {
         to.pdb.clear();
         to.cif.clear();
-        auto chain = std::upper_bound(
-            topology.chains.begin(), topology.chains.end(), next + begin,
-            [](std::int64_t site, Topology::Chain const& each) { return site < each.first; });
-        --chain;
-        std::string name = chain_name(static_cast<std::size_t>(chain - topology.chains.begin()));
+        std::size_t run = names.run_of(next + begin);
         for (std::int64_t site = next + begin; site < next + end; ++site) {
-            if (site == chain->first + chain->count)
-                name = chain_name(static_cast<std::size_t>(++chain - topology.chains.begin()));
-            std::int64_t const number = site - chain->first + 1;
-            add(site, number, name, static_cast<std::size_t>(chain - topology.chains.begin()),
-                scale * positions[static_cast<std::size_t>(site - next)], to);
-            if (number == chain->count) to.pdb.append(std::string_view("TER\n"));
+            if (site == names.runs()[run].first + names.runs()[run].count) ++run;
+            ResidueRun const& of = names.runs()[run];
+            add(site, of, scale * positions[static_cast<std::size_t>(site - next)], to);
+            if (site + 1 == of.first + of.count && names.ends_member(run))
+                to.pdb.append(std::string_view("TER\n"));
         }
     }
 
-    /// Formats the lines of one site. `number`: position in its chain, from 1; `x`: Angstrom.
-    void add(std::int64_t site, std::int64_t number, std::string const& name, std::size_t chain,
-             Vec3 const& x, Lines& to) const {
+    /// Formats the lines of one site of a run. `x`: Angstrom.
+    void add(std::int64_t site, ResidueRun const& run, Vec3 const& x, Lines& to) const {
         std::string const residue = residue_of(topology, static_cast<std::size_t>(site));
-        fmt::format_to(
-            std::back_inserter(to.pdb),
-            FMT_COMPILE("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n"),
-            serial(site + 1), residue, chain_letters[chain % chain_letters.size()], number % 10000,
-            fixed(x[0], 8), fixed(x[1], 8), fixed(x[2], 8));
+        std::int64_t const k = run.step * (site - run.first), number = run.number + k;
+        fmt::format_to(std::back_inserter(to.pdb),
+                       FMT_COMPILE("ATOM  {}  CA  {:>3} {}{}{}   {}{}{}  1.00  0.00           C\n"),
+                       serial(site + 1), residue, names.letter(run.member), four_columns(number),
+                       run.insertion, fixed(x[0], 8), fixed(x[1], 8), fixed(x[2], 8));
         if (!cif) return;
+        std::string const& name = names.identifier(run.member);
         fmt::format_to(std::back_inserter(to.cif),
-                       FMT_COMPILE("ATOM {} C CA . {} {} 1 {} ? {} {} {} 1.00 0.00 {} {} 1\n"),
-                       site + 1, residue, name, number, Decimals(x[0], 3).text(),
+                       FMT_COMPILE("ATOM {} C CA . {} {} 1 {} {} {} {} {} 1.00 0.00 {} {} 1\n"),
+                       site + 1, residue, name, run.place + k + 1,
+                       run.insertion == ' ' ? '?' : run.insertion, Decimals(x[0], 3).text(),
                        Decimals(x[1], 3).text(), Decimals(x[2], 3).text(), number, name);
     }
 
     /// Writes the ends of the files and publishes them.
     void finish() {
         if (!begun) begin({});
-        if (sites <= most_pdb_serials) write_bonds(pdb, topology);
+        if (sites <= most_pdb_serials) write_bonds(pdb, names, sites);
         pdb.write("END\n");
         pdb.publish();
         if (psf) {
-            write_psf(*psf, topology);
+            write_psf(*psf, topology, names);
             psf->publish();
         }
         if (!cif) return;
@@ -254,6 +244,7 @@ struct TopologyWriter::Files {
     }
 
     Topology const& topology;
+    SiteNames names;
     AtomicFile pdb;
     std::optional<AtomicFile> cif, psf;
     std::vector<std::string> written;
