@@ -10,6 +10,7 @@
 #include "analysis/chain_numbers.hpp"
 #include "analysis/density.hpp"
 #include "error.hpp"
+#include "frames/member_order.hpp"
 
 namespace catena::analysis {
 namespace {
@@ -138,6 +139,20 @@ void note_uneven(Analysis& to, EvenFrames const& even) {
                         to.steps[even.frames.back()], even.interval));
 }
 
+/// Says how the numbers of complexes are meant.
+void note_complexes(Analysis& to, Topology const& topology) {
+    std::size_t complexes = 0, first = 0;
+    for (std::size_t c = topology.chains.size(); c-- > 0;)
+        if (is_complex(topology, c)) ++complexes, first = c;
+    if (complexes > 0)
+        to.notes.push_back(
+            fmt::format("{} `{}` are joined by rigid bodies: numbers are those of the whole "
+                        "complex, separations "
+                        "follow its beads; --members takes each member as a chain",
+                        complexes == 1 ? "the members of chain" : "the members of chains such as",
+                        topology.chains[first].name));
+}
+
 Analysis frame_of(TrajectoryFile const& trajectory, Options const& options) {
     Analysis to;
     to.trajectory = trajectory.name();
@@ -156,6 +171,7 @@ Analysis frame_of(TrajectoryFile const& trajectory, Options const& options) {
         to.notes.emplace_back(
             "there is no topology.pdb beside the trajectory: chains with equal masses are taken as "
             "copies");
+    note_complexes(to, trajectory.topology());
     return to;
 }
 

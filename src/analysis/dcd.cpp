@@ -84,45 +84,12 @@ void write_frame(AtomicFile& out, Snapshot const& snapshot) {
     }
 }
 
-void shift_into(Vec3 const& box, Vec3 const& place, std::span<Vec3> sites) {
-    for (int i = 0; i < 3; ++i) {
-        double const shift = box[i] * std::floor(place[i] / box[i]);
-        for (Vec3& x : sites) x[i] -= shift;
-    }
-}
-
-void wrap(Snapshot& snapshot, Topology const& topology, Wrap how) {
-    if (how == Wrap::none) return;
-    std::span<Vec3> const all = snapshot.position;
-    for (Topology::Chain const& chain : topology.chains) {
-        std::span<Vec3> const sites = all.subspan(static_cast<std::size_t>(chain.first),
-                                                  static_cast<std::size_t>(chain.count));
-        Vec3 middle = Vec3::zero();
-        for (Vec3& x : sites) {
-            if (how == Wrap::sites) shift_into(*snapshot.box, x, std::span(&x, 1));
-            middle = plus_scaled(middle, 1 / static_cast<double>(chain.count), x);
-        }
-        if (how == Wrap::chains && chain.count > 0) shift_into(*snapshot.box, middle, sites);
-    }
-}
-
 /// Refuses what the format cannot hold.
-void require_writable(TrajectoryFile const& trajectory, DcdRequest const& request) {
-    std::size_t const frames = trajectory.steps().size();
+void require_writable(TrajectoryFile const& trajectory, ChosenFrames const& chosen) {
     if (trajectory.topology().si)
         throw InputError("a DCD file holds Angstrom, and the trajectory is in m", trajectory.name(),
                          "read the trajectory itself, for example with h5py");
-    if (request.first < frames && request.first > request.last)
-        throw InputError(
-            fmt::format("the last frame, {}, is before the first, {}", request.last, request.first),
-            "--last", "frames count from 0: choose a later one");
-    if (request.first >= frames)
-        throw InputError(
-            fmt::format("no frame from {} on, the trajectory has {}", request.first, frames),
-            "--first", "frames count from 0: choose fewer");
-    if (request.wrap != Wrap::none && !trajectory.topology().box)
-        throw InputError("there is no periodic box to wrap into", trajectory.name(),
-                         "leave --wrap out");
+    require_frames(trajectory, chosen);
     if (trajectory.topology().mass.size() > INT32_MAX / sizeof(float))
         throw InputError("a DCD file holds at most 536 million sites", trajectory.name(),
                          "read the trajectory itself");
@@ -130,10 +97,10 @@ void require_writable(TrajectoryFile const& trajectory, DcdRequest const& reques
 
 }  // namespace
 
-DcdWritten write_dcd(TrajectoryFile const& trajectory, DcdRequest const& request) {
-    require_writable(trajectory, request);
-    std::size_t const end = std::min(request.last, trajectory.steps().size() - 1) + 1;
-    auto const steps = std::span(trajectory.steps()).subspan(request.first, end - request.first);
+DcdWritten write_dcd(TrajectoryFile const& trajectory, ChosenFrames const& chosen) {
+    require_writable(trajectory, chosen);
+    std::size_t const end = chosen.end(trajectory);
+    auto const steps = std::span(trajectory.steps()).subspan(chosen.first, end - chosen.first);
     EvenFrames const even = even_frames(steps);
     if (even.after > 0)
         throw InputError(
@@ -151,15 +118,15 @@ DcdWritten write_dcd(TrajectoryFile const& trajectory, DcdRequest const& request
     std::vector<double> const& times = trajectory.times();
     if (even.interval > 0)
         written.time_step =
-            (times[request.first + 1] - times[request.first]) / static_cast<double>(even.interval);
+            (times[chosen.first + 1] - times[chosen.first]) / static_cast<double>(even.interval);
     else if (steps.front() > 0)
-        written.time_step = times[request.first] / static_cast<double>(steps.front());
-    AtomicFile out(request.file);
+        written.time_step = times[chosen.first] / static_cast<double>(steps.front());
+    AtomicFile out(chosen.file);
     write_header(out, written, trajectory.topology().box.has_value(), trajectory.topology().title);
     Snapshot snapshot;
     for (std::size_t const frame : even.frames) {
-        trajectory.read(request.first + frame, snapshot);
-        wrap(snapshot, trajectory.topology(), request.wrap);
+        trajectory.read(chosen.first + frame, snapshot);
+        wrap(snapshot, trajectory.topology(), chosen.wrap);
         write_frame(out, snapshot);
     }
     out.publish();

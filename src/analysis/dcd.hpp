@@ -2,25 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
-#include "frames/trajectory_file.hpp"
+#include "analysis/chosen_frames.hpp"
 
 namespace catena::analysis {
-
-/// Place at which the sites of a periodic box are written.
-enum class Wrap {
-    none,    // positions of the trajectory: chains are whole and unwrapped
-    chains,  // chains are whole, the mean position of each lies in the box
-    sites    // every site lies in the box; chains are cut at its faces
-};
-
-/// Request for a DCD file.
-struct DcdRequest {
-    std::string file;
-    Wrap wrap = Wrap::none;
-    std::size_t first = 0, last = SIZE_MAX;  // frames, both included
-};
 
 /// Contents of a DCD file that was written.
 struct DcdWritten {
@@ -34,6 +19,6 @@ struct DcdWritten {
 /// file appears under its name only when it is complete. A DCD file holds one interval between
 /// frames; frames between its multiples are left out. Throws InputError for a gap in the frames,
 /// for `units: si`, for wrapping without a box and for steps beyond the 32 bits of the format.
-DcdWritten write_dcd(TrajectoryFile const&, DcdRequest const&);
+DcdWritten write_dcd(TrajectoryFile const&, ChosenFrames const&);
 
 }  // namespace catena::analysis

@@ -122,7 +122,8 @@ Json json_of(Analysis const& a) {
 Outcome analyse_run(Communicator const& communicator, AnalyseRequest const& request) {
     Outcome outcome;
     on_first_rank(communicator, [&] {
-        TrajectoryFile const trajectory(request.folder);
+        TrajectoryFile const trajectory(request.folder,
+                                        request.members ? SiteOrder::members : SiteOrder::stored);
         Analysis const found = analysis::analyse(trajectory, request.options);
         std::string const folder = output_folder(request);
         make_output_folder(folder);

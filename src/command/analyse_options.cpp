@@ -73,6 +73,9 @@ class AnalyseCommand final : public Command {
                    "axis of the density profile: x | y | z | none (default: the longest edge of a "
                    "box with several chains, if it is 1.5 times the others)");
         list.value("--bins", bins_, "N", "bins of the density profile, even (default 200)");
+        list.flag("--members", members_,
+                  "take each member of a complex as a chain, in the order of its residues "
+                  "(default: the whole complex)");
         list.footer(
             "Examples:\n  catena analyse asyn --discard 0.2\n"
             "  catena analyse slab --slab z --cutoff 0.8 --json slab.json --output slab-analysis");
@@ -82,6 +85,7 @@ class AnalyseCommand final : public Command {
         frames_.require_folder(name());
         request.folder = frames_.folder;
         request.output = output_;
+        request.members = members_;
         read(request.options);
         return request;
     }
@@ -104,6 +108,7 @@ class AnalyseCommand final : public Command {
         if (slab_ != "none") options.slab = slab_[0] - 'x';
     }
     FrameTexts frames_;
+    bool members_ = false;
     std::string output_, discard_, cutoff_, fit_, slab_, bins_;
 };
 
@@ -111,17 +116,21 @@ class ConvertCommand final : public Command {
   public:
     std::string name() const override { return "convert"; }
     std::string meaning() const override {
-        return "write a run's trajectory as DCD, for VMD and other tools";
+        return "write a run's trajectory as DCD or XTC, for VMD, GROMACS and other tools";
     }
     SharedOptions shared() const override { return SharedOptions::answer; }
     void add_options(OptionList& list, CommonOptions&) override {
         frames_.add(list);
-        list.argument("FILE.dcd", file_, "file to write; an existing one is replaced");
+        list.argument("FILE", file_,
+                      "file to write, FILE.dcd or FILE.xtc; an existing one is replaced");
         list.value("--wrap", wrap_, "HOW",
                    "none (default): as simulated, chains whole | chains: each whole, its middle in "
                    "the box | sites: every site in the box");
+        list.value("--precision", precision_, "N",
+                   "positions of an XTC file are rounded to 1/N nm (default 1000)");
         list.footer(
             "Examples:\n  catena convert asyn asyn.dcd\n"
+            "  catena convert asyn asyn.xtc --precision 10000\n"
             "  catena convert slab slab.dcd --wrap chains --first 100\n"
             "Open it with the run's topology: vmd asyn/topology.psf asyn.dcd");
     }
@@ -129,22 +138,30 @@ class ConvertCommand final : public Command {
         auto request = common_request<ConvertRequest>(common);
         frames_.require_folder(name());
         request.folder = frames_.folder;
-        request.dcd.file = file_;
-        if (std::filesystem::path(file_).extension() != ".dcd")
-            throw InputError(
-                file_.empty() ? "no file is named" : "`" + file_ + "` is no name of a DCD file",
-                "command line", "name one that ends in .dcd");
-        frames_.read(request.dcd);
+        request.frames.file = file_;
+        std::string const ending = std::filesystem::path(file_).extension();
+        request.xtc = ending == ".xtc";
+        if (ending != ".dcd" && !request.xtc)
+            throw InputError(file_.empty() ? "no file is named"
+                                           : "`" + file_ + "` is no name of a DCD or XTC file",
+                             "command line", "name one that ends in .dcd or .xtc");
+        frames_.read(request.frames);
+        if (!precision_.empty() && !request.xtc)
+            throw InputError("a DCD file is not rounded", "--precision",
+                             "leave it out, or name a file that ends in .xtc");
+        if (!precision_.empty())
+            request.precision = number_between("--precision", precision_, 1, finest);
         if (wrap_.empty()) return request;
         known_value("--wrap", wrap_, wrap_names);
-        if (wrap_ == "chains") request.dcd.wrap = analysis::Wrap::chains;
-        if (wrap_ == "sites") request.dcd.wrap = analysis::Wrap::sites;
+        if (wrap_ == "chains") request.frames.wrap = analysis::Wrap::chains;
+        if (wrap_ == "sites") request.frames.wrap = analysis::Wrap::sites;
         return request;
     }
 
   private:
+    static constexpr double finest = 1e7;  // positions per nm that single precision tells apart
     FrameTexts frames_;
-    std::string file_, wrap_;
+    std::string file_, wrap_, precision_;
 };
 
 }  // namespace

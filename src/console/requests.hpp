@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/analysis.hpp"
-#include "analysis/dcd.hpp"
+#include "analysis/xtc.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::command {
@@ -118,11 +118,17 @@ struct AnalyseRequest : CommonOptions {
     std::string folder;  // of a run, or its trajectory
     std::string output;  // folder; empty: `analysis` in the run's folder
     analysis::Options options;
+    /// True if the members of complexes are chains of their own.
+    bool members = false;
 };
 /// A request of `convert`.
 struct ConvertRequest : CommonOptions {
     std::string folder;  // of a run, or its trajectory
-    analysis::DcdRequest dcd;
+    analysis::ChosenFrames frames;
+    /// True for an XTC file, false for a DCD file.
+    bool xtc = false;
+    /// Positions per nm of an XTC file.
+    double precision = analysis::usual_precision;
 };
 /// A request of `import`.
 struct ImportRequest : CommonOptions {

@@ -6,7 +6,7 @@ namespace catena {
 
 struct TrajectoryFile::Series {};
 
-TrajectoryFile::TrajectoryFile(std::string const& place) {
+TrajectoryFile::TrajectoryFile(std::string const& place, SiteOrder) {
     throw built_without("HDF5", "trajectory in " + place,
                         "install HDF5 (libhdf5-dev) and build again");
 }

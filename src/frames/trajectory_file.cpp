@@ -7,6 +7,7 @@
 #include <span>
 
 #include "error.hpp"
+#include "frames/member_order.hpp"
 #include "io/hdf5_data.hpp"
 #include "io/output_file.hpp"
 #include "io/trial.hpp"
@@ -119,7 +120,7 @@ struct TrajectoryFile::Series {
     hdf5::Series position, edges;
 };
 
-TrajectoryFile::TrajectoryFile(std::string const& place) : name_(file_of(place)) {
+TrajectoryFile::TrajectoryFile(std::string const& place, SiteOrder order) : name_(file_of(place)) {
     std::error_code ignored;
     if (!std::filesystem::exists(name_, ignored))
         throw InputError("there is no trajectory", name_, "name the folder of a run");
@@ -142,6 +143,10 @@ TrajectoryFile::TrajectoryFile(std::string const& place) : name_(file_of(place))
     Snapshot first;
     read(0, first);
     topology_.box = first.box;
+    if (order == SiteOrder::stored) return;
+    MemberOrder members = by_members(topology_);
+    topology_ = std::move(members.topology);
+    site_ = std::move(members.site);
 }
 
 TrajectoryFile::~TrajectoryFile() = default;
@@ -201,6 +206,23 @@ void TrajectoryFile::read_chains() {
     if (!sound)
         throw InputError("the trajectory's chains, masses and positions do not fit together", name_,
                          "run the scene again");
+    if (has(root, "catena/members")) read_members();
+}
+
+void TrajectoryFile::read_members() {
+    Place const root{series_->file.get(), name_, reading};
+    auto const list = [&](char const* name) {
+        return read_list<std::int64_t>(root, std::string("catena/members/") + name,
+                                       H5T_NATIVE_INT64);
+    };
+    std::optional<Members> members =
+        members_of_sites(topology_, read_texts(root, "catena/members/identifier"), list("member"),
+                         list("place"), list("number"));
+    if (!members)
+        throw InputError(
+            "the trajectory is damaged, the members of its chains do not fit its sites", name_,
+            "run the scene again");
+    topology_.members = std::move(*members);
 }
 
 void TrajectoryFile::read_residues() {
@@ -240,6 +262,10 @@ void TrajectoryFile::read(std::size_t frame, Snapshot& snapshot) const {
     } catch (ComputationError const& error) {
         throw InputError("the trajectory is damaged, " + std::string(error.what()), name_,
                          "leave the frame out with --first or --last");
+    }
+    if (!site_.empty()) {
+        std::vector<Vec3> const stored = snapshot.position;
+        for (std::size_t k = 0; k < site_.size(); ++k) snapshot.position[k] = stored[site_[k]];
     }
     bool const good_box = !snapshot.box || (is_finite(*snapshot.box) && (*snapshot.box)[0] > 0 &&
                                             (*snapshot.box)[1] > 0 && (*snapshot.box)[2] > 0);

@@ -17,19 +17,27 @@ struct Snapshot {
     std::optional<Vec3> box;     // edges of the periodic box, same unit
 };
 
+/// Order of the sites that a reader hands out.
+enum class SiteOrder {
+    /// Sites have the order of the file.
+    stored,
+    /// Members of complexes are chains of their own, see by_members().
+    members
+};
+
 /// Open trajectory of a run. Every member throws InputError naming the file if it is damaged.
 class TrajectoryFile {
   public:
     /// Opens `place`, the folder of a run or an H5MD file that Catena wrote. Residue names come
     /// from topology.pdb beside it. Throws InputError if there is no such file, if another program
     /// wrote it, if it has no frames, and in a build without HDF5.
-    explicit TrajectoryFile(std::string const& place);
+    explicit TrajectoryFile(std::string const& place, SiteOrder order = SiteOrder::stored);
     ~TrajectoryFile();
     TrajectoryFile(TrajectoryFile const&) = delete;
     TrajectoryFile& operator=(TrajectoryFile const&) = delete;
 
-    /// Chains, masses, residues, title and units. `box` is that of the first frame; the lists of
-    /// bodies and tips stay empty.
+    /// Chains, their members, masses, residues, title and units. `box` is that of the first frame;
+    /// the lists of bodies and tips stay empty.
     Topology const& topology() const { return topology_; }
     /// True if topology.pdb gave the residue names. They are "UNK" otherwise.
     bool has_residues() const { return has_residues_; }
@@ -45,6 +53,7 @@ class TrajectoryFile {
     struct Series;
     void open();
     void read_chains();
+    void read_members();
     void read_residues();
 
     std::string name_;
@@ -52,6 +61,8 @@ class TrajectoryFile {
     bool has_residues_ = false;
     std::vector<std::int64_t> steps_;
     std::vector<double> times_;
+    /// Index in the file of each site; empty for the file's order.
+    std::vector<std::size_t> site_;
     std::unique_ptr<Series> series_;
 };
 

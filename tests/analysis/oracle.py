@@ -232,7 +232,7 @@ def check_with_mdtraj(folder, dcd, right, box):
     try:
         import mdtraj
     except ImportError:
-        print("mdtraj is missing (pip install mdtraj): DCD files were read by MDAnalysis alone")
+        print("mdtraj is missing (pip install mdtraj): DCD and XTC files were read by MDAnalysis alone")
         return
     found = mdtraj.load(dcd, top=os.path.join(folder, "topology.pdb"))
     agree("positions by mdtraj", found.xyz, right, 1e-6)
@@ -268,6 +268,45 @@ def check_dcd(catena, folder, scratch):
     agree("positions of a part", [f[2] for f in frames], (10 * x[10:20]).astype(np.float32), 0)
 
 
+def check_xtc(catena, folder, scratch):
+    """XTC files: every frame with its time and box, positions to half the precision, by MDAnalysis and mdtraj."""
+    with h5py.File(os.path.join(folder, "trajectory.h5md")) as file:
+        x, time = file["particles/trajectory/position/value"][:], file["particles/trajectory/position/time"][:]
+        step, box = file["particles/trajectory/position/step"][:], file["particles/trajectory/box/edges/value"][0]
+    for how, precision in (("none", 1000), ("none", 20), ("sites", 1000000)):
+        right = x if how == "none" else x - box * np.floor(x / box)
+        xtc = os.path.join(scratch, f"{how}-{precision}.xtc")
+        run(catena, "convert", folder, xtc, "--wrap", how, "--precision", str(precision))
+        universe = MDAnalysis.Universe(os.path.join(folder, "topology.psf"), xtc)
+        frames = [(ts.time, ts.frame, ts.data["step"], ts.dimensions.copy(), ts.positions.copy()) for ts in universe.trajectory]
+        check(len(frames) == len(right), f"{len(frames)} frames of XTC")
+        agree("times of XTC", [f[0] for f in frames], time, 1e-6)
+        agree("steps of XTC", [f[2] for f in frames], step, 0)
+        agree("boxes of XTC", [f[3] for f in frames], [[*(10 * box), 90, 90, 90]] * len(frames), 1e-6)
+        check_half(precision, np.array([f[4] for f in frames]) / 10, right)
+        check_xtc_with_mdtraj(os.path.join(folder, "topology.pdb"), xtc, right, (time, box, precision))
+
+
+def check_half(precision, found, right):
+    """Positions agree to half the precision and to single precision."""
+    global compared
+    worst = np.max(np.abs(found - right) - 1e-6 * np.abs(right))
+    check(worst <= 0.5001 / precision, f"positions of an XTC file of precision {precision} differ by {worst} nm")
+    compared += right.size
+
+
+def check_xtc_with_mdtraj(pdb, xtc, right, expected):
+    time, box, precision = expected
+    try:
+        import mdtraj
+    except ImportError:
+        return
+    found = mdtraj.load(xtc, top=pdb)
+    check_half(precision, found.xyz, right)
+    agree("times by mdtraj", found.time, time, 1e-6)
+    agree("boxes by mdtraj", found.unitcell_lengths, [box] * len(right), 1e-6)
+
+
 def check_damage(catena, folder, scratch):
     """A list that claims more than its file can hold is refused before memory is taken for it."""
     damaged = os.path.join(scratch, "damaged.h5md")
@@ -301,6 +340,7 @@ def main():
         check_density(t, scratch)
         check_displacement(t, numbers, scratch)
         check_dcd(arguments.catena, arguments.folder, scratch)
+        check_xtc(arguments.catena, arguments.folder, scratch)
         check_damage(arguments.catena, arguments.folder, scratch)
     print(f"{compared} numbers agree with numpy and MDAnalysis")
 

@@ -36,6 +36,21 @@ class Trajectories : public ::testing::Test {
                Topology const& topology = topology_of({12, 12})) {
         write_run(folder_ / name, topology, steps);
     }
+    /// Writes two frames of 12 sites, with some sites of the second one far away: its last ones.
+    void write_far(std::string const& name, std::vector<Vec3> const& last) {
+        std::filesystem::create_directories(folder_ / name);
+        auto const trajectory = make_trajectory(folder_ / name + "/trajectory.h5md",
+                                                topology_of({12}), false, false, {});
+        for (std::int64_t const step : {0, 1}) {
+            Frame frame;
+            frame.step = step;
+            frame.positions.assign(12, Vec3::zero());
+            if (step == 1)
+                std::copy(last.begin(), last.end(), frame.positions.end() - std::ssize(last));
+            trajectory->write(frame);
+        }
+        trajectory->close();
+    }
     Ended in_folder(Words const& words) { return catena(words, folder_.path()); }
     bool is_there(std::string const& name) { return std::filesystem::exists(folder_ / name); }
 
@@ -135,13 +150,81 @@ TEST_F(Trajectories, DcdHoldsWhatItsFormatCan) {
     expect_refused(in_folder({"convert", "gap", "gap.dcd"}), 2,
                    "frames are not evenly spaced: after step 200 there is none 100 steps on");
     EXPECT_FALSE(is_there("gap.dcd"));
-    expect_refused(in_folder({"convert", "run", "run.xtc"}), 2, "is no name of a DCD file");
+    expect_refused(in_folder({"convert", "run", "run.trr"}), 2, "is no name of a DCD or XTC file");
+    expect_refused(in_folder({"convert", "run", "run.dcd", "--precision", "10"}), 2,
+                   "a DCD file is not rounded (--precision)");
     expect_refused(in_folder({"convert", "run", "run.dcd", "--wrap", "chains"}), 2,
                    "there is no periodic box to wrap into");
     Topology metres = topology_of({12});
     metres.si = true;
     write("si", {0, 10}, metres);
     expect_refused(in_folder({"convert", "si", "si.dcd"}), 2, "a DCD file holds Angstrom");
+}
+
+TEST_F(Trajectories, XtcHoldsEveryFrameWithItsStep) {
+    write("run", {0, 100, 200, 250});
+    Ended const e = in_folder({"convert", "run", "run.xtc", "--json", "-"});
+    expect_good(e);
+    EXPECT_EQ(e.json().at("frames"), 4);
+    EXPECT_EQ(e.json().at("last_step"), 250);
+    EXPECT_EQ(e.json().at("precision"), 1000);
+    EXPECT_EQ(e.json().at("bytes"), std::filesystem::file_size(folder_ / "run.xtc"));
+    std::string const bytes = read_text_file(folder_ / "run.xtc");
+    EXPECT_EQ(bytes.substr(0, 12), std::string("\0\0\x07\xcb\0\0\0\x18\0\0\0\0", 12));
+    // The last frame alone: step 250, 2.5 ps, no box.
+    expect_good(in_folder({"convert", "run", "last.xtc", "--first", "3", "--quiet"}));
+    EXPECT_EQ(read_text_file(folder_ / "last.xtc").substr(8, 44),
+              std::string("\0\0\0\xfa\x40\x20\0\0", 8) + std::string(36, '\0'));
+}
+
+TEST_F(Trajectories, XtcOfFewSitesIsNotRounded) {
+    write("few", {0}, topology_of({9}));
+    expect_good(in_folder({"convert", "few", "few.xtc"}));
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "few.xtc"), 16U + 36 + 4 + 9 * 12);
+}
+
+TEST_F(Trajectories, WhatAnXtcFileCannotHoldIsRefusedAndLeavesNoFile) {
+    write("run", {0, 10});
+    expect_refused(in_folder({"convert", "run", "a.xtc", "--wrap", "chains"}), 2,
+                   "there is no periodic box to wrap into");
+    expect_refused(in_folder({"convert", "run", "a.xtc", "--first", "2"}), 2,
+                   "no frame from 2 on, the trajectory has 2 (--first)");
+    expect_refused(in_folder({"convert", "run", "a.xtc", "--precision", "0"}), 2, "(--precision)");
+    write("late", {0, 3000000000});
+    expect_refused(in_folder({"convert", "late", "a.xtc"}), 2,
+                   "an XTC file holds steps up to 2147483647 (late/trajectory.h5md)");
+    Topology metres = topology_of({12});
+    metres.si = true;
+    write("si", {0, 10}, metres);
+    expect_refused(in_folder({"convert", "si", "a.xtc"}), 2, "an XTC file holds nm");
+    write_far("far", {{3e6, 0, 0}});
+    expect_refused(in_folder({"convert", "far", "a.xtc"}), 2,
+                   "site 12 of frame 1 is at 3e+06 nm, and an XTC file of precision 1000 holds "
+                   "coordinates up to 2.147e+06 nm (far/trajectory.h5md)");
+    expect_good(in_folder({"convert", "far", "a.xtc", "--precision", "100", "--quiet"}));
+    std::filesystem::remove(folder_ / "a.xtc");
+    write_far("wide", {{2e6, 0, 0}, {-2e6, 0, 0}});
+    expect_refused(in_folder({"convert", "wide", "a.xtc"}), 2,
+                   "the sites of frame 1 are up to 4e+06 nm apart");
+    for (auto const& entry : std::filesystem::directory_iterator(folder_.path()))
+        EXPECT_EQ(entry.path().string().find("a.xtc"), std::string::npos) << entry.path();
+}
+
+TEST_F(Trajectories, MembersOfAComplexAreChainsIfAskedFor) {
+    // Members of 6 sites, the second backwards behind the first.
+    Topology topology = topology_of({12});
+    topology.chains[0].name = "H+L";
+    topology.members = {{"H", "L"}, {{0, 6, 0, 0, 10, 1}, {6, 6, 1, 5, 6, -1}}};
+    topology.residue[0] = topology.residue[11] = "MET";
+    write("run", {0, 10, 20}, topology);
+    Ended const whole = in_folder({"analyse", "run"});
+    expect_good(whole);
+    EXPECT_NE(whole.out.find("1 x H+L of 12 sites"), std::string::npos) << whole.out;
+    EXPECT_NE(whole.out.find("--members takes each member as a chain"), std::string::npos);
+    Ended const members = in_folder({"analyse", "run", "--members"});
+    expect_good(members);
+    EXPECT_NE(members.out.find("2 x H+L of 6 sites"), std::string::npos) << members.out;
+    EXPECT_EQ(members.out.find("--members takes"), std::string::npos);
 }
 
 TEST_F(Trajectories, ARestartedRunLosesNoFrame) {
