@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -86,6 +87,19 @@ void refuse_map(Node const& node) {
          fmt::format("YAML makes a map of `{}: {}`, which is not a range of residues",
                      shown(first.key), shown(first.text)),
          fmt::format("write [{}], in quotes and without a blank", quoted(ranges)));
+}
+
+void refuse_printed_dash(Node const& node) {
+    std::string hyphened = text(node);
+    bool is_printed = false;
+    for (std::string_view const dash : {"\u2013", "\u2014", "\u2212"})
+        for (auto at = hyphened.find(dash); at != std::string::npos; at = hyphened.find(dash)) {
+            hyphened.replace(at, dash.size(), "-");
+            is_printed = true;
+        }
+    if (is_printed)
+        fail(node, describe(node) + " has a dash that is no hyphen",
+             fmt::format("write \"{}\"", shown(hyphened)));
 }
 
 void refuse_several_ranges(Node const& node) {

@@ -184,6 +184,7 @@ std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
 std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
     if (without_blanks(node.text).empty())
         fail(node, "an empty text is no range of residues", remedy());
+    refuse_printed_dash(node);
     refuse_several_ranges(node);
     std::string const written = without_blanks(text(node));
     refuse_missing_colon(node, written);

@@ -291,6 +291,8 @@ TEST_F(Structures, ranges_in_another_form_are_told_what_was_meant) {
             "`" + two + "` in quotes holds 2 ranges" + at +
                 "write each in quotes of its own: \"A:1-3\", \"A:4-6\"; [\"A:1-3\", \"A:4-6\"] "
                 "makes one body of them");
+    EXPECT_EQ(all("[\"A:1\u20133\"]"),
+              "`A:1\u20133` in quotes has a dash that is no hyphen" + at + "write \"A:1-3\"");
     EXPECT_EQ(all("[\"\"]"), "an empty text is no range of residues" + at +
                                  "write \"CHAIN:FIRST-LAST\" within \"A:1-6\", \"B:1-6\"");
 }
