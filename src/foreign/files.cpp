@@ -76,6 +76,17 @@ void take_integrator(Contents const& contents, Files& files) {
                                           bare_names({files.integrator})));
 }
 
+/// Notes a configuration of the package whose System is another than the one that the user names.
+void note_other_name(Files& files) {
+    if (files.config.empty()) return;
+    std::string const stem = fs::path(files.system).stem().string(),
+                      named = calvados_name(files.config);
+    if (stem != named)
+        files.notes.push_back(
+            fmt::format("The settings are those of config.yaml, which is of {} and not of {}.",
+                        scene::shown(named), scene::shown(stem)));
+}
+
 }  // namespace
 
 Files find_files(std::string const& source, std::string const& topology) {
@@ -94,6 +105,7 @@ Files find_files(std::string const& source, std::string const& topology) {
         throw InputError("the file is not a serialised System", scene::shown_path(source),
                          how_to_write(files.tool));
     files.system = is_folder ? system_in(files, contents) : source;
+    note_other_name(files);
     take_integrator(contents, files);
     if (!topology.empty())
         take_named_start(topology, contents, files);

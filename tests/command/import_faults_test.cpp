@@ -187,6 +187,15 @@ TEST_F(DamagedPackage, ComponentsThatWereCutAreRefused) {
     expect_refused(import(), 2, "`few` is not a number (idr/components.yaml: system.idr.nmol");
 }
 
+TEST_F(DamagedPackage, SettingsOfAnotherSystemAreSaid) {
+    fs::copy_file(folder + "/idr.xml", folder + "/other.xml");
+    Ended const e = catena({"import", "idr/other.xml", "--overwrite"}, here.path());
+    ASSERT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("The settings are those of config.yaml, which is of idr and not of other"),
+              std::string::npos)
+        << e.out;
+}
+
 TEST_F(DamagedPackage, ASystemThatIsEmptyIsNamed) {
     write(folder + "/idr.xml", "");
     expect_refused(import(), 2, "the file idr.xml holds no serialised System (idr)");
