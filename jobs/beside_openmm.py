@@ -7,6 +7,7 @@ to FOLDER/beside-openmm.csv. Proteins whose file is there are not sampled again.
 import argparse
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from replicas import ROOT, UserError
 
 MODEL = "calvados2"
 LONGEST_STEP = 0.1  # ps
+MOST_APART = 3  # standard errors
 KNOWN = -0.012  # of the radius: what rigid links in place of stiff bonds change, by `catena bench sampling` of alpha-synuclein
 
 
@@ -87,21 +89,44 @@ def line_of(row, found):
     (a, a_error), (b, b_error) = ((number_of(each["radius_of_gyration"]["mean"]), number_of(each["radius_of_gyration"]["error"]))
                                   for each in (catena, openmm))
     error = (a_error**2 + b_error**2) ** 0.5
+    states = {name: (each.get("state", "VALID" if each["valid"] else "INVALID"), each.get("why") or "") for name, each in
+              (("catena", catena), ("openmm", openmm))}
     return {"name": row["name"], "residues": int(row["n"]), "measured_nm": row["rg"], "measured_error_nm": row["rg_error"],
             "simulated_nm": round(a, 4), "simulated_error_nm": round(a_error, 4), "openmm_nm": round(b, 4), "openmm_error_nm": round(b_error, 4),
             "difference_percent": round(100 * (a - b) / b, 2), "standard_errors": round((a - b) / error, 2),
             "standard_errors_without_known": round((a - b - KNOWN * b) / error, 2), "valid": found["valid"],
             "plateau": catena["radius_of_gyration"]["plateau"] and openmm["radius_of_gyration"]["plateau"],
-            "ns_in_all": round(catena["total_ns"], 1), "doi": row["doi"]}
+            "ns_in_all": round(catena["total_ns"], 1), "doi": row["doi"], "catena_state": states["catena"][0],
+            "openmm_state": states["openmm"][0], "why": "; ".join(why for _, why in states.values() if why)}
+
+
+def cell(each, method, state):
+    """A radius with its error, or what became of the method that has none."""
+    value = each[method + "_nm"]
+    return f"{value:.3f} +- {each[method + '_error_nm']:.3f}" if math.isfinite(value) else each[state]
+
+
+def reason(each):
+    """Why the methods do not agree on a protein; empty if they do."""
+    for label, state in (("rigid links", "catena_state"), ("bonds of OpenMM", "openmm_state")):
+        if each[state] != "VALID":
+            return f"{label} are {each[state]}" + (f" ({each['why']})" if each["why"] else "")
+    if not each["valid"]:
+        return "the result is INVALID" + (f" ({each['why']})" if each["why"] else "")
+    apart = each["standard_errors_without_known"]
+    if not math.isfinite(apart):
+        return "its errors are unknown: sample longer"
+    return f"{abs(apart):.1f} standard errors from OpenMM with the known difference, more than {MOST_APART}" if abs(apart) > MOST_APART else ""
 
 
 def print_table(lines):
     print("| protein | residues | measured (nm) | Catena (nm) | OpenMM (nm) | difference | standard errors | with the known -1.2 % | ns |\n"
           "| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for each in lines:
+        compared = [f"{each['difference_percent']:.1f} %", f"{each['standard_errors']:.1f}", f"{each['standard_errors_without_known']:.1f}"]
+        compared = [text if math.isfinite(each["difference_percent"]) else "-" for text in compared]
         print(f"| {each['name']} | {each['residues']} | {each['measured_nm']:.2f} +- {each['measured_error_nm']:.2f} | "
-              f"{each['simulated_nm']:.3f} +- {each['simulated_error_nm']:.3f} | {each['openmm_nm']:.3f} +- {each['openmm_error_nm']:.3f} | "
-              f"{each['difference_percent']:.1f} % | {each['standard_errors']:.1f} | {each['standard_errors_without_known']:.1f} | "
+              f"{cell(each, 'simulated', 'catena_state')} | {cell(each, 'openmm', 'openmm_state')} | {' | '.join(compared)} | "
               f"{each['ns_in_all']:g} |")
 
 
@@ -124,23 +149,20 @@ def write_json(lines, found, asked):
     asked_for = {"copies": asked.copies, "duration_ps": asked.duration, "discard_ps": asked.discard, "step_ps": asked.step}
     last = found[-1]
     table = {"bench": "radii beside OpenMM", "command": " ".join(["python3", "jobs/beside_openmm.py", *sys.argv[1:]]), **asked_for,
-             "known_difference": KNOWN, "hardware": last["hardware"], "build": last["build"], "results": lines,
-             "valid": all(is_right(line) for line in lines)}
+             "known_difference": KNOWN, "hardware": last["hardware"], "build": last["build"], "valid": not any(reason(line) for line in lines),
+             "results": [{key: None if value != value else value for key, value in line.items()} for line in lines]}
     with open(asked.json, "w", encoding="utf-8") as file:
         json.dump(table, file, indent=1)
         file.write("\n")
 
 
-def is_right(line):
-    """Whether a line's rows are VALID and agree within 3 standard errors."""
-    return bool(line["valid"] and abs(line["standard_errors_without_known"]) <= 3)
-
-
 def chosen(proteins, only):
     """The proteins of the table that --only names."""
-    if not only:
+    if only is None:
         return proteins
-    names = only.split(",")
+    names = [name.strip() for name in only.split(",")]
+    if not all(names):
+        raise UserError(f"--only {only!r} has an empty name: write NAME,NAME without more, or leave the option out")
     unknown = [name for name in names if name not in {row["name"] for row in proteins}]
     if unknown:
         raise UserError(f"the table has no protein {unknown[0]} (--only): it has {', '.join(row['name'] for row in proteins)}")
@@ -149,11 +171,15 @@ def chosen(proteins, only):
 
 def main():
     asked = parse_arguments()
-    if asked.copies < 2 or not (asked.duration > 0 and asked.discard >= 0 and asked.step > 0):
-        raise UserError("--copies is 2 at least; --duration and --step are above 0, --discard is not below")
+    for option, value, holds, form in (("--copies", asked.copies, asked.copies >= 2, "2 at least"),
+                                       ("--duration", asked.duration, asked.duration > 0, "a time above 0 (ps)"),
+                                       ("--discard", asked.discard, asked.discard >= 0, "a time of 0 or more (ps)"),
+                                       ("--step", asked.step, asked.step > 0, "a time above 0 (ps)")):
+        if not (holds and math.isfinite(value)):
+            raise UserError(f"{option} is {value:g}: give {form}")
     if asked.step > LONGEST_STEP:
         raise UserError(f"--step {asked.step:g} ps is too long for either method: give 0.01 to 0.06 (ps)")
-    if asked.picture:
+    if asked.picture is not None:
         replicas.check_picture(asked)
     proteins = chosen(replicas.read_proteins(asked.proteins), asked.only)
     asked.model, asked.steps = MODEL, 1
@@ -168,12 +194,12 @@ def main():
         writer.writerows(lines)
     print_table(lines)
     if asked.picture:
-        draw(lines, asked.picture)
+        draw([each for each in lines if math.isfinite(each["simulated_nm"] + each["openmm_nm"])], asked.picture)
     if asked.json:
         write_json(lines, found, asked)
-    wrong = [each["name"] for each in lines if not is_right(each)]
+    wrong = [f"{each['name']}: {reason(each)}" for each in lines if reason(each)]
     if wrong:
-        print(f"INVALID: {', '.join(wrong)}: more than 3 standard errors from OpenMM with the known difference, unknown errors, or an INVALID row")
+        print("INVALID: " + "; ".join(wrong))
         sys.exit(1)
     print("VALID: all within 3 standard errors of OpenMM with the known difference")
 

@@ -48,13 +48,14 @@ def parse_arguments():
 
 
 def number_of(row, name, where):
-    """A number of a line that is finite and above 0 (the pH: 0 to 14)."""
+    """A number of a line that is finite and above 0 (the pH: 0 to 14; the ionic strength: from 0 on, as for the program)."""
     try:
         value = float(row[name])
     except ValueError:
         value = float("nan")
-    if not (0 <= value <= 14 if name == "ph" else 0 < value < 1e6):
-        raise UserError(f"`{name}` of {row['name']} is not {'a pH' if name == 'ph' else 'a number above 0'}: {row[name]} ({where})")
+    kind = {"ph": "a pH", "ionic": "a number of 0 or more"}.get(name, "a number above 0")
+    if not (0 <= value <= 14 if name == "ph" else 0 <= value < 1e6 and (value > 0 or name == "ionic")):
+        raise UserError(f"`{name}` of {row['name']} is not {kind}: {row[name]} ({where})")
     return value
 
 
@@ -169,6 +170,19 @@ def steps_of(name, folder):
     return int(found.group(1)) if found else 0
 
 
+def print_notes(proteins, folder):
+    """Says the notes of the runs that are there, each once with the runs that have it: --quiet keeps the program from saying them."""
+    names, runs = {row["name"] for row in proteins}, {}
+    for each in sorted(os.listdir(folder)):
+        found = re.fullmatch(r"(.+)-\d+", each)
+        summary = summary_of(os.path.join(folder, each)) if found and found.group(1) in names else None
+        for note in summary.get("notes", []) if summary else []:
+            runs.setdefault(note, []).append(each)
+    for note, those in runs.items():
+        more = f" and {len(those) - 1} more" if len(those) > 1 else ""
+        print(f"jobs/replicas.py: note on {those[0]}{more}: {note}", file=sys.stderr)
+
+
 def runs_of(name, folder):
     """Radii of gyration of the protein's finished runs that are VALID: mean, standard error, whether that error is only a lower limit, and the
     time; then the number of folders whose runs are left out."""
@@ -259,16 +273,17 @@ def check_picture(asked):
     if asked.only == "scenes":
         raise UserError("--only scenes draws no picture: leave --picture out")
     if not asked.picture.endswith((".png", ".svg")):
-        raise UserError(f"a picture ends in .png or .svg: {asked.picture}")
+        raise UserError(f"--picture {asked.picture!r} does not end in .png or .svg: name such a file")
     if not os.path.isdir(os.path.dirname(asked.picture) or "."):
-        raise UserError(f"there is no folder for the picture ({asked.picture}): make it first")
+        raise UserError(f"there is no folder for the picture (--picture {asked.picture}): make it first")
 
 
 def main():
     asked = parse_arguments()
-    if asked.replicas < 1 or asked.steps < 1:
-        raise UserError("--replicas and --steps are 1 at least")
-    if asked.picture:
+    for option, value in (("--replicas", asked.replicas), ("--steps", asked.steps)):
+        if value < 1:
+            raise UserError(f"{option} is {value}: give 1 at least")
+    if asked.picture is not None:
         check_picture(asked)
     proteins = read_proteins(asked.proteins)
     for row in proteins:
@@ -283,6 +298,8 @@ def main():
             for name, scene in scenes.items():
                 print(f"{name}, run {seed} of {asked.replicas}", file=sys.stderr, flush=True)
                 run(scene, seed, asked)
+    if os.path.isdir(asked.folder):
+        print_notes(proteins, asked.folder)
     lines = table_of(proteins, asked.folder) if os.path.isdir(asked.folder) else []
     if not lines:
         raise UserError(f"there are no finished runs ({asked.folder}): leave --only out to make them")

@@ -12,6 +12,7 @@
 #include "console/text.hpp"
 #include "error.hpp"
 #include "foreign/files.hpp"
+#include "foreign/origins.hpp"
 #include "foreign/scene_text.hpp"
 #include "foreign/settings.hpp"
 #include "foreign/start_topology.hpp"
@@ -33,12 +34,17 @@ struct Written {
     Json check;
 };
 
-/// Reads and checks the text of a scene. Throws InputError.
+/// Reads and checks the text of a scene. Throws InputError, which names the file and key that a
+/// wrong value came from: the scene is not there yet.
 Written checked(foreign::SceneDraft const& draft) {
     Written written{draft.file, text_of(draft), {}, {}};
-    Scene const scene = parse_scene(written.text, draft.file);
-    written.check = check_scene(scene, *serial_communicator(), true).json;
-    written.notes = scene.notes;
+    try {
+        Scene const scene = parse_scene(written.text, draft.file);
+        written.check = check_scene(scene, *serial_communicator(), true).json;
+        written.notes = scene.notes;
+    } catch (InputError const& error) {
+        throw InputError(foreign::with_origins(error.what(), draft));
+    }
     return written;
 }
 
@@ -78,6 +84,21 @@ std::string equilibration_of(std::string const& file) {
     return path.string();
 }
 
+/// Writes the topology of a State. Throws InputError, which names the options and files of the
+/// import.
+foreign::WrittenStart start_of(foreign::Files const& files, foreign::SceneDraft draft) {
+    OpenMmSpec spec;
+    spec.system = files.system;
+    add_changes({{}, draft.leave_out, draft.links}, spec);
+    fs::path const folder = fs::path(draft.file).replace_extension().string() + "-start";
+    try {
+        return write_start(files, spec, folder.string());
+    } catch (InputError const& error) {
+        draft.file = draft.source = files.system;  // the name in these messages
+        throw InputError(foreign::with_origins(error.what(), draft));
+    }
+}
+
 /// What the scenes of an import have in common. Writes the topology of a State.
 foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings const& settings,
                              ImportRequest const& request) {
@@ -91,16 +112,13 @@ foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings cons
     draft.source = scene::shown_path(request.source);
     draft.system = files.system;
     draft.topology = files.topology;
+    draft.start = files.state.empty() ? files.topology : files.state;
     draft.leave_out = request.leave_out;
     draft.links = request.links;
     draft.settings = settings;
     draft.steps = settings.steps;
     if (files.state.empty()) return draft;
-    OpenMmSpec spec;
-    spec.system = files.system;
-    add_changes({{}, request.leave_out, request.links}, spec);
-    fs::path const start = fs::path(draft.file).replace_extension().string() + "-start";
-    foreign::WrittenStart const written = write_start(files, spec, start.string());
+    foreign::WrittenStart const written = start_of(files, draft);
     draft.topology = written.topology;
     draft.settings.notes.insert(draft.settings.notes.end(), written.notes.begin(),
                                 written.notes.end());

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -35,6 +37,25 @@ Json const* matrix_in(Json const& file) {
 /// True for the keys of a matrix.
 bool names_matrix(Json const& key) { return key == "predicted_aligned_error" || key == "pae"; }
 
+/// Throws InputError if the parser stopped, at `byte` from 1, at NaN or an infinity. Python writes
+/// them although JSON has no such numbers.
+void refuse_nan(std::string const& text, std::size_t byte, std::string const& path,
+                Node const& at) {
+    auto const is_part = [&](std::size_t k) {
+        return std::isalpha(static_cast<unsigned char>(text[k])) != 0 || text[k] == '-';
+    };
+    std::size_t begin = std::min(byte == 0 ? 0 : byte - 1, text.size());
+    while (begin > 0 && is_part(begin - 1)) --begin;
+    std::size_t end = begin;
+    while (end < text.size() && is_part(end)) ++end;
+    std::string const word = text.substr(begin, end - begin);
+    for (char const* const number : {"NaN", "nan", "-NaN", "Infinity", "-Infinity", "inf", "-inf"})
+        if (word == number)
+            fail(at, fmt::format("`{}` has {} in place of an error", shown_path(path), word),
+                 "JSON has no such number, and without that error no domains can be told: predict "
+                 "the errors again");
+}
+
 /// Throws InputError for text that is not JSON, and for more than one matrix.
 Json parsed(std::string const& path, Node const& at) {
     int matrices = 0, depth_of_keys = 1;
@@ -55,6 +76,7 @@ Json parsed(std::string const& path, Node const& at) {
                  "keep the one that belongs to the structure");
         return file;
     } catch (Json::parse_error const& error) {
+        refuse_nan(text, error.byte, path, at);
         fail(at, fmt::format("`{}` is {}", shown_path(path), json_fault(text, error.byte)),
              ways_out);
     } catch (Json::exception const&) {  // the only one that parsing throws besides
@@ -93,8 +115,8 @@ PredictedError read_predicted_error(std::string const& path, Node const& at) {
             double const value = row[j].is_number() ? row[j].get<double>() : NAN;
             if (!(value >= 0 && value <= largest_error))
                 fail(at,
-                     fmt::format("row {}, column {} of `{}` is not an error in angstrom", i + 1,
-                                 j + 1, shown_path(path)),
+                     fmt::format("row {}, column {} of `{}`, `{}`, is not an error in angstrom",
+                                 i + 1, j + 1, shown_path(path), shown(row[j].dump())),
                      ways_out);
             made.value[i * made.residues + j] += static_cast<float>(value / 2);
             made.value[j * made.residues + i] += static_cast<float>(value / 2);

@@ -2,11 +2,13 @@
 #include "domains/residue_numbers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
+#include "domains/range_forms.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
@@ -15,17 +17,18 @@ namespace {
 
 /// Largest number of a residue that is read as a whole number.
 double constexpr largest_number = 1e15;
+/// Largest number of chains that a message lists.
+std::size_t constexpr most_listed = 4;
 
 bool is_whole(std::string const& text, double& value) {
     return parse_number(text, value) == NumberFault::none && value == std::floor(value) &&
            std::abs(value) < largest_number;
 }
 
-/// Text without blanks at its ends.
-std::string trimmed(std::string const& text) {
-    std::size_t const first = text.find_first_not_of(" \t");
-    if (first == std::string::npos) return "";
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+/// A residue's label without its insertion code: "52" of "52A".
+std::string without_code(std::string const& label) {
+    bool const coded = label.size() > 1 && std::isalpha(static_cast<unsigned char>(label.back()));
+    return coded ? label.substr(0, label.size() - 1) : label;
 }
 
 /// Names without repetition, joined by commas; the first eight.
@@ -83,12 +86,39 @@ std::string Numbering::remedy(std::string const& chain) const {
     if (numbers_.labels.empty())
         return fmt::format("give [first, last] with residues from 1 to {}, both included",
                            numbers_.residues);
-    std::size_t first = 0, last = numbers_.labels.size() - 1;
-    while (first < last && !in_chain(first, chain)) ++first;
-    while (last > first && !in_chain(last, chain)) --last;
+    if (numbers_.several_names()) return remedy_of_chains(chain);
     return fmt::format(
         "give [first, last] with the file's residue numbers, here {} to {}, both included",
-        numbers_.labels[first], numbers_.labels[last]);
+        numbers_.label(0), numbers_.label(numbers_.labels.size() - 1));
+}
+
+/// Advice with the residues of the named chain, or of the first few chains.
+std::string Numbering::remedy_of_chains(std::string const& chain) const {
+    std::vector<std::string> each;
+    std::size_t const residues = numbers_.labels.size();
+    for (std::size_t first = 0, last = 0; first < residues; first = last + 1) {
+        auto const& names = numbers_.chains[first];
+        for (last = first; last + 1 < residues && numbers_.chains[last + 1] == names;) ++last;
+        if (!chain.empty() && !in_chain(first, chain)) continue;
+        each.push_back(fmt::format("\"{}:{}-{}\"", shown(chain.empty() ? names[0] : chain),
+                                   numbers_.label(first), numbers_.label(last)));
+    }
+    bool const many = each.size() > most_listed;
+    each.resize(std::min(each.size(), most_listed));
+    return fmt::format("write \"CHAIN:FIRST-LAST\" within {}{}", fmt::join(each, ", "),
+                       many ? ", ..." : "");
+}
+
+std::string Numbering::left_out_insertions(Domain const& range) const {
+    std::vector<std::string> names;
+    for (std::size_t k = range.last + 1; k < numbers_.labels.size(); ++k) {
+        bool const follows = numbers_.chains[k] == numbers_.chains[range.last] &&
+                             numbers_.labels[k] != numbers_.labels[range.last] &&
+                             without_code(numbers_.labels[k]) == numbers_.labels[range.last];
+        if (!follows) break;
+        names.push_back(numbers_.labels[k]);
+    }
+    return names.empty() ? "" : listed_once(names);
 }
 
 Domain Numbering::range(Node const& node) const {
@@ -107,7 +137,7 @@ void Numbering::refuse_backwards(Node const& node, Domain const& range) const {
     chain = chain.substr(0, chain.rfind(':') == std::string::npos ? 0 : chain.rfind(':') + 1);
     fail(node, range.name + " run backwards",
          node.kind == Node::Kind::scalar
-             ? fmt::format("write \"{}{}-{}\"", shown(trimmed(chain)), low, high)
+             ? fmt::format("write \"{}{}-{}\"", shown(without_blanks(chain)), low, high)
              : fmt::format("write [{}, {}]", low, high));
 }
 
@@ -134,7 +164,7 @@ void Numbering::refuse_unknown_chain(Node const& node, std::string const& chain)
 
 bool Numbering::is_list_of_ranges(Node const& node) {
     auto const is_range = [](Node const& item) {
-        if (item.kind == Node::Kind::list) return true;
+        if (item.kind == Node::Kind::list || item.kind == Node::Kind::map) return true;
         return item.kind == Node::Kind::scalar && (item.text.find('-', 1) != std::string::npos ||
                                                    item.text.find(':') != std::string::npos);
     };
@@ -144,6 +174,7 @@ bool Numbering::is_list_of_ranges(Node const& node) {
 
 std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
     if (node.kind == Node::Kind::scalar) return ends_in(node);
+    if (node.kind == Node::Kind::map) refuse_map(node);
     if (node.kind != Node::Kind::list || node.items.size() != 2)
         fail(node, describe(node) + " is not a pair of residues", remedy());
     return {{{"", label(node.items[0])}, {"", label(node.items[1])}}};
@@ -151,36 +182,47 @@ std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
 
 /// Reads "A:1-95". Numbers may be negative: "A:-3-10".
 std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
-    std::string const written = trimmed(text(node));
+    if (without_blanks(node.text).empty())
+        fail(node, "an empty text is no range of residues", remedy());
+    refuse_printed_dash(node);
+    refuse_several_ranges(node);
+    std::string const written = without_blanks(text(node));
+    refuse_missing_colon(node, written);
     std::size_t const colon = written.rfind(':');
-    std::string const chain = colon == std::string::npos ? "" : trimmed(written.substr(0, colon));
+    std::string const chain =
+        colon == std::string::npos ? "" : without_blanks(written.substr(0, colon));
     std::string const span =
-        colon == std::string::npos ? written : trimmed(written.substr(colon + 1));
+        colon == std::string::npos ? written : without_blanks(written.substr(colon + 1));
     std::size_t const dash = span.find('-', 1);
-    std::array<ResidueName, 2> ends{{{chain, trimmed(span.substr(0, dash))}, {chain, ""}}};
-    if (dash != std::string::npos) ends[1].label = trimmed(span.substr(dash + 1));
+    std::array<ResidueName, 2> ends{{{chain, without_blanks(span.substr(0, dash))}, {chain, ""}}};
+    if (dash != std::string::npos) ends[1].label = without_blanks(span.substr(dash + 1));
     bool const two = !ends[1].label.empty() && ends[1].label.find('-', 1) == std::string::npos;
     if (!two || colon == 0)
         fail(node, describe(node) + " is not a range of residues",
-             "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
-    if (colon == std::string::npos && !residues_.contains(ends[0].label))
-        refuse_missing_colon(node, written);
+             numbers_.several_names()  ? remedy()
+             : numbers_.labels.empty() ? "write \"FIRST-LAST\", such as \"1-95\", or [1, 95]"
+                                       : "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
     return ends;
 }
 
-/// Throws InputError for "A1-72", where A is a chain of the file. Names that end in a digit could
-/// be the first digits of a number. Precondition: no residue is called A1.
+/// Throws InputError for "A1-72", "A 1-72" and "A;1-72", where A is a chain of the file. Names that
+/// end in a digit could be the first digits of a number, unless something parts the two.
 void Numbering::refuse_missing_colon(Node const& node, std::string const& written) const {
+    if (written.find(':') != std::string::npos) return;
+    std::size_t const dash = written.find('-', 1);
+    if (residues_.contains(without_blanks(written.substr(0, dash)))) return;
     std::vector<std::string> names = numbers_.other_chains;
     for (auto const& [name, label] : numbers_.chains) names.insert(names.end(), {name, label});
     for (std::string const& name : names) {
-        if (name.empty() || !written.starts_with(name) || written.size() == name.size() ||
-            std::isdigit(static_cast<unsigned char>(name.back())) != 0)
-            continue;
-        std::string const rest = written.substr(name.size());
+        if (name.empty() || !written.starts_with(name) || written.size() == name.size()) continue;
+        std::size_t const after = written.find_first_not_of(" \t;,./_|", name.size());
+        if (after == std::string::npos) continue;
+        std::string const rest = written.substr(after);
+        bool const parted =
+            after > name.size() || std::isdigit(static_cast<unsigned char>(name.back())) == 0;
         bool const numbered = std::isdigit(static_cast<unsigned char>(rest[0])) != 0 ||
                               (rest[0] == '-' && rest.find('-', 1) != std::string::npos);
-        if (numbered)
+        if (parted && numbered)
             fail(node, describe(node) + " has no colon after the chain",
                  fmt::format("did you mean \"{}:{}\"?", shown(name), shown(rest)));
     }
@@ -203,11 +245,17 @@ std::size_t Numbering::residue(Node const& node, ResidueName const& end) const {
     std::vector<std::size_t> found;
     for (std::size_t const k : known == residues_.end() ? found : known->second)
         if (in_chain(k, end.chain)) found.push_back(k);
-    if (found.empty())
-        fail(node,
-             fmt::format("residue {}{} is not in the file", shown(end.label),
-                         end.chain.empty() ? "" : " of chain " + shown(end.chain)),
-             remedy(end.chain));
+    if (found.empty()) {
+        std::string const what =
+            fmt::format("residue {}{} is not in the file", shown(end.label),
+                        end.chain.empty() ? "" : " of chain " + shown(end.chain));
+        std::string const alike = other_codes(end);
+        if (!alike.empty())
+            fail(node, what,
+                 fmt::format("residues of that number have other insertion codes: write one of {}",
+                             alike));
+        fail(node, what, remedy(end.chain));
+    }
     if (found.size() > 1)
         fail(node,
              fmt::format("{} residues of the file have the number {}", found.size(),
@@ -217,6 +265,16 @@ std::size_t Numbering::residue(Node const& node, ResidueName const& end) const {
                        "-...\""
                  : "give each residue its own number or insertion code");
     return found[0];
+}
+
+/// Labels with the same number and another insertion code, joined by commas.
+std::string Numbering::other_codes(ResidueName const& end) const {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < numbers_.labels.size(); ++k)
+        if (in_chain(k, end.chain) && numbers_.labels[k] != end.label &&
+            without_code(numbers_.labels[k]) == without_code(end.label))
+            names.push_back(numbers_.labels[k]);
+    return names.empty() ? "" : listed_once(names);
 }
 
 /// Residue of a number that counts residues from 1.

@@ -51,12 +51,16 @@ class Numbering {
     /// `numbers` must outlive the object.
     explicit Numbering(ResidueNumbers const& numbers);
 
-    /// Advice for messages: the valid range of numbers, of one chain if it is named.
+    /// Advice for messages: the valid range of numbers, of one chain if it is named. Where several
+    /// chains could use the same numbers, ranges are written with their chain.
     std::string remedy(std::string const& chain = "") const;
     /// Reads [first, last] or "CHAIN:FIRST-LAST", where "CHAIN:" may be left out. Blanks around the
     /// parts do not count. Throws InputError for unknown chains, unknown and ambiguous residues,
     /// other forms, and if the last residue precedes the first.
     Domain range(Node const& node) const;
+    /// Residues with the number of the range's last one and an insertion code that the range leaves
+    /// out, such as "52A, 52B" after 48 to 52; empty without any.
+    std::string left_out_insertions(Domain const& range) const;
     /// True for a list of ranges, such as ["A:1-95", "B:1-88"] or [[1, 30], [41, 80]].
     static bool is_list_of_ranges(Node const& node);
 
@@ -66,6 +70,8 @@ class Numbering {
     bool is_chain(std::string const& name) const;
     void refuse_unknown_chain(Node const& node, std::string const& chain) const;
     void refuse_missing_colon(Node const& node, std::string const& written) const;
+    std::string remedy_of_chains(std::string const& chain) const;
+    std::string other_codes(ResidueName const& end) const;
     void refuse_backwards(Node const& node, Domain const& range) const;
     bool in_chain(std::size_t residue, std::string const& chain) const;
     std::size_t residue(Node const& node, ResidueName const& end) const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "domains/domain_file.hpp"
+#include "domains/range_forms.hpp"
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
@@ -327,6 +328,17 @@ void note_grown(RigidSource const& source, RigidBodies& made) {
         source.numbers.span(grown[0], grown[0])));
 }
 
+/// Notes residues with insertion codes that follow the end of a range and are not in it.
+void note_insertions(Numbering const& by, RigidBodies& made) {
+    for (RigidSet const& set : made.sets)
+        for (Domain const& range : set.ranges)
+            if (std::string const names = by.left_out_insertions(range); !names.empty())
+                made.notes.push_back(fmt::format(
+                    "the rigid {} end before {}, which share the last number; name the last of "
+                    "them to include them",
+                    range.name, names));
+}
+
 RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numbering const& by) {
     if (list(rigid).items.empty())
         fail(rigid, "the list of rigid domains is empty", "leave the key out or " + by.remedy());
@@ -343,6 +355,7 @@ RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numberin
     }
     refuse_overlaps(made.sets);
     for (RigidSet& set : made.sets) join_ranges(set, numbers, 0);
+    note_insertions(by, made);
     return made;
 }
 
@@ -350,6 +363,7 @@ RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numberin
 
 RigidBodies read_rigid_bodies(Node const& rigid, RigidSource const& source) {
     Numbering const numbering(source.numbers);
+    if (is_map_of_ranges(rigid)) refuse_map(rigid);
     RigidBodies made = rigid.kind == Node::Kind::map ? RigidMap(rigid, source).read()
                                                      : read_list(rigid, source.numbers, numbering);
     if (rigid.kind == Node::Kind::map)

@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <memory>
-#include <string_view>
+#include <optional>
 
 #include "error.hpp"
-#include "scene/fields.hpp"
-#include "scene/files.hpp"
+#include "foreign/calvados_checks.hpp"
+#include "foreign/package_file.hpp"
+#include "foreign/system_text.hpp"
+#include "io/output_file.hpp"
 #include "scene/node.hpp"
 
 namespace catena::foreign {
@@ -19,99 +19,14 @@ namespace catena::foreign {
 namespace {
 
 namespace fs = std::filesystem;
-using scene::Node;
 
 bool is_file(fs::path const& file) {
     std::error_code ignored;
     return fs::is_regular_file(file, ignored);
 }
 
-constexpr double most_whole = 1e15;
-
-/// True for well-formed YAML that is empty, a list or a single value.
-bool is_no_map(std::string const& text) {
-    try {
-        return scene::parse_value(text, "").kind != Node::Kind::map;
-    } catch (InputError const&) {
-        return false;
-    }
-}
-
-/// Parses a file of keys and values. Throws InputError for other contents.
-std::unique_ptr<Node> parsed(std::string const& text, std::string const& file) {
-    if (is_no_map(text))
-        throw InputError("the file holds no keys with values", scene::shown_path(file),
-                         "write it again, or move it out of the folder");
-    return scene::parse_document(text, file);
-}
-
-/// A YAML file of the package.
-class Settled {
-  public:
-    explicit Settled(std::string const& file) {
-        Node at;
-        at.text = file;
-        root_ = parsed(scene::read_text_file(file, at), file);
-    }
-    Node const& root() const { return *root_; }
-    /// Entry with a value; nullptr if it is absent, empty or null.
-    Node const* find(std::string_view key) const {
-        Node const* const node = root_->find(key);
-        bool const none = node == nullptr || node->kind == Node::Kind::null ||
-                          node->text == "null" || node->text == "~";
-        return none ? nullptr : node;
-    }
-    /// Number of that key, or the default of the package.
-    double number(std::string_view key, double otherwise) const {
-        Node const* const node = find(key);
-        return node ? scene::number(*node) : otherwise;
-    }
-    /// The same for a number of 0 or more.
-    double non_negative(std::string_view key, double otherwise) const {
-        Node const* const node = find(key);
-        return node ? scene::non_negative(*node) : otherwise;
-    }
-    /// Whole number of that key, which may be written as 1e8 or 100000000.0.
-    std::int64_t whole(std::string_view key, double otherwise, std::int64_t least) const {
-        double const found = number(key, otherwise);
-        if (!(found >= static_cast<double>(least) && found <= most_whole &&
-              found == std::floor(found)))
-            scene::fail(*find(key),
-                        fmt::format("`{}` is not a whole number of {} or more", key, least),
-                        "correct it");
-        return static_cast<std::int64_t>(found);
-    }
-    bool truth(std::string_view key) const {
-        Node const* const node = find(key);
-        return node != nullptr && scene::truth(*node);
-    }
-    std::string text(std::string_view key, char const* otherwise) const {
-        Node const* const node = find(key);
-        return node ? scene::text(*node) : otherwise;
-    }
-
-  private:
-    std::unique_ptr<Node> root_;
-};
-
-/// True if a component has restraints within its domains.
-bool has_restraints(std::string const& components) {
-    if (components.empty()) return false;
-    Settled const file(components);
-    auto const restrained = [](Node const& map) {
-        Node const* const node = map.find("restraint");
-        return node != nullptr && scene::truth(*node);
-    };
-    Node const* const defaults = file.root().find("defaults");
-    if (defaults != nullptr && restrained(*defaults)) return true;
-    Node const* const system = file.root().find("system");
-    for (std::size_t i = 0; system != nullptr && i < system->items.size(); ++i)
-        if (restrained(system->items[i])) return true;
-    return false;
-}
-
 /// Reads the friction. Version 0.8 reads `friction_coeff`; earlier ones read `friction`.
-double friction_of(Settled const& config, Settings& settings) {
+double friction_of(PackageFile const& config, Settings& settings) {
     double const friction =
         config.non_negative("friction_coeff", config.non_negative("friction", settings.friction));
     if (double const other = config.non_negative("friction", friction); other != friction)
@@ -128,28 +43,21 @@ bool is_equilibrated(Files const& files) {
     return name == "checkpoint.pdb" || name == "equilibration_final.pdb";
 }
 
-/// True if the System holds a force of that kind.
-bool holds(std::string const& system, std::string const& kind) {
-    Node at;
-    at.text = system;
-    return scene::read_text_file(system, at).find('"' + kind + '"') != std::string::npos;
-}
-
 /// Reads `slab_eq`: a CustomExternalForce that the package removes after `steps_eq` steps. Systems
 /// that a continued run of the package has written lack it.
-void read_slab(Settled const& config, Files const& files, Settings& settings) {
+void read_slab(PackageFile const& config, Files const& files, Settings& settings) {
     char const* const force = "CustomExternalForce";
-    if (!config.truth("slab_eq") || !holds(files.system, force)) return;
+    if (!config.truth("slab_eq") || !SystemText(files.system).holds(force)) return;
     settings.equilibration_forces = {force};
     if (!is_equilibrated(files)) settings.equilibration_steps = config.whole("steps_eq", 1000, 0);
 }
 
-/// True for a configuration of the package. Throws InputError for one that was cut: the package
-/// writes its keys in alphabetical order.
-bool is_of_package(Settled const& config, std::string const& file) {
+/// True for a configuration of the package, which is certain beside components.yaml. Throws
+/// InputError for one that was cut: the package writes its keys in alphabetical order.
+bool is_of_package(PackageFile const& config, std::string const& file, bool certain) {
     bool const named = config.find("sysname") != nullptr;
     bool const alike = config.find("friction_coeff") && config.find("ext_force_expr");
-    if (!named && !alike) return false;
+    if (!named && !alike && !certain) return false;
     for (char const* const key : {"sysname", "temp"})
         if (!config.find(key))
             throw InputError(fmt::format("the configuration has no `{}`", key),
@@ -159,8 +67,30 @@ bool is_of_package(Settled const& config, std::string const& file) {
     return true;
 }
 
+/// True if a line of the file begins with `sysname:`, whatever the other lines hold.
+bool names_system(std::string const& file) {
+    std::string const text = read_text_file(file);
+    return text.starts_with("sysname:") || text.find("\nsysname:") != std::string::npos;
+}
+
+/// Reads config.yaml. A file that is no YAML with keys is refused if it is the package's, and is
+/// noted and left out otherwise: other programs have a file of that name, too.
+std::optional<PackageFile> read_if_packages(std::string const& file, bool certain, Files& files) {
+    try {
+        return PackageFile(file);
+    } catch (InputError const& error) {
+        if (certain || names_system(file)) throw;
+        std::string const what = error.what();
+        files.notes.push_back(fmt::format(
+            "config.yaml is not read: {}. It is not the CALVADOS package's, for it has no "
+            "`sysname` and no components.yaml beside it.",
+            what.substr(0, what.find("): ") + 1)));
+        return std::nullopt;
+    }
+}
+
 /// Notes the keys whose defaults count because the file lacks them.
-void note_absent(Settled const& config, Settings& settings) {
+void note_absent(PackageFile const& config, Settings& settings) {
     auto const note = [&](char const* key, double value) {
         if (!config.find(key))
             settings.notes.push_back(
@@ -176,25 +106,41 @@ void note_absent(Settled const& config, Settings& settings) {
 void find_calvados_files(Files& files) {
     fs::path const config = fs::path(files.folder) / "config.yaml",
                    components = fs::path(files.folder) / "components.yaml";
+    bool const certain = is_file(components);
+    if (certain && !is_file(config))
+        files.notes.push_back(
+            "components.yaml is not read: the CALVADOS package's config.yaml is not beside it.");
     if (!is_file(config)) return;
-    if (!is_of_package(Settled(config.string()), config.string())) {
+    std::optional<PackageFile> const read = read_if_packages(config.string(), certain, files);
+    if (!read) return;
+    if (!is_of_package(*read, config.string(), certain)) {
         files.notes.push_back(
             "config.yaml is not read: it has no `sysname`, which the CALVADOS package writes.");
         return;
     }
+    check_end(*read, files);
     files.config = config.string();
-    if (is_file(components)) files.components = components.string();
+    if (certain) files.components = components.string();
 }
 
-std::string calvados_name(std::string const& config) { return Settled(config).text("sysname", ""); }
+std::string calvados_name(std::string const& config) {
+    return PackageFile(config).text("sysname", "");
+}
 
 bool take_calvados_start(Files& files) {
     if (files.config.empty()) return false;
     fs::path const folder = files.folder;
-    Settled const config(files.config);
+    PackageFile const config(files.config);
     fs::path const given = folder / config.text("frestart", "restart.chk");
     std::vector<fs::path> starts;
-    if (config.text("restart", "checkpoint") == "pdb") starts.push_back(given);
+    std::string const restart = config.text("restart", "checkpoint");
+    if (restart != "checkpoint" && restart != "pdb")
+        throw InputError(fmt::format("`restart` is `{}`", scene::shown(restart)),
+                         config.place("restart"), "write checkpoint, pdb or null");
+    if (restart == "pdb") starts.push_back(given);
+    if (starts.size() == 1 && !is_file(given))
+        files.notes.push_back(fmt::format("config.yaml starts from {}, which is not there.",
+                                          scene::shown_path(given.string())));
     for (char const* const name : {"checkpoint.pdb", "equilibration_final.pdb", "top.pdb"})
         starts.push_back(folder / name);
     for (fs::path const& start : starts) {
@@ -216,7 +162,7 @@ bool take_calvados_start(Files& files) {
 }
 
 Settings calvados_settings(Files const& files) {
-    Settled const config(files.config);
+    PackageFile const config(files.config);
     Settings settings;
     settings.tool = "CALVADOS package";
     settings.temperature = config.non_negative("temp", settings.temperature);
@@ -224,14 +170,26 @@ Settings calvados_settings(Files const& files) {
     settings.steps = config.whole("steps", 100000000, 0);
     settings.every = config.whole("wfreq", 100000, 1);
     settings.seed = static_cast<std::uint64_t>(config.whole("random_number_seed", 1, 0));
+    settings.origins = {
+        {"dynamics.temperature", config.place("temp")},
+        {"dynamics.friction",
+         config.place(config.find("friction_coeff") ? "friction_coeff" : "friction")},
+        {"dynamics.steps", config.place("steps")},
+        {"dynamics.seed", config.place("random_number_seed")},
+        {"output.every", config.place("wfreq")}};
     note_absent(config, settings);
     settings.minimises = fs::path(files.topology).filename() == "top.pdb";
     if (config.number("runtime", 0) > 0)
         settings.notes.push_back(
             fmt::format("config.yaml ends the run after {:.6g} hours; the scene has steps instead.",
                         config.number("runtime", 0)));
+    bool const is_first = files.state.empty() && settings.minimises;
+    check_configuration(config, files, !is_first, settings);
     read_slab(config, files, settings);
-    if (has_restraints(files.components))
+    if (files.components.empty()) return settings;
+    CalvadosComponents const components = read_components(files.components);
+    refuse_other_molecules(components, files);
+    if (components.restrained)
         settings.notes.push_back(
             "The package's elastic networks stay forces. To move domains as rigid bodies, write "
             "`chains` with `rigid`.");

@@ -109,6 +109,12 @@ Settings polychrom_settings(Files const& files) {
     bool const warm = take("temperature", settings.temperature, 1),
                damped = take("collision_rate", settings.friction, 1),
                timed = !found.varies() && take("timestep", settings.step, femtosecond);
+    auto const place = [&](char const* key) {
+        return scene::shown_path(files.init_args) + ": " + key;
+    };
+    settings.origins = {{"dynamics.temperature", place("temperature")},
+                        {"dynamics.friction", place("collision_rate")},
+                        {"dynamics.step", place("timestep")}};
     settings.notes.push_back(settings_note(
         name, found.integrator.empty() ? "unknown integrator" : scene::shown(found.integrator),
         settings, {warm, damped, timed}));

@@ -9,10 +9,11 @@
 
 namespace catena::foreign {
 
-/// What the scene's text says. Paths are relative to the working folder.
+/// Holds what the scene's text says. Paths are relative to the working folder.
 struct SceneDraft {
     std::string file;  // the scene's own
     std::string title, source, system, topology;
+    std::string start;  // file of the start's positions: the folder's topology or State
     std::vector<std::string> leave_out;
     /// Length of the links that replace a force's bonds, nm, as ForceChanges::links.
     std::vector<std::pair<std::string, double>> links;

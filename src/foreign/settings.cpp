@@ -22,6 +22,11 @@ namespace catena::foreign {
 
 namespace {
 
+/// Highest temperature that an import accepts, K. Replica exchange ends at about 1000 K.
+constexpr double hottest = 1e4;
+/// Friction from which a note is written, 1/ps. Water stops a residue within about 0.02 ps.
+constexpr double most_friction = 100;
+
 /// Attributes of a serialised Integrator.
 struct IntegratorTag {
     std::string file;
@@ -40,12 +45,38 @@ struct IntegratorTag {
         double read = 0;
         if (scene::parse_number(written->second, read) != scene::NumberFault::none ||
             !(read >= least))
-            refuse(
-                fmt::format("{} of the integrator is `{}`", name, scene::shown(written->second)));
+            refuse_value(name, written->second);
         value = read;
         return true;
     }
+    [[noreturn]] void refuse_value(char const* name, std::string const& value) const {
+        refuse(fmt::format("{} of the integrator is `{}`", name, scene::shown(value)));
+    }
+    /// Throws InputError if the attribute is missing, or 0 where it must not be.
+    void need(char const* name, bool may_be_zero) const {
+        auto const written = attributes.find(name);
+        if (written == attributes.end())
+            refuse(fmt::format("the integrator has no {}: the file is damaged", name));
+        double read = 0;
+        scene::parse_number(written->second, read);
+        if (read == 0 && !may_be_zero) refuse_value(name, written->second);
+    }
 };
+
+std::string in_lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+/// Throws InputError if an attribute is missing that OpenMM writes for this kind of integrator.
+void refuse_incomplete(IntegratorTag const& tag, std::string const& kind) {
+    std::string const lower = in_lower_case(kind);
+    auto const is = [&](char const* part) { return lower.find(part) != std::string::npos; };
+    bool const random = is("langevin") || is("brownian");
+    if (random)
+        for (char const* const name : {"temperature", "friction"}) tag.need(name, true);
+    if (random || is("verlet") || is("nosehoover")) tag.need("stepSize", is("variable"));
+}
 
 /// Reads temperature, friction and step of a Langevin integrator, the step of another one. Throws
 /// InputError for a file that is damaged or holds something else.
@@ -56,6 +87,7 @@ Settings integrator_settings(std::string const& file) {
     IntegratorTag const tag{file, outline.attributes};
     if (outline.root != "Integrator" || !outline.type.ends_with("Integrator"))
         tag.refuse("the file holds no serialised Integrator");
+    refuse_incomplete(tag, outline.type);
     Settings settings;
     Found found{};
     found.temperature = tag.take("temperature", settings.temperature, 0);
@@ -65,6 +97,10 @@ Settings integrator_settings(std::string const& file) {
         found.step = true;
         settings.step = step;
     }
+    auto const place = [&](char const* name) { return scene::shown_path(file) + ": " + name; };
+    settings.origins = {{"dynamics.temperature", place("temperature")},
+                        {"dynamics.friction", place("friction")},
+                        {"dynamics.step", place("stepSize")}};
     settings.notes.push_back(
         settings_note(scene::shown_path(std::filesystem::path(file).filename().string()),
                       scene::shown(outline.type), settings, found));
@@ -84,8 +120,7 @@ std::string settings_note(std::string const& name, std::string const& kind,
 }
 
 std::string integrator_note(std::string const& kind, Settings const& settings) {
-    std::string lower = kind;
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string const lower = in_lower_case(kind);
     auto const is = [&](char const* part) { return lower.find(part) != std::string::npos; };
     if (is("brownian"))
         return fmt::format(
@@ -107,7 +142,10 @@ std::string integrator_note(std::string const& kind, Settings const& settings) {
         settings.temperature, settings.friction);
 }
 
-Settings settings_of(Files const& files) {
+namespace {
+
+/// Settings of the folder before they are checked.
+Settings unchecked_settings(Files const& files) {
     if (!files.config.empty()) return calvados_settings(files);
     Settings settings;
     if (!files.integrator.empty())
@@ -120,6 +158,35 @@ Settings settings_of(Files const& files) {
         fmt::format("No settings of the run were found (config.yaml, one serialised Integrator): "
                     "{:.6g} K, friction {:.6g}/ps and {} steps of {:.6g} ps are assumed.",
                     settings.temperature, settings.friction, settings.steps, settings.step));
+    return settings;
+}
+
+/// Throws InputError for a temperature that no scene with links can have.
+void refuse_temperature(Settings const& settings) {
+    if (settings.temperature > 0 && settings.temperature <= hottest) return;
+    auto const origin = settings.origins.find("dynamics.temperature");
+    throw InputError(fmt::format("the temperature is {:.6g} K", settings.temperature),
+                     origin == settings.origins.end() ? "settings" : origin->second,
+                     fmt::format("give one above 0 and at most {:g} K, such as 300", hottest));
+}
+
+/// Notes a friction beyond that of any liquid.
+void note_friction(Settings& settings) {
+    if (settings.friction < most_friction) return;
+    auto const origin = settings.origins.find("dynamics.friction");
+    settings.notes.push_back(
+        fmt::format("A friction of {:.6g}/ps stops velocities within {:.3g} ps; Langevin dynamics "
+                    "of chains has 0.01 to 50/ps. Correct {} if that is not meant.",
+                    settings.friction, 1 / settings.friction,
+                    origin == settings.origins.end() ? "it" : "(" + origin->second + ")"));
+}
+
+}  // namespace
+
+Settings settings_of(Files const& files) {
+    Settings settings = unchecked_settings(files);
+    refuse_temperature(settings);
+    note_friction(settings);
     return settings;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct Settings {
     std::optional<std::int64_t> equilibration_steps;
     /// Sentences on what was assumed or cannot be taken over.
     std::vector<std::string> notes;
+    /// Places that values of the scene come from, by their keys: "dynamics.temperature" has
+    /// "FOLDER/config.yaml: temp, line 3". Assumed values have none, or the file alone.
+    std::map<std::string, std::string> origins;
 };
 
 /// Settings that were read; the others hold defaults.
@@ -45,7 +49,8 @@ std::string settings_note(std::string const& name, std::string const& kind, Sett
 std::string integrator_note(std::string const& kind, Settings const&);
 
 /// Reads the settings from the tool's own file or from a serialised Integrator. Otherwise the
-/// defaults hold, with a note. Throws InputError for files that cannot be read.
+/// defaults hold, with a note. Throws InputError for files that cannot be read or lack what their
+/// kind has, and for a temperature that no scene can have. Notes a friction beyond any chain's.
 Settings settings_of(Files const&);
 
 }  // namespace catena::foreign

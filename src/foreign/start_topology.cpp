@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <utility>
+#include <tuple>
 
 #include "error.hpp"
 #include "io/output.hpp"
@@ -100,12 +100,13 @@ WrittenStart write_start(Files const& files, OpenMmSpec const& spec, std::string
     OpenMmState const start = read_openmm_state(files.state, state);
     if (bonded.box) refuse_another_box(start.box, *bonded.box, state);
     frame.positions = start.positions;
-    for (auto const& [count, what] :
-         {std::pair{frame.positions.size(), "State"}, {topology.residue.size(), "topology"}})
+    for (auto const& [count, what, file] :
+         {std::tuple{frame.positions.size(), "State", state},
+          {topology.residue.size(), "topology", scene::shown_path(files.topology)}})
         if (count != bonded.mass.size())
             throw InputError(fmt::format("the {} has {} particles and the System {}", what, count,
                                          bonded.mass.size()),
-                             state, "name files of the same system");
+                             file, "name files of the same system");
     refuse_not_finite(frame.positions, state);
     topology.title = name_of(files);
     topology.mass = bonded.mass;

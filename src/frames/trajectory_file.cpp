@@ -154,6 +154,9 @@ TrajectoryFile::~TrajectoryFile() = default;
 void TrajectoryFile::open() {
     series_ = std::make_unique<Series>();
     series_->file = File(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    if (!series_->file && H5Fis_hdf5(name_.c_str()) == 0)
+        throw InputError("the file is no trajectory of Catena", name_,
+                         "give the folder of a run, or the trajectory.h5md in it");
     if (!series_->file)
         throw InputError("the trajectory cannot be opened, " + cause(), name_,
                          "name a run's folder, or wait until the run that writes it has ended");

@@ -105,7 +105,9 @@ TEST_F(Trajectories, WhatCannotBeComputedIsRefusedInOneLine) {
 
 TEST_F(Trajectories, OtherFilesAreNoTrajectories) {
     std::ofstream(folder_ / "text.h5md") << "no HDF5 at all";
-    expect_refused(in_folder({"analyse", "text.h5md"}), 2, "the trajectory cannot be opened");
+    expect_refused(in_folder({"analyse", "text.h5md"}), 2,
+                   "the file is no trajectory of Catena (text.h5md): give the folder of a run, or "
+                   "the trajectory.h5md in it");
     write("cut", {0, 10, 20});
     std::filesystem::resize_file(folder_ / "cut/trajectory.h5md", 3000);
     expect_refused(in_folder({"analyse", "cut"}), 2, "(cut/trajectory.h5md)");

@@ -8,54 +8,19 @@
 #include <fstream>
 #include <memory>
 #include <set>
-#include <sstream>
 
 #include "frames/trajectory_file.hpp"
 #include "io/observables_table.hpp"
-#include "tests/command/program.hpp"
-#include "tests/io/temporary_folder.hpp"
+#include "tests/command/package_folder.hpp"
 
 namespace catena::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string text_in(std::string const& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
-void write(std::string const& file, std::string const& text) { std::ofstream(file) << text; }
 
 /// Serialises a System, State or Integrator.
 template <class Object>
 void write_xml(Object const& object, std::string const& root, std::string const& file) {
     std::ofstream out(file);
     OpenMM::XmlSerializer::serialize(&object, root, out);
-}
-
-/// Configuration of the CALVADOS package as its prepare.py writes it, as far as it matters.
-std::string config_of(std::string const& name, std::string const& more) {
-    return "box:\n- 50\n- 50\n- 50\next_force_expr: step(d2-18)*d2; d2=periodicdistance(x, y, z, "
-           "0, "
-           "0, z)^2\nfrestart: restart.chk\nfriction_coeff: 0.02\nrandom_number_seed: null\n"
-           "restart: checkpoint\nruntime: 0\nsteps: 7070000\nsysname: " +
-           name + "\ntemp: 293.15\ntopol: center\nwfreq: 7000\n" + more;
-}
-
-/// A folder `name` of the CALVADOS package in `parent`, from tests/data/cases/calvados-folders.
-std::string package_folder(TemporaryFolder const& parent, std::string const& name,
-                           std::string const& more = "slab_eq: false\n") {
-    std::string const folder = parent / name, data = CATENA_TEST_DATA "/cases/calvados-folders/";
-    fs::create_directories(folder);
-    fs::copy_file(data + name + ".xml", folder + "/" + name + ".xml");
-    fs::copy_file(data + name + ".pdb", folder + "/top.pdb");
-    write(folder + "/config.yaml", config_of(name, more));
-    write(folder + "/components.yaml",
-          "defaults:\n  restraint: false\nsystem:\n  " + name +
-              ":\n    restraint: " + (name == "two-domains" ? "true" : "false") + "\n");
-    return folder;
 }
 
 std::unique_ptr<OpenMM::System> system_in(std::string const& file) {

@@ -1,101 +1,24 @@
 // `catena import`: files that are damaged or are not what their names say, and folders of
 // OpenMiChroM, polychrom and OpenABC. The folders are made up; names and units are the tools' own.
-#include <OpenMM.h>
 #include <hdf5.h>
-#include <openmm/serialization/XmlSerializer.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "tests/command/program.hpp"
-#include "tests/io/temporary_folder.hpp"
+#include "tests/command/tool_folder.hpp"
 
 namespace catena::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr int beads = 12;
-
-/// The folder `mine` with a System of twelve beads, 1 nm apart on springs that become links.
-class ToolFolder : public ::testing::Test {
-  protected:
-    TemporaryFolder here;
-
-    void SetUp() override {
-        fs::create_directories(here / "mine");
-        OpenMM::System system;
-        auto* bonds = new OpenMM::HarmonicBondForce;
-        for (int p = 0; p < beads; ++p) {
-            system.addParticle(100);
-            if (p > 0) bonds->addBond(p - 1, p, 1, 5000);
-        }
-        system.addForce(bonds);
-        serialize(system, "System", "system.xml");
-    }
-    std::string file(std::string const& name) const { return here / ("mine/" + name); }
-    void write(std::string const& name, std::string const& text) const {
-        std::ofstream(file(name)) << text;
-    }
-    std::string text_in(std::string const& name) const {
-        std::ostringstream text;
-        text << std::ifstream(here / name).rdbuf();
-        return text.str();
-    }
-    template <class Object>
-    void serialize(Object const& object, std::string const& root, std::string const& name) const {
-        std::ofstream out(file(name));
-        OpenMM::XmlSerializer::serialize(&object, root, out);
-    }
-    /// Writes `atoms` atoms along x, `spacing` apart in the file's own unit.
-    void write_pdb(std::string const& name, int atoms, double spacing,
-                   std::string const& title = "") const {
-        std::ostringstream text;
-        if (!title.empty()) text << "TITLE     " << title << "\nMODEL     1\n";
-        for (int k = 1; k <= atoms; ++k)
-            text << fmt::format(
-                "ATOM  {:5d}  CA  ASP A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C\n", k,
-                k, spacing * k, 0.0, 0.0);
-        write(name, text.str() + "END\n");
-    }
-    void write_state(std::string const& name) const {
-        OpenMM::System system;
-        std::vector<OpenMM::Vec3> positions;
-        for (int p = 0; p < beads; ++p) {
-            system.addParticle(100);
-            positions.emplace_back(p, 0, 0);
-        }
-        OpenMM::VerletIntegrator integrator(0.001);
-        OpenMM::Context context(system, integrator,
-                                OpenMM::Platform::getPlatformByName("Reference"));
-        context.setPositions(positions);
-        serialize(context.getState(OpenMM::State::Positions), "State", name);
-    }
-    /// Cuts a file to a part of its length.
-    void cut(std::string const& name, double part) const {
-        fs::resize_file(file(name),
-                        static_cast<std::uintmax_t>(part * double(fs::file_size(file(name)))));
-    }
-    Ended import(Words more = {}) const {
-        more.insert(more.begin(), {"import", "mine", "--overwrite"});
-        return catena(more, here.path());
-    }
-    void expect_noted(std::string const& part, Words const& more = {}) const {
-        Ended const e = import(more);
-        ASSERT_EQ(e.status, 0) << e.err;
-        EXPECT_NE(e.out.find(part), std::string::npos) << e.out;
-    }
-};
 
 TEST_F(ToolFolder, AConfigurationThatIsNotWellFormedIsRefused) {
     write_pdb("start.pdb", beads, 10);
     write("config.yaml", "sysname: mine\ntemp: 293\nbox: [1, 2\n");
     expect_refused(import(), 2, "(mine/config.yaml: line ");
+    write("components.yaml", "defaults: {nmol: 1}\nsystem: {mine: {restraint: false}}\n");
     for (char const* const text : {"", "# nothing\n", "- sysname\n", "sysname\n"}) {
         write("config.yaml", text);
         expect_refused(import(), 2, "the file holds no keys with values (mine/config.yaml)");
     }
+    write("config.yaml", "learning_rate: 3\n");
+    expect_refused(import(), 2, "the configuration has no `sysname` (mine/config.yaml)");
+    fs::remove(file("components.yaml"));
     // The package writes its keys in alphabetical order.
     write("config.yaml", "box: [9, 9, 9]\next_force_expr: x\nfriction_coeff: 0.01\nfrestart: a\n");
     expect_refused(import(), 2, "the configuration has no `sysname` (mine/config.yaml)");

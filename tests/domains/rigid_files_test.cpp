@@ -223,10 +223,17 @@ TEST_F(RigidFiles, predictions_come_in_several_forms) {
               "`pae.json` has no list `predicted_aligned_error` or `pae`" + remedy);
     EXPECT_EQ(refused("{\"pae\": [[0, 1], [1]]}"),
               "row 2 of `pae.json` does not have 2 numbers, as many as there are rows" + remedy);
-    EXPECT_EQ(refused("{\"pae\": [[0, -1], [1, 0]]}"),
-              "row 1, column 2 of `pae.json` is not an error in angstrom" + remedy);
-    EXPECT_EQ(refused("{\"pae\": [[0, 1e300], [1, 0]]}"),
-              "row 1, column 2 of `pae.json` is not an error in angstrom" + remedy);
+    for (char const* const value : {"-1", "1e+300", "null", "\"a\""})
+        EXPECT_EQ(
+            refused(fmt::format("{{\"pae\": [[0, {}], [1, 0]]}}", value)),
+            fmt::format("row 1, column 2 of `pae.json`, `{}`, is not an error in angstrom", value) +
+                remedy);
+    // Python's json.dump writes these.
+    for (char const* const value : {"NaN", "Infinity", "-Infinity"})
+        EXPECT_EQ(refused(fmt::format("{{\"pae\": [[0, {}], [1, 0]]}}", value)),
+                  fmt::format("`pae.json` has {} in place of an error", value) + at_pae_ +
+                      "JSON has no such number, and without that error no domains can be told: "
+                      "predict the errors again");
     EXPECT_EQ(refused("{\"pae\":\n\n [[0, what]]}"),
               "`pae.json` is not well-formed JSON, line 3" + remedy);
     EXPECT_EQ(refused("{\"pae\": [[0, 1], [1,\n"),

@@ -21,18 +21,18 @@ words = sys.argv[1:]
 value = dict(zip(words[3::2], words[4::2]))
 with open({folder!r} + "/calls", "a") as calls:
     calls.write(os.path.basename(words[2]) + "\\n")
-row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "every_ps": 1.0, "valid": True}}
+row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "every_ps": 1.0, "valid": True, "state": "VALID", "why": ""}}
 radius = lambda mean: {{"radius_of_gyration": {{"mean": mean, "error": 0.01, "plateau": True}}}}
 json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "hardware": {{"gpu": "none"}}, "build": {{}}, "results": [
-    {{"method": "rigid", **row, **radius({rigid})}}, {{"method": "bonds", **row, **radius(1.5)}}]}}, open(value["--json"], "w"))
+    {{"method": "rigid", **row, **radius({rigid})}}, {{"method": "bonds", **row, **radius({bonds}), **{state}}}]}}, open(value["--json"], "w"))
 """
 
 
-def call(folder, rigid, *words):
-    """The script with a stand-in program whose rigid links give that radius."""
+def call(folder, rigid, *words, bonds="1.5", state=None):
+    """The script with a stand-in program whose rigid links give that radius, and whose bonds have that state."""
     program = os.path.join(folder, "program")
     with open(program, "w", encoding="utf-8") as file:
-        file.write(PROGRAM.format(python=sys.executable, folder=folder, rigid=rigid))
+        file.write(PROGRAM.format(python=sys.executable, folder=folder, rigid=rigid, bonds=bonds, state=repr(state or {})))
     os.chmod(program, 0o755)
     return subprocess.run([sys.executable, SCRIPT, os.path.join(folder, "p.csv"), os.path.join(folder, "out"), "--copies", "3", *words],
                           env={**os.environ, "CATENA_PROGRAM": program}, capture_output=True, text=True, check=False)
@@ -67,6 +67,21 @@ def main():
         os.remove(os.path.join(folder, "out", "gly.json"))
         no_error = call(folder, "None", "--only", "gly")
         check(no_error.returncode == 1 and "INVALID: gly:" in no_error.stdout, f"an unknown radius fails: {no_error.stdout}{no_error.stderr}")
+        check("its errors are unknown" in no_error.stdout, f"the verdict says why: {no_error.stdout}")
+        check("ser: 4.8 standard errors from OpenMM" in both.stdout, f"the verdict names the protein and why: {both.stdout}")
+        os.remove(os.path.join(folder, "out", "gly.json"))
+        torn = {"state": "unstable", "why": "links torn at 0.06 ps", "valid": False, "every_ps": None, "ps_per_copy": None}
+        unstable = call(folder, 1.5, "--only", "gly", "--json", os.path.join(folder, "torn.json"), bonds="None", state=torn)
+        check(unstable.returncode == 1 and "| unstable | - | - | - |" in unstable.stdout and "nan" not in unstable.stdout, f"table: {unstable.stdout}")
+        check("INVALID: gly: bonds of OpenMM are unstable (links torn at 0.06 ps)" in unstable.stdout, f"verdict: {unstable.stdout}{unstable.stderr}")
+        with open(os.path.join(folder, "torn.json"), encoding="utf-8") as file:
+            text = file.read()
+        check("NaN" not in text and not json.loads(text)["valid"], f"the JSON has numbers or null: {text}")
+        for words, part in ((["--only", ""], "--only '' has an empty name"), (["--copies", "1"], "--copies is 1: give 2"),
+                            (["--duration", "0"], "--duration is 0"), (["--discard", "-1"], "--discard is -1"), (["--step", "nan"], "--step is nan"),
+                            (["--picture", ""], "--picture ''")):
+            refused = call(folder, 1.5, *words)
+            check(refused.returncode == 2 and part in refused.stderr and refused.stderr.count("\n") == 1, f"{words}: {refused.stderr}")
         unknown = call(folder, 1.5, "--only", "ala")
         check(unknown.returncode == 2 and "no protein ala" in unknown.stderr, f"an unknown protein is refused: {unknown.stderr}")
 

@@ -77,17 +77,28 @@ def refused(folder):
         done = call([write(os.path.join(folder, name + ".csv"), text), os.path.join(folder, "not"), "--only", "scenes"])
         if done.returncode != 2 or words not in done.stderr or done.stderr.count("\n") != 1:
             yield f"{name}: status {done.returncode}: {done.stderr}"
+    done = call([write(os.path.join(folder, "water.csv"), HEAD + line.replace("0.2,", "0,")), os.path.join(folder, "water"), "--only", "scenes"])
+    if done.returncode != 0:
+        yield f"an ionic strength of 0, which the program accepts: {done.stderr}"
     proteins, out = write(os.path.join(folder, "good.csv"), HEAD + line), os.path.join(folder, "kept")
+    for words, part in ((["--replicas", "0"], "--replicas is 0"), (["--steps", "-1"], "--steps is -1"), (["--picture", ""], "--picture ''")):
+        done = call([proteins, out, *words])
+        if done.returncode != 2 or part not in done.stderr or done.stderr.count("\n") != 1:
+            yield f"{words}: status {done.returncode}: {done.stderr}"
     call([proteins, out, "--only", "scenes", "--steps", "10"])
     for words in (["--model", "calvados3"], ["--picture", "a.xyz"], ["--picture", "no/a.png"]):
         done = call([proteins, out, "--only", "table", *words])
         if done.returncode != 2 or done.stderr.count("\n") != 1:
             yield f"{words}: status {done.returncode}: {done.stderr}"
-    write(os.path.join(out, "gly-4", "summary.json"), summary(1.0, True))
+    noted = json.loads(summary(1.0, True))
+    noted["notes"] = ["water is frozen"]
+    write(os.path.join(out, "gly-4", "summary.json"), json.dumps(noted))
     write(os.path.join(out, "gly-7", "summary.json"), summary(3.0, True).replace('"last_step": 10', '"last_step": 9'))
     done = call([proteins, out, "--only", "table"])
     if table(out)[0]["simulated_nm"] != "1.0" or "1 of 2 runs of gly" not in done.stderr:
         yield f"an unfinished run counts: {done.stdout}{done.stderr}"
+    if "jobs/replicas.py: note on gly-4: water is frozen\n" not in done.stderr:
+        yield f"a note of the program is lost: {done.stderr}"
 
 
 def simulated(folder, catena):

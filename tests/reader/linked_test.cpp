@@ -260,7 +260,7 @@ TEST_F(Domains, refusals) {
                   give);
     EXPECT_EQ(refusal_of(yaml("[3]")),
               "`3` is not a range of residues" + place +
-                  "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
+                  "write \"FIRST-LAST\", such as \"1-95\", or [1, 95]");
     EXPECT_EQ(refusal_of(yaml("[[9, 13]]")), "residue 13 of a chain of 12" + place + give);
     EXPECT_EQ(refusal_of(yaml("[[2, 3]]")),
               "residues 2 to 3 do not form a rigid body, which needs three residues that do not "

@@ -224,7 +224,7 @@ TEST_F(Structures, domains_by_chain_and_residue_number) {
     std::string const at = " (s.yaml: chains[0].rigid[0], line 1): ";
     EXPECT_EQ(refusal_with("chain: all, rigid: [\"B:1-7\"]"),
               "residue 7 of chain B is not in the file" + at +
-                  "give [first, last] with the file's residue numbers, here 1 to 6, both included");
+                  "write \"CHAIN:FIRST-LAST\" within \"B:1-6\"");
     EXPECT_EQ(
         refusal_with("chain: all, rigid: [[1, 3]]"),
         "2 residues of the file have the number 1" + at + "name the chain, such as \"A:1-...\"");
@@ -252,13 +252,72 @@ TEST_F(Structures, wrong_ranges_of_residues_are_told_apart) {
     EXPECT_EQ(refusal_with("chain: A, rigid: [[5, 2]]"),
               "residues 5 to 2 run backwards" + at + "write [2, 5]");
     EXPECT_EQ(all("\"A:1-3-5\""), "`A:1-3-5` in quotes is not a range of residues" + at +
-                                      "write CHAIN:FIRST-LAST, such as \"A:1-95\", or [1, 95]");
+                                      "write \"CHAIN:FIRST-LAST\" within \"A:1-6\", \"B:1-6\"");
     EXPECT_EQ(all("\"A1-3\""),
               "`A1-3` in quotes has no colon after the chain" + at + "did you mean \"A:1-3\"?");
+    for (std::string const range : {"A 1-3", "A;1-3", "A.1-3", "A - 1-3"})
+        EXPECT_EQ(all("\"" + range + "\"").find("`" + range + "` in quotes"), 0U) << range;
+    EXPECT_EQ(all("\"A 1-3\""),
+              "`A 1-3` in quotes has no colon after the chain" + at + "did you mean \"A:1-3\"?");
+    EXPECT_EQ(all("\"A;1-3\""),
+              "`A;1-3` in quotes has no colon after the chain" + at + "did you mean \"A:1-3\"?");
     // A chain's name that is a number could be the first digit of a residue.
     write("a.pdb", pdb_text(strand(six, "1", 21, 0)));
     EXPECT_EQ(all("\"21 - 24\"").find("the beads of residues 21 to 24 lie on one line"), 0U);
     EXPECT_EQ(all("\"11-23\"").find("residue 11 is not in the file"), 0U);
+    EXPECT_EQ(all("\"1 21-24\"").find("`1 21-24` in quotes has no colon after the chain"), 0U);
+}
+
+/// YAML makes a map of a range without quotes and with a blank.
+TEST_F(Structures, ranges_in_another_form_are_told_what_was_meant) {
+    Words const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
+    write("a.pdb", pdb_text(strand(six, "A", 1, 0) + strand(six, "B", 1, 0, 20)));
+    std::string const at = " (s.yaml: chains[0].rigid[0], line 1): ",
+                      map = "YAML makes a map of `A: 1-3`, which is not a range of residues";
+    auto const all = [&](std::string const& rigid) {
+        return refusal_with("chain: all, rigid: " + rigid);
+    };
+    EXPECT_EQ(all("[A: 1-3]"), map + at + "write [\"A:1-3\"], in quotes and without a blank");
+    EXPECT_EQ(all("{A: 1-3, B: 2-5}"),
+              map +
+                  " (s.yaml: chains[0].rigid, line 1): write [\"A:1-3\", \"B:2-5\"], in quotes and "
+                  "without a blank");
+    EXPECT_EQ(all("[[A: 1-3, B: 2-5]]").find(map), 0U);
+    EXPECT_EQ(all("[{first: 1, last: 3}]"), "a map is not a range of residues" + at +
+                                                "write ranges in quotes, such as \"A:1-95\"");
+    for (std::string const two : {"A:1-3, A:4-6", "A:1-3;A:4-6", "A:1-3 A:4-6"})
+        EXPECT_EQ(
+            all("[\"" + two + "\"]"),
+            "`" + two + "` in quotes holds 2 ranges" + at +
+                "write each in quotes of its own: \"A:1-3\", \"A:4-6\"; [\"A:1-3\", \"A:4-6\"] "
+                "makes one body of them");
+    EXPECT_EQ(all("[\"A:1\u20133\"]"),
+              "`A:1\u20133` in quotes has a dash that is no hyphen" + at + "write \"A:1-3\"");
+    EXPECT_EQ(all("[\"\"]"), "an empty text is no range of residues" + at +
+                                 "write \"CHAIN:FIRST-LAST\" within \"A:1-6\", \"B:1-6\"");
+}
+
+TEST_F(Structures, insertion_codes_at_the_ends_of_ranges_get_a_hint) {
+    std::vector<AtomLine> atoms = strand(Words(6, "GLY"), "A", 1, 0);
+    for (std::size_t k = 0; k < atoms.size(); ++k) {
+        atoms[k].x *= 0.8;
+        if (k % 2 == 0) atoms[k].z = 2.28;
+    }
+    for (auto const& [k, code] : {std::pair{3, 'A'}, {4, 'B'}}) {
+        atoms[static_cast<std::size_t>(k)].number = 3;
+        atoms[static_cast<std::size_t>(k)].insertion = code;
+    }
+    write("a.pdb", pdb_text(atoms));  // residues 1, 2, 3, 3A, 3B, 6
+    Words const notes = notes_of(with("rigid: [\"A:1-3\"]"));
+    EXPECT_EQ(std::count(notes.begin(), notes.end(),
+                         "the rigid residues 1 to 3 of chain A end before 3A, 3B, which share the "
+                         "last number; name the last of them to include them"),
+              1);
+    EXPECT_EQ(with("rigid: [\"A:1-3B\"]").chains.at(0).linked.size(), 2u);
+    std::string const at = " (s.yaml: chains[0].rigid[0], line 1): ";
+    EXPECT_EQ(refusal_with("rigid: [\"A:1-3C\"]"),
+              "residue 3C of chain A is not in the file" + at +
+                  "residues of that number have other insertion codes: write one of 3, 3A, 3B");
 }
 
 TEST_F(Structures, a_domain_does_not_cross_a_gap) {

@@ -1,0 +1,37 @@
+// Checks that the files of a CALVADOS folder agree: configuration, components, System, topology.
+#pragma once
+
+#include <string>
+
+#include "foreign/files.hpp"
+#include "foreign/package_file.hpp"
+#include "foreign/settings.hpp"
+
+namespace catena::foreign {
+
+/// Throws InputError for a configuration that was cut within its last line, whose keys the package
+/// writes in alphabetical order. Notes a last line without a line feed, which may be cut.
+void check_end(PackageFile const& config, Files& files);
+
+/// Throws InputError if the configuration's box is not the System's, or if it asks for a force that
+/// the System lacks. Notes frames that are never due. `is_continued` says that the start is not the
+/// package's first one; a continued run of the package leaves out forces of the equilibration.
+void check_configuration(PackageFile const& config, Files const& files, bool is_continued,
+                         Settings& settings);
+
+/// Holds what the package's components say.
+struct CalvadosComponents {
+    /// Number of molecules of all components.
+    std::int64_t molecules = 0;
+    /// True if a component has restraints within its domains.
+    bool restrained = false;
+};
+
+/// Reads components.yaml. Throws InputError for one without components and for values of the wrong
+/// kind.
+CalvadosComponents read_components(std::string const& file);
+
+/// Throws InputError if the topology does not have one chain for each molecule.
+void refuse_other_molecules(CalvadosComponents const& components, Files const& files);
+
+}  // namespace catena::foreign

@@ -1,0 +1,91 @@
+// Implements the reading of the CALVADOS package's YAML files.
+#include "foreign/package_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "error.hpp"
+#include "scene/fields.hpp"
+#include "scene/files.hpp"
+
+namespace catena::foreign {
+
+namespace {
+
+using scene::Node;
+
+constexpr double most_whole = 1e15;
+
+/// True for well-formed YAML that is empty, a list or a single value.
+bool is_no_map(std::string const& text) {
+    try {
+        return scene::parse_value(text, "").kind != Node::Kind::map;
+    } catch (InputError const&) {
+        return false;
+    }
+}
+
+/// Parses a file of keys and values. Throws InputError for other contents.
+std::unique_ptr<Node> parsed(std::string const& text, std::string const& file) {
+    if (is_no_map(text))
+        throw InputError("the file holds no keys with values", scene::shown_path(file),
+                         "write it again, or move it out of the folder");
+    return scene::parse_document(text, file);
+}
+
+}  // namespace
+
+Node const* valued(Node const* entry) {
+    bool const none = entry == nullptr || entry->kind == Node::Kind::null ||
+                      entry->text == "null" || entry->text == "~";
+    return none ? nullptr : entry;
+}
+
+std::int64_t whole_of(Node const& node, std::int64_t least) {
+    double const found = scene::number(node);
+    if (!(found >= static_cast<double>(least) && found <= most_whole && found == std::floor(found)))
+        scene::fail(node, fmt::format("`{}` is not a whole number of {} or more", node.key, least),
+                    "correct it");
+    return static_cast<std::int64_t>(found);
+}
+
+PackageFile::PackageFile(std::string const& file) {
+    Node at;
+    at.text = file;
+    root_ = parsed(scene::read_text_file(file, at), file);
+}
+
+Node const* PackageFile::find(std::string_view key) const { return valued(root_->find(key)); }
+
+double PackageFile::number(std::string_view key, double otherwise) const {
+    Node const* const node = find(key);
+    return node ? scene::number(*node) : otherwise;
+}
+
+double PackageFile::non_negative(std::string_view key, double otherwise) const {
+    Node const* const node = find(key);
+    return node ? scene::non_negative(*node) : otherwise;
+}
+
+std::int64_t PackageFile::whole(std::string_view key, double otherwise, std::int64_t least) const {
+    Node const* const node = find(key);
+    return node ? whole_of(*node, least) : static_cast<std::int64_t>(otherwise);
+}
+
+bool PackageFile::truth(std::string_view key) const {
+    Node const* const node = find(key);
+    return node != nullptr && scene::truth(*node);
+}
+
+std::string PackageFile::text(std::string_view key, char const* otherwise) const {
+    Node const* const node = find(key);
+    return node ? scene::text(*node) : otherwise;
+}
+
+std::string PackageFile::place(std::string_view key) const {
+    Node const* const node = find(key);
+    return scene::shown_path(node ? node->where() : root_->text);
+}
+
+}  // namespace catena::foreign

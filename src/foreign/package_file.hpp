@@ -1,0 +1,45 @@
+// A YAML file of the CALVADOS package: keys with values, some of which may be absent.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "scene/node.hpp"
+
+namespace catena::foreign {
+
+/// Holds the keys of config.yaml or components.yaml.
+class PackageFile {
+  public:
+    /// Reads the file. Throws InputError if it is no YAML or holds no keys with values.
+    explicit PackageFile(std::string const& file);
+
+    scene::Node const& root() const { return *root_; }
+    /// Returns the entry of that key if it has a value; nullptr if it is absent, empty or null.
+    scene::Node const* find(std::string_view key) const;
+    /// Returns the number of that key, or the default of the package.
+    double number(std::string_view key, double otherwise) const;
+    /// Returns the same for a number of 0 or more.
+    double non_negative(std::string_view key, double otherwise) const;
+    /// Returns the whole number of that key, which may be written as 1e8 or 100000000.0.
+    std::int64_t whole(std::string_view key, double otherwise, std::int64_t least) const;
+    /// Returns the truth of that key, false without one.
+    bool truth(std::string_view key) const;
+    /// Returns the text of that key, or the default of the package.
+    std::string text(std::string_view key, char const* otherwise) const;
+    /// Returns the place of that key in messages: "FILE: KEY, line 3", or the file alone.
+    std::string place(std::string_view key) const;
+
+  private:
+    std::unique_ptr<scene::Node> root_;
+};
+
+/// Returns the value of an entry unless it is empty or null, else nullptr.
+scene::Node const* valued(scene::Node const* entry);
+
+/// Reads a whole number of `least` or more, which may be written as 1e8 or 100000000.0.
+std::int64_t whole_of(scene::Node const& node, std::int64_t least);
+
+}  // namespace catena::foreign

@@ -1,0 +1,218 @@
+// `catena import`: files of a folder that contradict each other or themselves are refused or noted,
+// with the file, the key and the number that do not fit.
+#include "tests/command/package_folder.hpp"
+#include "tests/command/tool_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST_F(ToolFolder, ATopologyThatDoesNotFitGivesWayToAState) {
+    write_pdb("start.pdb", beads / 2, 10);
+    std::string const unfit =
+        "the topology has 6 atoms and the System 12 particles (mine/start.pdb): give one atom per "
+        "particle, in the System's order";
+    expect_refused(import(), 2, unfit);
+    expect_refused(import({"start.pdb"}), 2, unfit);
+    write_state("state.xml");
+    expect_noted(
+        "The start is state.xml. Not read is start.pdb (6 atoms): the System has 12 parti");
+    expect_noted("Not read is start.pdb (6 atoms): the System has 12 particles.", {"state.xml"});
+    write("start.pdb", "HEADER\n");
+    expect_noted("Not read is start.pdb (cannot be read): the System has 12 particles.");
+    fs::remove(file("state.xml"));
+    expect_refused(import(), 2, "holds no ATOM record (mine/start.pdb)");
+}
+
+TEST_F(ToolFolder, ASystemThatWasCutIsNamedAndNotTheTopology) {
+    write_pdb("start.pdb", beads, 10);
+    cut("system.xml", 0.3);
+    expect_refused(import(), 2, "mine/system.xml is not well-formed: ");
+    for (char const* const text : {"", "no XML\n", "<Force type=\"HarmonicBondForce\"/>\n"}) {
+        write("system.xml", text);
+        expect_refused(import(), 2, "the file holds no serialised System (mine/system.xml)");
+    }
+}
+
+TEST_F(ToolFolder, AStateThatIsNoneIsSaid) {
+    write_pdb("start.pdb", beads, 10);
+    for (char const* const text : {"", "no XML\n", "<Force type=\"HarmonicBondForce\"/>\n"}) {
+        write("state.xml", text);
+        expect_noted("state.xml holds no serialised State: the start is that of start.pdb.");
+    }
+    fs::remove(file("start.pdb"));
+    expect_refused(import(), 2, "the file holds no serialised State (mine/state.xml)");
+    write_pdb("start.pdb", beads / 2, 10);
+    expect_refused(import(), 2, "the file holds no serialised State (mine/state.xml)");
+}
+
+TEST_F(ToolFolder, AnIntegratorWithoutItsSettingsIsRefused) {
+    write_pdb("start.pdb", beads, 10);
+    auto const refused = [&](std::string const& attributes, std::string const& part) {
+        write("integrator.xml", "<?xml version=\"1.0\" ?>\n<Integrator " + attributes + "/>\n");
+        expect_refused(import(), 2, part + " (mine/integrator.xml");
+    };
+    std::string const kind = " type=\"LangevinMiddleIntegrator\" version=\"1\"";
+    refused("friction=\".5\" stepSize=\".01\"" + kind,
+            "the integrator has no temperature: the file is damaged");
+    refused("temperature=\"300\" stepSize=\".01\"" + kind,
+            "the integrator has no friction: the file is damaged");
+    refused("friction=\".5\" temperature=\"300\"" + kind,
+            "the integrator has no stepSize: the file is damaged");
+    refused("friction=\".5\" stepSize=\"0\" temperature=\"300\"" + kind,
+            "stepSize of the integrator is `0`");
+    refused("friction=\".5\" stepSize=\".01\" temperature=\"0\"" + kind, "the temperature is 0 K");
+    refused("stepSize=\"0\" type=\"VerletIntegrator\" version=\"1\"",
+            "stepSize of the integrator is `0`");
+    serialize(OpenMM::VariableLangevinIntegrator(300, 1, 0.001), "Integrator", "integrator.xml");
+    expect_noted("The steps of that integrator vary");
+}
+
+/// A scene that is refused is not written: messages name the files that its values came from.
+TEST_F(ToolFolder, RefusalsNameTheImportedFileAndNoScene) {
+    write_pdb("start.pdb", beads, 30);
+    Ended const far = import();
+    expect_refused(far, 2, "(mine/start.pdb");
+    EXPECT_EQ(far.err.find("mine.yaml"), std::string::npos) << far.err;
+    fs::remove(file("start.pdb"));
+    write_state("state.xml");
+    expect_refused(import({"--leave-out", "Walls"}), 2, "(--leave-out)");
+    expect_refused(import({"--links", "Walls=1"}), 2, "(--links)");
+}
+
+TEST_F(ToolFolder, AConfigurationOfAnotherProgramIsNotedAndLeftOut) {
+    write_pdb("start.pdb", beads, 10);
+    for (char const* const text : {"a: [1, 2\n", "\tb: 3\n", "", "- a\n"}) {
+        write("config.yaml", text);
+        expect_noted("config.yaml is not read: ");
+        expect_noted("It is not the CALVADOS package's, for it has no `sysname`");
+    }
+    write("config.yaml", "a: [1, 2\n");
+    write("components.yaml", "system: {mine: {nmol: 1}}\n");
+    expect_refused(import(), 2, "(mine/config.yaml: line ");
+}
+
+TEST_F(ToolFolder, SettingsThatAreNotReadAreNamed) {
+    write_pdb("top.pdb", beads, 10);
+    serialize(OpenMM::LangevinMiddleIntegrator(310, 0.5, 0.004), "Integrator", "integrator.xml");
+    fs::rename(file("system.xml"), file("asyn.xml"));
+    write("config.yaml", "sysname: asyn\ntemp: 293\nsteps: 10\n");
+    expect_noted("integrator.xml is not read: the settings are those of config.yaml.");
+    fs::remove(file("config.yaml"));
+    write("components.yaml", "system: {mine: {nmol: 1}}\n");
+    expect_noted("components.yaml is not read: the CALVADOS package's config.yaml is not beside");
+}
+
+/// A folder of the package that a test damages.
+class DamagedPackage : public ::testing::Test {
+  protected:
+    TemporaryFolder here;
+    std::string folder = package_folder(here, "idr");
+
+    void replace(std::string const& part, std::string const& other) const {
+        replace_in(folder + "/config.yaml", part, other);
+    }
+    Ended import() const { return catena({"import", "idr", "--overwrite"}, here.path()); }
+    void expect_note(std::string const& part) const {
+        Ended const e = import();
+        ASSERT_EQ(e.status, 0) << e.err;
+        EXPECT_NE(e.out.find(part), std::string::npos) << e.out;
+    }
+};
+
+TEST_F(DamagedPackage, ABoxThatIsNotTheSystemsIsRefused) {
+    replace("- 50\n- 50\n- 50\n", "- 20\n- 20\n- 20\n");
+    expect_refused(import(), 2,
+                   "the box is 20 x 20 x 20 nm, that of idr.xml 50 x 50 x 50 nm (idr/config.yaml: "
+                   "box, line 1)");
+}
+
+TEST_F(DamagedPackage, AForceThatTheSystemLacksIsRefused) {
+    for (auto const& [key, force] : {std::pair{"slab_eq", "CustomExternalForce"},
+                                     {"ext_force", "CustomExternalForce"},
+                                     {"box_eq", "MonteCarloAnisotropicBarostat"},
+                                     {"bilayer_eq", "MonteCarloMembraneBarostat"}}) {
+        write(folder + "/config.yaml", config_of("idr", std::string(key) + ": true\n"));
+        expect_refused(import(), 2,
+                       fmt::format("`{}` is true, but idr.xml has no {} (idr/config.yaml: {}", key,
+                                   force, key));
+    }
+    // The package's continued runs do without the equilibration.
+    write(folder + "/config.yaml", config_of("idr", "slab_eq: true\n"));
+    fs::copy_file(folder + "/top.pdb", folder + "/checkpoint.pdb");
+    expect_note("The start is checkpoint.pdb");
+}
+
+TEST_F(DamagedPackage, SettingsThatNobodyMeansAreSaid) {
+    replace("wfreq: 7000", "wfreq: 70000000");
+    expect_note("config.yaml has wfreq 70000000 and 7070000 steps: the package would write no fra");
+    replace("friction_coeff: 0.02", "friction_coeff: 1e6");
+    expect_note("A friction of 1e+06/ps stops velocities within 1e-06 ps");
+    expect_note("Correct (idr/config.yaml: friction_coeff, line 7)");
+    replace("restart: checkpoint", "restart: 7");
+    expect_refused(import(), 2, "`restart` is `7` (idr/config.yaml: restart, line 9)");
+    replace("restart: 7", "restart: null");
+    replace("temp: 293.15", "temp: 29315");
+    expect_refused(import(), 2, "the temperature is 29315 K (idr/config.yaml: temp, line 13)");
+}
+
+TEST_F(DamagedPackage, AConfigurationThatWasCutIsRefused) {
+    std::string const whole = text_in(folder + "/config.yaml");
+    for (std::string const end : {"te", "temp", "temp:", "temp: 29"}) {
+        write(folder + "/config.yaml", whole.substr(0, whole.find("temp: ")) + end);
+        Ended const e = import();
+        EXPECT_EQ(e.status, 2) << end << e.out;
+        EXPECT_NE(e.err.find("(idr/config.yaml)"), std::string::npos) << e.err;
+    }
+    write(folder + "/config.yaml", whole.substr(0, whole.find(".15")));
+    expect_refused(import(), 2,
+                   "the configuration ends within its last line, `temp: 293` (idr/config.yaml)");
+    write(folder + "/config.yaml", whole.substr(0, whole.find("000\nslab_eq")));
+    expect_note("config.yaml ends with `wfreq: 7` without a line feed: if it was cut, ");
+}
+
+TEST_F(DamagedPackage, ComponentsThatWereCutAreRefused) {
+    std::string const components = folder + "/components.yaml";
+    write(components, "defaults:\n  nmol: 1\nsystem:\n  idr:\n    nmol: 3\n");
+    expect_refused(import(), 2,
+                   "the components make 3 molecules, and top.pdb has 1 chain "
+                   "(idr/components.yaml)");
+    for (char const* const text : {"defaults:\n  nmol: 1\n", "defaults:\n  nmol: 1\nsystem:\n",
+                                   "defaults:\n  nmol: 1\nsystem: {}\n"}) {
+        write(components, text);
+        expect_refused(import(), 2, "the file has no components under `system` (idr/components.");
+    }
+    write(components, "defaults:\n  nmol: 1\nsystem:\n  idr:\n");
+    expect_refused(import(), 2, "component `idr` has no properties (idr/components.yaml)");
+    write(components, "defaults:\n  nmol: 1\nsystem:\n  idr:\n    nmol: few\n");
+    expect_refused(import(), 2, "`few` is not a number (idr/components.yaml: system.idr.nmol");
+}
+
+TEST_F(DamagedPackage, SettingsOfAnotherSystemAreSaid) {
+    fs::copy_file(folder + "/idr.xml", folder + "/other.xml");
+    Ended const e = catena({"import", "idr/other.xml", "--overwrite"}, here.path());
+    ASSERT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("The settings are those of config.yaml, which is of idr and not of other"),
+              std::string::npos)
+        << e.out;
+}
+
+TEST_F(DamagedPackage, ASystemThatIsEmptyIsNamed) {
+    write(folder + "/idr.xml", "");
+    expect_refused(import(), 2, "the file idr.xml holds no serialised System (idr)");
+}
+
+TEST_F(DamagedPackage, AFrameOfAnotherSystemIsRefusedByItsName) {
+    std::string const top = text_in(folder + "/top.pdb");
+    write(folder + "/checkpoint.pdb", top.substr(0, top.find("ATOM     20")) + "END\n");
+    expect_refused(import(), 2,
+                   "the topology has 19 atoms and the System 34 particles (idr/checkpoint.pdb): "
+                   "name another frame after the folder");
+    EXPECT_EQ(catena({"import", "idr", "top.pdb"}, here.path()).status, 0);
+    replace("restart: checkpoint", "restart: pdb");
+    replace("frestart: restart.chk", "frestart: frame.pdb");
+    fs::remove(folder + "/checkpoint.pdb");
+    expect_note("config.yaml starts from idr/frame.pdb, which is not there.");
+}
+
+}  // namespace
+}  // namespace catena::test
