@@ -1,12 +1,17 @@
 # OpenMM, which has no CMake configuration of its own in Debian and in its Python wheel. Looked for in this order:
 #   1. OPENMM_DIR, a variable or in the environment: a folder with include/, lib/ and lib/plugins/;
-#   2. the `openmm` wheel of a Python: that of VIRTUAL_ENV, of build/venv in the source tree, else python3;
+#   2. the `openmm` wheel of a Python: that of VIRTUAL_ENV, of build/venv in the source tree, else python3; for the Python package that of the
+#      environment it is built for alone;
 #   3. the system.
 # Defines OpenMM::OpenMM, OpenMM_FOUND, OpenMM_VERSION, OpenMM_LIBRARY, OpenMM_INCLUDE_DIR, and OPENMM_MISSING_BECAUSE when a
 # copy is there and cannot be used. A copy counts as found if a program links with it and prints its version.
 
 function(_openmm_wheel result)
-    foreach(python IN ITEMS "$ENV{VIRTUAL_ENV}/bin/python" "${PROJECT_SOURCE_DIR}/build/venv/bin/python" python3)
+    set(pythons "$ENV{VIRTUAL_ENV}/bin/python" "${PROJECT_SOURCE_DIR}/build/venv/bin/python" python3)
+    if(CATENA_HAVE_PYTHON)
+        set(pythons "${Python_EXECUTABLE}")
+    endif()
+    foreach(python IN LISTS pythons)
         execute_process(COMMAND "${python}" -c "import sysconfig; print(sysconfig.get_paths()['platlib'])"
                         OUTPUT_VARIABLE packages OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE status)
         if(status EQUAL 0 AND EXISTS "${packages}/OpenMM.libs/include/OpenMM.h")
