@@ -1,5 +1,12 @@
 // Binds analyses of conformations: sizes of chains, and means with their errors.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "analysis/chain_size.hpp"
 #include "analysis/estimate.hpp"
@@ -13,17 +20,20 @@ namespace {
 /// Positions [frame][site][component] of one chain.
 using Frames = Numbers<3>;
 
-/// Returns a new array of numbers, which Python owns.
-nb::object array_of(std::vector<double> numbers) {
+/// New array of numbers, which Python owns.
+using Values = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+
+/// Returns numbers as an array of Python's.
+Values array_of(std::vector<double> numbers) {
     auto* const kept = new std::vector<double>(std::move(numbers));
     nb::capsule const owner(kept,
                             [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-    return nb::ndarray<nb::numpy, double, nb::ndim<1>>(kept->data(), {kept->size()}, owner).cast();
+    return Values(kept->data(), {kept->size()}, owner);
 }
 
 /// Returns value(sites) of every frame.
 template <class Value>
-nb::object of_frames(Frames const& positions, Value const& value) {
+Values of_frames(Frames const& positions, Value const& value) {
     std::size_t const frames = positions.shape(0), sites = positions.shape(1);
     std::vector<double> values(frames);
     std::vector<Vec3> x(sites);
@@ -47,7 +57,7 @@ void require_sites(Frames const& positions, std::size_t least) {
             Error::Reason::input);
 }
 
-nb::object radius_of_gyration(Frames const& positions, Numbers<1> const& masses) {
+Values radius_of_gyration(Frames const& positions, Numbers<1> const& masses) {
     require_sites(positions, 1);
     std::span<double const> const mass(masses.data(), masses.shape(0));
     if (mass.size() != positions.shape(1))
@@ -62,20 +72,20 @@ nb::object radius_of_gyration(Frames const& positions, Numbers<1> const& masses)
     });
 }
 
-nb::object end_to_end_distance(Frames const& positions) {
+Values end_to_end_distance(Frames const& positions) {
     require_sites(positions, 2);
     return of_frames(positions,
                      [](std::vector<Vec3> const& x) { return norm(x.back() - x.front()); });
 }
 
 /// Returns mean, error, whether it is a plateau, and the error between copies.
-nb::tuple estimate(Numbers<2> const& values) {
+std::tuple<double, double, bool, double> estimate(Numbers<2> const& values) {
     if (values.size() == 0)
         throw Error("there are no values (values): give at least one frame", Error::Reason::input);
     analysis::CopyValues all(values.shape(1));
     for (std::size_t i = 0; i < values.size(); ++i) all.add(values.data()[i]);
     analysis::Estimate const found = all.estimate();
-    return nb::make_tuple(found.mean, found.error, found.plateau, found.between);
+    return {found.mean, found.error, found.plateau, found.between};
 }
 
 }  // namespace

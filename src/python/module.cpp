@@ -30,7 +30,7 @@ void add_errors() {
 
 NB_MODULE(_core, module) {
     module.doc() = "Catena's solver and simulations in C++; use the package catena.";
-    module.attr("__version__") = catena::version().c_str();
+    module.attr("version") = catena::version().c_str();
     module.attr("has_openmm") = CATENA_PYTHON_OPENMM != 0;
     catena::python::add_errors();
     catena::python::add_model(module);

@@ -2,6 +2,7 @@
 """Scenes of the Python package: dicts, texts, files and models chain by chain; their checks and solutions."""
 import csv
 import gc
+import json
 import pathlib
 import unittest
 import warnings
@@ -9,12 +10,8 @@ import warnings
 import package  # first: it leaves where the package is not there
 import catena
 import numpy as np
+from catena.text import value_text
 from package import PENDULUM, Case, scene
-
-try:
-    import yaml
-except ModuleNotFoundError:
-    yaml = None
 
 
 class Scenes(Case):
@@ -27,12 +24,15 @@ class Scenes(Case):
         for other in (text, "pendulum.yaml", pathlib.Path("pendulum.yaml"), built, catena.Model(built)):
             self.assert_same(catena.solve(other).joint_accelerations, first.joint_accelerations)
 
-    @unittest.skipIf(yaml is None, "no PyYAML")
-    def test_dicts_become_text_without_loss(self):
-        values = {"a": [0.1 + 0.2, 1e-300, -0.0, 5e22, 1 / 3], "b": {"text": "it's \"quoted\": #1\n\t\u00e9", "yes": "yes", "n": "1"},
-                  "c": [True, False, None], "d": [[1, 2], [3.5, -4]], "e": []}
-        self.assertEqual(yaml.load(catena.Model({"units": "md", **values}).text, yaml.CSafeLoader if hasattr(yaml, "CSafeLoader") else yaml.SafeLoader),
-                         {"units": "md", **values})
+    def test_values_become_text_without_loss(self):
+        for number in (0.1 + 0.2, 1e-300, -0.0, 5e22, 1 / 3, 2**60 + 1, np.float64(1 / 7), np.float32(0.1)):
+            text = value_text(number, "key")
+            self.assertEqual(repr(type(number)(text)), repr(number))
+        for text in ("it's \"quoted\": #1\n\t\u00e9", "yes", "0.01", "", "- a: b", "null"):
+            self.assertEqual(json.loads(value_text(text, "key")), text)
+        values = {"a": [True, False, None, []], "b c": {"d": (1, 2.5)}, "e": pathlib.Path("f/g"), "h": np.array([[1, 2], [3, 4]])}
+        self.assertEqual("".join(value_text(values, "key").split()),
+                         '{a:[true,false,null,[]],"bc":{d:[1,2.5]},e:"f/g",h:[[1,2],[3,4]]}')
 
     def test_arrays_and_numbers_of_numpy_are_values(self):
         bodies = [dict(body, com=np.array(body["com"]), mass=np.float32(2)) for body in PENDULUM["chains"][0]["bodies"]]

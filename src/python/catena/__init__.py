@@ -23,7 +23,7 @@ from catena.model import Model, check, load
 from catena.simulation import Simulation, State
 from catena.solution import Solution, solve
 
-__version__: str = _core.__version__
+__version__: str = _core.version
 has_openmm: bool = _core.has_openmm
 
 __all__ = [

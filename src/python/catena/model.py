@@ -12,7 +12,7 @@ from catena import _core
 from catena.errors import InputError, Note
 from catena.text import scene_text, value_text
 
-Scene = Union["Model", Mapping[str, Any], str, os.PathLike]
+Scene = Union["Model", Mapping[str, Any], str, os.PathLike[str]]
 
 
 class Model:
@@ -33,7 +33,7 @@ class Model:
             scene = {"units": units or "md"}
         if not isinstance(scene, (Mapping, str, os.PathLike)):
             raise InputError(f"a {type(scene).__name__} is no scene (scene): give a path, a text or a dict")
-        self._scene: Mapping[str, Any] | str | os.PathLike = (
+        self._scene: Mapping[str, Any] | str | os.PathLike[str] = (
             copy.deepcopy(dict(scene)) if isinstance(scene, Mapping) else scene
         )
         self._changes: list[tuple[str, str]] = changes

@@ -145,12 +145,12 @@ class Simulation:
             raise InputError(f"the number of steps is {n} (Simulation.step): give 0 or more")
         if self._steps_inside:
             raise InputError("an observer takes steps of its simulation (Simulation.step): let step() return first")
-        first = self.steps
+        last = self.steps + n
         self._steps_inside = True
         try:
-            while self.steps < first + n:
+            while self.steps < last:
                 self._state = None
-                self._live.run(min(self._next_look(), first + n) - self.steps)
+                self._live.run(min([last, *self._next_looks()]) - self.steps)
                 self._look()
         finally:
             self._steps_inside = False
@@ -242,7 +242,7 @@ class Simulation:
         self._live.restore(checkpoint)
         self._state = None
 
-    def save(self, path: str | os.PathLike) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Writes ``checkpoint()`` to a file, which is replaced as a whole."""
         part = f"{os.fspath(path)}.part"
         with open(part, "wb") as file:
@@ -251,14 +251,14 @@ class Simulation:
             os.fsync(file.fileno())
         os.replace(part, path)
 
-    def load(self, path: str | os.PathLike) -> None:
+    def load(self, path: str | os.PathLike[str]) -> None:
         """Restores the checkpoint of a file that ``save`` wrote."""
         with open(path, "rb") as file:
             self.restore(file.read())
 
-    def _next_look(self) -> float:
-        """Returns the number of the next step that an observer wants."""
-        return min((self.steps - self.steps % every + every for _, every in self._observers), default=float("inf"))
+    def _next_looks(self) -> list[int]:
+        """Returns the number of the next step that each observer wants."""
+        return [self.steps - self.steps % every + every for _, every in self._observers]
 
     def _look(self) -> None:
         for observer, every in list(self._observers):
