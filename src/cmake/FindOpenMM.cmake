@@ -33,6 +33,12 @@ if(NOT _openmm_root)
     _openmm_wheel(_openmm_root)
 endif()
 
+# What was found for another environment is searched for anew.
+if(DEFINED CACHE{_openmm_searched} AND NOT "${_openmm_root}" STREQUAL "${_openmm_searched}")
+    unset(OpenMM_INCLUDE_DIR CACHE)
+    unset(OpenMM_LIBRARY CACHE)
+endif()
+set(_openmm_searched "${_openmm_root}" CACHE INTERNAL "")
 if(_openmm_root)
     find_path(OpenMM_INCLUDE_DIR OpenMM.h PATHS "${_openmm_root}/include" NO_CACHE NO_DEFAULT_PATH)
     find_library(OpenMM_LIBRARY OpenMM PATHS "${_openmm_root}/lib" "${_openmm_root}/lib/${CMAKE_LIBRARY_ARCHITECTURE}" NO_CACHE NO_DEFAULT_PATH)

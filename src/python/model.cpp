@@ -20,6 +20,14 @@ void add_model(nanobind::module_& module) {
                 model.set(key, value);
             },
             nb::arg("key"), nb::arg("value"), "Sets a key to a value in YAML.")
+        .def(
+            "check",
+            [](Model const& model) {
+                static_cast<void>(model.bodies());  // reads the scene while no other thread can
+                nb::gil_scoped_release const free;
+                return model.check();
+            },
+            "Checks what can be checked without a step; returns the notes.")
         .def_prop_ro("bodies", &Model::bodies, "Number of bodies and beads.")
         .def_prop_ro("notes", &Model::notes, "What the reader assumed, changed or left out.");
 }

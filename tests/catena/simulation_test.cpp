@@ -104,6 +104,9 @@ TEST(Simulation, RefusesAStepThatItsSpringsLeaveUnstable) {
     joint.stiffness = {1e8};
     Model const model = model_of(rods(joint, 3), "rk4", 0.01);
     EXPECT_NE(message_of([&] { Simulation{model}; }).find("dynamics.step"), std::string::npos);
+    EXPECT_NE(message_of([&] { static_cast<void>(model.check()); }).find("dynamics.step"),
+              std::string::npos);
+    EXPECT_EQ(message_of([] { pendulum().check(); }), "");
 }
 
 TEST(Simulation, KnowsTheTemperatureWhereThereIsOne) {

@@ -60,6 +60,11 @@ class Scenes(Case):
             catena.load(scene("pendulum.yaml")).add("more")
         with self.assertRaisesRegex(catena.InputError, "no dynamics section"):
             catena.Simulation({key: value for key, value in PENDULUM.items() if key != "dynamics"})
+        stiff = catena.Model(PENDULUM)
+        for body in range(2):
+            stiff.set(f"chains[0].bodies[{body}].joint.stiffness", 1e9)
+        with self.assertRaisesRegex(catena.InputError, "dynamics.step"):
+            catena.check(stiff)
         if self.program:
             pathlib.Path("wrong.yaml").write_text(catena.Model(wrong).text, encoding="utf-8")
             with self.assertRaises(catena.InputError) as caught:

@@ -109,12 +109,12 @@ def load(scene: Scene) -> Model:
 
 
 def check(scene: Scene) -> list[str]:
-    """Reads a scene and returns its notes: what the reader assumed, changed or left out.
+    """Checks a scene and returns its notes: what the reader assumed, changed or left out, and steps near a limit.
 
-    Raises InputError with the program's words if the scene is wrong. Whether a run can begin is seen when a
-    ``Simulation`` is made: forces of OpenMM at the start, and a time step too long for the scene's springs.
+    Raises InputError with the program's words if the scene is wrong, if beads coincide, or if the time step is too
+    long for the scene's springs. Forces of OpenMM are evaluated when a ``Simulation`` is made.
     """
-    return model_of(scene).notes
+    return model_of(scene)._core().check()
 
 
 def model_of(scene: Scene) -> Model:
