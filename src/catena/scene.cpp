@@ -8,8 +8,10 @@
 #include "catena/chain_text.hpp"
 #include "catena/content.hpp"
 #include "catena/version.hpp"
+#include "integrate/step_limit.hpp"
 #include "reader/load_scene.hpp"
 #include "scene/files.hpp"
+#include "start/start_check.hpp"
 
 namespace catena {
 
@@ -75,6 +77,18 @@ std::int64_t Model::bodies() const {
 }
 std::vector<std::string> Model::notes() const {
     return with_public_errors([&] { return content_->scene().notes; });
+}
+
+std::vector<std::string> Model::check() const {
+    return with_public_errors([&] {
+        auto const alone = serial_communicator();
+        Scene scene = content_->scene();
+        choose_backend(scene, *alone);
+        if (!scene.relax) refuse_coinciding(scene, *alone);
+        if (std::string const note = note_of_step(scene, estimate_step_limit(scene)); !note.empty())
+            scene.note(note);
+        return scene.notes;
+    });
 }
 
 std::string version() { return CATENA_VERSION; }

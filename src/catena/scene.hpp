@@ -104,6 +104,10 @@ class Model {
     std::int64_t bodies() const;
     /// Returns one sentence each on what the reader assumed, changed or left out.
     std::vector<std::string> notes() const;
+    /// Checks what can be checked without a step: the scene, the backend, beads that coincide, and
+    /// the time step where joints have springs. Returns notes() and a note on a step near the
+    /// limit. Throws Error as `catena check` does. Simulation evaluates the forces of OpenMM.
+    std::vector<std::string> check() const;
 
     /// Text and scene behind a model; for Catena's own sources.
     class Content;

@@ -130,6 +130,22 @@ endif()
 catena_settle(GEMMI IN "${version}, zlib ${ZLIB_VERSION_STRING}" DEBIAN "gemmi-dev tao-pegtl-dev zlib1g-dev"
               LEFT_OUT "no mmCIF, no compressed structures")
 
+# Before OpenMM, whose copy in the Python environment the package uses.
+option(CATENA_WITH_PYTHON "The Python package (src/python)" OFF)
+set(CATENA_HAVE_PYTHON OFF)
+set(because "")
+if(CATENA_WITH_PYTHON)
+    find_package(Python 3.10 COMPONENTS Interpreter Development.Module QUIET)
+    if(Python_FOUND)
+        execute_process(COMMAND "${Python_EXECUTABLE}" -m nanobind --cmake_dir OUTPUT_VARIABLE nanobind_ROOT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+        find_package(nanobind CONFIG QUIET)
+        set(CATENA_HAVE_PYTHON ${nanobind_FOUND})
+        set(because "nanobind is to be installed for ${Python_EXECUTABLE}.")
+    endif()
+endif()
+catena_settle(PYTHON IN "Python ${Python_VERSION}, nanobind ${nanobind_VERSION}" DEBIAN "python3-dev, from PyPI nanobind"
+              LEFT_OUT "no Python package" BECAUSE "${because}")
+
 catena_switch(OPENMM "Forces of OpenMM")
 if(catena_wanted)
     find_package(OpenMM QUIET)

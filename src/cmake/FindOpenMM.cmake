@@ -1,12 +1,17 @@
 # OpenMM, which has no CMake configuration of its own in Debian and in its Python wheel. Looked for in this order:
 #   1. OPENMM_DIR, a variable or in the environment: a folder with include/, lib/ and lib/plugins/;
-#   2. the `openmm` wheel of a Python: that of VIRTUAL_ENV, of build/venv in the source tree, else python3;
+#   2. the `openmm` wheel of a Python: that of VIRTUAL_ENV, of build/venv in the source tree, else python3; for the Python package that of the
+#      environment it is built for alone;
 #   3. the system.
 # Defines OpenMM::OpenMM, OpenMM_FOUND, OpenMM_VERSION, OpenMM_LIBRARY, OpenMM_INCLUDE_DIR, and OPENMM_MISSING_BECAUSE when a
 # copy is there and cannot be used. A copy counts as found if a program links with it and prints its version.
 
 function(_openmm_wheel result)
-    foreach(python IN ITEMS "$ENV{VIRTUAL_ENV}/bin/python" "${PROJECT_SOURCE_DIR}/build/venv/bin/python" python3)
+    set(pythons "$ENV{VIRTUAL_ENV}/bin/python" "${PROJECT_SOURCE_DIR}/build/venv/bin/python" python3)
+    if(CATENA_HAVE_PYTHON)
+        set(pythons "${Python_EXECUTABLE}")
+    endif()
+    foreach(python IN LISTS pythons)
         execute_process(COMMAND "${python}" -c "import sysconfig; print(sysconfig.get_paths()['platlib'])"
                         OUTPUT_VARIABLE packages OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE status)
         if(status EQUAL 0 AND EXISTS "${packages}/OpenMM.libs/include/OpenMM.h")
@@ -28,6 +33,12 @@ if(NOT _openmm_root)
     _openmm_wheel(_openmm_root)
 endif()
 
+# What was found for another environment is searched for anew.
+if(DEFINED CACHE{_openmm_searched} AND NOT "${_openmm_root}" STREQUAL "${_openmm_searched}")
+    unset(OpenMM_INCLUDE_DIR CACHE)
+    unset(OpenMM_LIBRARY CACHE)
+endif()
+set(_openmm_searched "${_openmm_root}" CACHE INTERNAL "")
 if(_openmm_root)
     find_path(OpenMM_INCLUDE_DIR OpenMM.h PATHS "${_openmm_root}/include" NO_CACHE NO_DEFAULT_PATH)
     find_library(OpenMM_LIBRARY OpenMM PATHS "${_openmm_root}/lib" "${_openmm_root}/lib/${CMAKE_LIBRARY_ARCHITECTURE}" NO_CACHE NO_DEFAULT_PATH)

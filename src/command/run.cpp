@@ -11,8 +11,7 @@
 #include "command/run_text.hpp"
 #include "command/stop_signals.hpp"
 #include "integrate/joint_integrators.hpp"
-#include "integrate/step_limit.hpp"
-#include "measure/forward_error.hpp"
+#include "measure/run_start.hpp"
 #include "page/run_facts.hpp"
 #include "plan/choice.hpp"
 #include "plan/host_memory.hpp"
@@ -44,36 +43,11 @@ std::string complaint_of(Json const& s, bool whole) {
                        s.at("files").at("checkpoint.h5").get<std::string>());
 }
 
-/// Estimates the error of the first accelerations. Refines articulated handles if they need it. For
-/// other handles, and if refinement is impossible, a note states the possible error. Collective.
-void look_at_forward_error(Scene& scene, Communicator const& communicator) {
-    if (!scene.dynamics.given) return;
-    std::optional<double> const error = forward_error_at_start(scene, communicator);
-    bool const refinable = is_refined(scene.dynamics.integrator);
-    bool const few = scene.bodies() <= most_estimated_of_run;
-    bool const unasked = refinable && few && scene.solver.handles == Handles::articulated &&
-                         scene.solver.refine == 0;
-    if (!error || *error <= (unasked ? refined_beyond : largest_forward_error)) return;
-    std::string const found = fmt::format(
-        "the first accelerations may have errors of {:.1e}, relative to the largest", *error);
-    if (unasked) {
-        scene.solver.refine = 2;
-        return scene.note(found + ": every solution is refined by two steps (solver.refine)");
-    }
-    std::string const remedy = remedy_of_forward_error(
-        scene, refinable,
-        {scene.solver.refine < 2 ? "solver.refine: 2" : "a larger solver.refine",
-         "solver.handles: articulated"});
-    scene.note(found + (remedy.empty() ? "" : ": use " + remedy));
-}
-
 }  // namespace
 
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     StopSignals const signals;
-    look_at_forward_error(given, communicator);
-    if (std::string const note = note_of_step(given, estimate_step_limit(given)); !note.empty())
-        given.note(note);
+    look_before_run(given, communicator);
     if (auto const lacking = lacking_memory(given, communicator)) given.note(lacking->note());
     for (std::string const& note : given.notes) spdlog::warn("{}", note);
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator)

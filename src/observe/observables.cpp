@@ -15,6 +15,18 @@ std::int64_t degrees_of_freedom(Scene const& scene) {
     return dof;
 }
 
+bool has_temperature(Scene const& scene) {
+    bool const is_driven = std::any_of(scene.chains.begin(), scene.chains.end(),
+                                       [](auto const& c) { return !c.bodies.driven.empty(); });
+    // Rotors of implicit springs hold kinetic energy that frames lack.
+    bool const has_rotors = scene.dynamics.given && is_implicit(scene.dynamics.integrator);
+    return !is_driven && !has_rotors && degrees_of_freedom(scene) > 0;
+}
+
+double temperature_of(Scene const& scene, std::int64_t dof, double kinetic_energy) {
+    return 2.0 * kinetic_energy / (scene.boltzmann() * static_cast<double>(dof));
+}
+
 void KineticEnergy::add(ChainSystem::Snapshot const& s) {
     for (std::size_t i = 0; i < s.velocity.size(); ++i, ++body_) {
         for (; body_ == scene_->chains[chain_].size(); body_ = 0) ++chain_;
@@ -84,12 +96,11 @@ bool has_energies(Scene const& scene) { return asks_for(scene, "energy"); }
 
 Observables::Observables(Scene const& scene, Topology const& topology,
                          std::vector<EnergyTerm> const& terms)
-    : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)), kinetic_(scene) {
-    for (ChainSpec const& chain : scene.chains)
-        has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
-    // Rotors of implicit springs hold kinetic energy that frames lack, so there is no temperature.
-    has_temperature_ = has_temperature_ && dof_ > 0 &&
-                       !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
+    : has_temperature_(has_temperature(scene)),
+      scene_(scene),
+      topology_(topology),
+      dof_(degrees_of_freedom(scene)),
+      kinetic_(scene) {
     std::string const energy = scene.si ? " [J]" : " [kJ/mol]",
                       length = scene.si ? " [m]" : " [nm]";
     if (wants("energy")) {
@@ -152,8 +163,7 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms,
         }
         row.insert(row.end(), {potential, kinetic, potential + kinetic});
     }
-    if (wants("temperature"))
-        row.push_back(2.0 * kinetic / (scene_.boltzmann() * static_cast<double>(dof_)));
+    if (wants("temperature")) row.push_back(temperature_of(scene_, dof_, kinetic));
     if (wants("constraint_error")) row.push_back(constraint_error);
     for (auto const& [name, value] : shape_columns) {
         if (!wants(name)) continue;

@@ -12,6 +12,12 @@ namespace catena {
 /// Number of degrees of freedom of all chains (scene/freedom.hpp).
 std::int64_t degrees_of_freedom(Scene const&);
 
+/// True if the kinetic energy of frames has a temperature. There is none if nothing moves freely,
+/// if motions are prescribed, and for implicit integrators, whose rotors hold energy of their own.
+bool has_temperature(Scene const&);
+/// Returns the temperature of a kinetic energy of `dof` degrees of freedom, K.
+double temperature_of(Scene const&, std::int64_t dof, double kinetic_energy);
+
 /// Returns the kinetic energy of all bodies, kJ/mol (J with `units: si`). `snapshot` in scene
 /// order.
 double kinetic_energy(Scene const&, ChainSystem::Snapshot const&);
@@ -73,7 +79,7 @@ class Observables {
   private:
     /// True if the group of columns is selected and defined.
     bool wants(std::string const& name) const;
-    bool has_temperature_ = true;  // false if nothing moves freely or motions are prescribed
+    bool has_temperature_;
     Scene const& scene_;
     Topology const& topology_;
     std::int64_t dof_;  // degrees of freedom

@@ -1,0 +1,17 @@
+"""Exceptions of Catena, with the words of the program."""
+
+
+class Error(Exception):
+    """Base of all errors of Catena: one line that says what is wrong, where, and what to do."""
+
+
+class InputError(Error, ValueError):
+    """The input is wrong: a scene, a value or an argument. The program would exit with status 2."""
+
+
+class ComputationError(Error, RuntimeError):
+    """The computation failed although its input was acceptable. The program would exit with status 1."""
+
+
+class Note(UserWarning):
+    """Warning about what Catena assumed, changed or left out when it read a scene."""

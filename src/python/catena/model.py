@@ -1,0 +1,132 @@
+"""Scenes: files, texts, dicts, and models that are built chain by chain."""
+
+from __future__ import annotations
+
+import copy
+import os
+import warnings
+from collections.abc import Mapping
+from typing import Any, Union
+
+from catena import _core
+from catena.errors import InputError, Note
+from catena.text import scene_text, value_text
+
+Scene = Union["Model", Mapping[str, Any], str, os.PathLike[str]]
+
+
+class Model:
+    """A scene in memory. It is read and checked when it is used.
+
+    ``Model("scene.yaml")`` and ``Model(path)`` read a file, ``Model({...})`` takes the keys of a scene as a dict, and
+    ``Model(units="si")`` begins an empty scene for ``add``. A text with line breaks is the text of a scene file.
+    Keys, defaults and units are those of scene files.
+    """
+
+    def __init__(self, scene: Scene | None = None, *, units: str | None = None) -> None:
+        changes = list(scene._changes) if isinstance(scene, Model) else []
+        if isinstance(scene, Model):
+            scene = scene._scene
+        if units is not None and scene is not None:
+            raise InputError("units are given beside a scene (units): write them into the scene")
+        if scene is None:
+            scene = {"units": units or "md"}
+        if not isinstance(scene, (Mapping, str, os.PathLike)):
+            raise InputError(f"a {type(scene).__name__} is no scene (scene): give a path, a text or a dict")
+        self._scene: Mapping[str, Any] | str | os.PathLike[str] = (
+            copy.deepcopy(dict(scene)) if isinstance(scene, Mapping) else scene
+        )
+        self._changes: list[tuple[str, str]] = changes
+        self._read: _core.Model | None = None
+        if not isinstance(scene, Mapping):
+            self._core()  # a file that cannot be read is said at once
+
+    def add(self, name: str | None = None, **keys: Any) -> Model:
+        """Adds a chain with the keys of an entry of ``chains``, such as ``bodies``, ``beads`` or ``sequence``.
+
+        Returns the model, so that calls can be chained. Raises InputError if the scene is a file or a text.
+        """
+        if not isinstance(self._scene, dict):
+            raise InputError("chains cannot be added to the text of a scene (Model.add): begin with a dict or units")
+        if name is not None:
+            keys = {"name": name, **keys}
+        chains = self._scene.setdefault("chains", [])
+        if not isinstance(chains, list):
+            raise InputError("the chains of the scene are no list (chains): give a list of dicts")
+        chains.append(copy.deepcopy(keys))
+        self._read = None
+        return self
+
+    def set(self, key: str, value: Any) -> Model:
+        """Sets a key of the scene, such as ``set("dynamics.step", 0.01)`` or ``set("chains[0].count", 10)``.
+
+        The value is a number, a text, a list or a dict. Returns the model. A wrong key is said when the model is used.
+        """
+        self._changes.append((key, value_text(value, key)))
+        self._read = None
+        return self
+
+    @property
+    def bodies(self) -> int:
+        """Number of bodies and beads. Raises InputError if the scene is wrong."""
+        return self._core().bodies
+
+    @property
+    def notes(self) -> list[str]:
+        """One sentence each on what the reader assumed, changed or left out. Raises InputError if the scene is wrong."""
+        return self._core().notes
+
+    @property
+    def text(self) -> str:
+        """Text of the scene before the changes of ``set``, as a scene file has it."""
+        if isinstance(self._scene, Mapping):
+            return scene_text(self._scene)
+        if _is_text(self._scene):
+            return str(self._scene)
+        with open(self._scene, encoding="utf-8") as file:
+            return file.read()
+
+    def _core(self) -> _core.Model:
+        """Returns the model in C++ with all changes; it is made once."""
+        if self._read is None:
+            if isinstance(self._scene, Mapping) or _is_text(self._scene):
+                read = _core.Model.from_text(self.text)
+            else:
+                read = _core.Model.from_file(os.fspath(self._scene))
+            for key, value in self._changes:
+                read.set(key, value)
+            self._read = read
+        return self._read
+
+
+def load(scene: Scene) -> Model:
+    """Returns the model of a scene: a path, the text of a scene file, or a dict with its keys.
+
+    Relative paths in a file are relative to its folder, in texts and dicts to the working folder.
+    Raises InputError if a file cannot be read. The scene itself is checked when the model is used.
+    """
+    return Model(scene)
+
+
+def check(scene: Scene) -> list[str]:
+    """Checks a scene and returns its notes: what the reader assumed, changed or left out, and steps near a limit.
+
+    Raises InputError with the program's words if the scene is wrong, if beads coincide, or if the time step is too
+    long for the scene's springs. Forces of OpenMM are evaluated when a ``Simulation`` is made.
+    """
+    return model_of(scene)._core().check()
+
+
+def model_of(scene: Scene) -> Model:
+    """Returns the model itself, or that of a path, text or dict."""
+    return scene if isinstance(scene, Model) else Model(scene)
+
+
+def say(notes: list[str], stack: int = 3) -> None:
+    """Warns of each note, at the line that called the package."""
+    for note in notes:
+        warnings.warn(note, Note, stacklevel=stack)
+
+
+def _is_text(scene: Any) -> bool:
+    return isinstance(scene, str) and "\n" in scene

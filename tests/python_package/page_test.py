@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+"""The programs of the package's page (src/python/README.md) run, one after the other, and print what they should."""
+import contextlib
+import io
+import os
+import re
+import unittest
+
+import package  # first: it leaves where the package is not there
+import catena
+from package import INPUTS, Case
+
+ROOT = os.path.dirname(INPUTS)
+
+
+class Page(Case):
+    def test_its_programs_run(self):
+        with open(os.path.join(ROOT, "src", "python", "README.md"), encoding="utf-8") as file:
+            programs = re.findall(r"```python\n(.*?)```", file.read(), re.S)
+        self.assertGreaterEqual(len(programs), 4)
+        names, said, here = {}, io.StringIO(), os.getcwd()
+        os.chdir(ROOT)
+        try:
+            for program in programs:
+                if "alpha-synuclein" in program and not catena.has_openmm:
+                    continue
+                with contextlib.redirect_stdout(said):
+                    exec(compile(program, "README.md", "exec"), names)
+        finally:
+            os.chdir(here)
+        self.assertIn("[ 10. -10.] [ 0.  0. 10.] True", said.getvalue())
+        self.assertAlmostEqual(names["pulled"].total_energy, 5, delta=1e-6)
+
+
+if __name__ == "__main__":
+    package.main()
