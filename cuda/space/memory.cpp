@@ -19,6 +19,8 @@ namespace {
 
 using namespace dca;
 
+static_assert(SolverSpace<MemoryEstimator>);
+
 /// Calls use(Of<Leaf>) with one leaf type per number of directions. For floating runs the tree's
 /// memory depends on the number of directions only, so that one leaf type represents all.
 template <class Use>

@@ -1,7 +1,6 @@
-// Asserts that the leaves, the sweeps and the Spaces of the host have what their concepts require.
+// Asserts that the leaves, the sweeps and the Space of the host have what their concepts require.
 #include "dca/contracts.hpp"
 
-#include "cuda/space/memory_estimator.hpp"
 #include "dca/articulated_sweeps.hpp"
 #include "dca/fused_sweep.hpp"
 
@@ -28,7 +27,7 @@ static_assert(OutwardSweep<Fused<BodyLeaf<3, GroundFrames<3>>>> &&
               OutwardSweep<Fused<JointLeaf<2>>> && OutwardSweep<Fused<JointLeaf<5, true>>>);
 static_assert(WholeRunSweep<Fused<JointLeaf<5>>>);
 
-static_assert(SolverSpace<HostSpace> && SolverSpace<cuda::MemoryEstimator>);
+static_assert(SolverSpace<HostSpace>);
 
 }  // namespace
 }  // namespace catena::dca

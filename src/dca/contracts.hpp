@@ -1,5 +1,6 @@
 // What the solver's templates require of their arguments, as concepts: leaves, sweeps and Spaces.
-// contracts.cpp and cuda/space/contracts.cu assert that every type that claims one has it.
+// contracts.cpp, cuda/space/memory.cpp and cuda/space/contracts.cu assert that every type that
+// claims one has it.
 #pragma once
 
 #include <concepts>
