@@ -19,17 +19,20 @@ namespace {
 struct Found {
     std::vector<std::string> openmm;
     StartReport start;
+    /// True if there was no memory to look at the start.
+    bool skipped = false;
 };
 
-/// Relaxes the start if the scene asks for it and evaluates OpenMM's forces once, if they find room
-/// in memory. Collective.
-Found find(Scene const& scene, Communicator const& communicator, bool too_large) {
+/// Relaxes the start if the scene asks for it and evaluates OpenMM's forces once, unless both are
+/// skipped. Collective.
+Found find(Scene const& scene, Communicator const& communicator, bool skipped) {
     std::optional<RelaxedScene> relaxed;
-    if (!too_large) relaxed = relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
+    if (!skipped) relaxed = relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
     Found found;
+    found.skipped = skipped;
     found.start.change = scene.start;
     if (relaxed) found.start.relaxation = relaxed->relaxation;
-    if (!scene.forces.openmm || too_large) return found;
+    if (!scene.forces.openmm || skipped) return found;
     if (!relaxed) refuse_coinciding(scene, communicator);
     ChainSystem system(relaxed ? relaxed->scene : scene, Axes::joint, communicator);
     found.openmm = system.openmm()->description();
@@ -128,7 +131,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
                     bytes_text(memory.scene), bytes_text(memory.state), bytes_text(memory.solver),
                     scene.forces.openmm ? "; without OpenMM" : ""));
     for (std::string const& note : notes_on(scene, limit)) text.note(note);
-    text.heading("The scene is valid.");
+    text.heading(found.skipped ? "The scene is valid as far as it was checked."
+                               : "The scene is valid.");
     return text;
 }
 
@@ -137,11 +141,13 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
 Outcome check_scene(Scene scene, Communicator const& communicator, bool json) {
     choose_backend(scene, communicator);  // throws for those of later versions
     auto const lacking = lacking_memory(scene, communicator);
-    bool const too_large = communicator.max(lacking ? 1 : 0) > 0;
-    if (lacking)
-        scene.note(lacking->note() +
-                   (scene.forces.openmm ? "; its forces were not evaluated here" : ""));
-    Found const found = find(scene, communicator, too_large);
+    if (lacking) scene.note(lacking->note());
+    bool const skipped = lacking && scene.forces.openmm;
+    if (skipped)
+        scene.note(
+            "for lack of memory the start was neither relaxed nor looked at, and the forces were "
+            "not evaluated.");
+    Found const found = find(scene, communicator, skipped);
     Memory const memory = memory_of(scene, communicator.size());
     std::optional<StepLimit> const limit = estimate_step_limit(scene);
     Outcome outcome;

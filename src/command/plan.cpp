@@ -292,9 +292,10 @@ void add_left_out(Text& text, Json& json, ChainSystem const& system, PlanRequest
 }
 
 /// Adds the notes on the scene, and on memory that this host lacks.
-void add_notes(Text& text, Json& json, Scene const& scene, Communicator const& communicator) {
+void add_notes(Text& text, Json& json, Scene const& scene,
+               std::optional<HostMemory> const& lacking) {
     std::vector<std::string> notes = notes_on(scene, estimate_step_limit(scene));
-    if (auto const lacking = lacking_memory(scene, communicator)) notes.push_back(lacking->note());
+    if (lacking) notes.push_back(lacking->note());
     json["notes"] = Json::array();
     for (std::string const& note : notes) {
         json["notes"].push_back(note);
@@ -305,6 +306,7 @@ void add_notes(Text& text, Json& json, Scene const& scene, Communicator const& c
 /// Returns the plan for the chosen backend. Collective.
 Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator,
                     PlanRequest const& request, Predictions predictions) {
+    auto const lacking = lacking_memory(scene, communicator);
     ChainSystem const system(scene, axes, communicator, implicit_step_of(scene));
     predictions.choice.arrangement = {system.backend(), system.executor().threads()};
     std::vector<SolverReport> const reports = system.solver_reports();
@@ -321,7 +323,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     add_output(text, json, scene);
     add_left_out(text, json, system, request);
     if (communicator.rank() == 0) add_predictions(text, json, predictions);
-    add_notes(text, json, scene, communicator);
+    add_notes(text, json, scene, lacking);
     if (request.measure) {
         plan::PhaseSeconds const measured = measure(scene, axes, communicator);
         if (communicator.rank() == 0) add_measured(text, json, predictions, measured);

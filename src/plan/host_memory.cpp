@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "console/text.hpp"
+#include "cuda/device/gpu.hpp"
+#include "mpi/collectives.hpp"
 #include "plan/describe.hpp"
 
 namespace catena::command {
@@ -60,13 +62,23 @@ double free_in_groups(std::string const& root) {
     return least;
 }
 
-/// Returns what `ulimit -v` allows beyond the address space that is taken.
-double free_in_limit(std::string const& root) {
+/// Returns what `ulimit -v` allows this process beyond the address space that it has taken.
+double free_in_limit() {
     rlimit limit{};
     if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
         return std::numeric_limits<double>::infinity();
-    double const taken = 1024 * number_in(root + "proc/self/status", "VmSize:").value_or(0);
+    double const taken = 1024 * number_in("/proc/self/status", "VmSize:").value_or(0);
     return std::max(0.0, static_cast<double>(limit.rlim_cur) - taken);
+}
+
+/// True if the chains are, or may be, computed on a GPU.
+bool may_use_gpu(Backend backend) {
+    return uses_gpu(backend) || (backend == Backend::automatic && cuda::why_not().empty());
+}
+
+/// Returns the one that lacks more.
+HostMemory worse(HostMemory const& a, HostMemory const& b) {
+    return b.needed * a.free > a.needed * b.free ? b : a;
 }
 
 }  // namespace
@@ -74,27 +86,30 @@ double free_in_limit(std::string const& root) {
 std::optional<double> free_host_memory(std::string const& root) {
     auto const available = number_in(root + "proc/meminfo", "MemAvailable:");
     if (!available) return std::nullopt;
-    return std::min({1024 * *available, free_in_groups(root), free_in_limit(root)});
+    return std::min(1024 * *available, free_in_groups(root));
 }
 
 std::string HostMemory::note() const {
     return fmt::format(
-        "a run needs at least {} of memory on this host, {} are free: the system may "
-        "end it without a word; take more hosts or fewer chains",
+        "a run needs at least {} of memory on a host, {} are free: the system may "
+        "kill it without a message; take more hosts or fewer chains",
         bytes_text(needed), bytes_text(free));
 }
 
 std::optional<HostMemory> lacking_memory(Scene const& scene, Communicator const& communicator) {
-    auto const free = free_host_memory();
-    if (!free) return std::nullopt;
     // The scene itself has been read: it is no longer part of what is free.
     Memory const memory = memory_of(scene, communicator.size());
     double const forces = scene.forces.openmm ? openmm_bytes * static_cast<double>(scene.bodies()) /
                                                     communicator.size()
-                                              : 0;
-    double const needed = communicator.ranks_on_host() * (memory.state + memory.solver + forces);
-    if (needed <= *free) return std::nullopt;
-    return HostMemory{needed, *free};
+                                              : 0,
+                 of_rank = memory.state + memory.solver + forces;
+    HostMemory own{0, 1};
+    if (auto const free = free_host_memory(); free && !may_use_gpu(scene.solver.backend))
+        own = worse({of_rank * communicator.ranks_on_host(), *free}, {of_rank, free_in_limit()});
+    HostMemory worst = own;
+    for (HostMemory const& each : all_gathered(communicator, own)) worst = worse(worst, each);
+    if (worst.needed <= worst.free) return std::nullopt;
+    return worst;
 }
 
 }  // namespace catena::command

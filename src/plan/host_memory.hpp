@@ -1,4 +1,4 @@
-// Compares the memory that a scene needs with what this host has free.
+// Compares the memory that a scene needs with what the hosts of its ranks have free.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,23 @@
 
 namespace catena::command {
 
-/// Returns the bytes that processes of this host may still take: those that the kernel calls
-/// available, or fewer if a control group or `ulimit -v` allows less. Returns nothing if the
-/// system does not say. `root` is the folder that holds proc and sys.
+/// Returns the bytes that all processes of this host together may still take: those that the kernel
+/// calls available, or fewer if a control group allows less (version 2 of control groups). Returns
+/// nothing if the system does not say. `root` is the folder that holds proc and sys.
 std::optional<double> free_host_memory(std::string const& root = "/");
 
-/// Memory of all ranks of this host, in bytes.
+/// Memory of a host or of a process, in bytes.
 struct HostMemory {
-    /// Least that the scene needs, OpenMM's forces included, and what is free.
+    /// Least that a run needs, OpenMM's forces included, and what is free.
     double needed = 0, free = 0;
     /// Returns the remark on it, with what to do.
     std::string note() const;
 };
 
-/// Returns both if the scene needs more than is free; nothing otherwise, or if the system does not
-/// say what is free.
+/// Returns the memory of the host or process that lacks most, if one lacks any; the same on every
+/// rank. A process may be limited by `ulimit -v`. Returns nothing if the chains are computed on
+/// GPUs, whose memory is checked when they are set up, or if the system does not say what is free.
+/// Collective.
 std::optional<HostMemory> lacking_memory(Scene const&, Communicator const&);
 
 }  // namespace catena::command

@@ -2,6 +2,7 @@
 // that need more.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -61,7 +62,8 @@ class AddressSpace {
         std::ifstream file("/proc/self/statm");
         rlim_t pages = 0;
         file >> pages;
-        rlimit const less{pages * 4096 + bytes, before_.rlim_max};
+        auto const page = static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+        rlimit const less{pages * page + bytes, before_.rlim_max};
         ::setrlimit(RLIMIT_AS, &less);
     }
     ~AddressSpace() { ::setrlimit(RLIMIT_AS, &before_); }
@@ -76,7 +78,7 @@ TEST(LackingMemory, IsSaidWithBothNumbersIfTheScenesArraysFindNoRoom) {
     auto const alone = serial_communicator();
     auto const scene_of = [](std::string const& beads) {
         return parse_scene("chains: [{generator: {freely_jointed: {beads: " + beads +
-                               ", length: 0.38, mass: 100}}}]\n",
+                               ", length: 0.38, mass: 100}}}]\nsolver: {backend: segments}\n",
                            "scene.yaml", {});
     };
     Scene const small = scene_of("100"), large = scene_of("300000");
