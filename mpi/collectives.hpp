@@ -83,7 +83,8 @@ struct RankBlocks {
     std::vector<T> values;
     std::vector<std::int64_t> counts;
 
-    /// Calls action(span of the values of a rank) for every rank, in rank order.
+    /// Calls action(span of the values of a rank) for every rank, in rank order. Precondition: this
+    /// rank has the values.
     template <class Action>
     void each(Action const& action) const {
         std::size_t begin = 0;

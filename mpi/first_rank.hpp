@@ -1,7 +1,6 @@
 // Actions on rank 0 or on every rank whose failure is reported on all ranks.
 #pragma once
 
-#include <new>
 #include <string>
 
 #include "error.hpp"
@@ -15,27 +14,23 @@ class SharedError : public ComputationError {
     using ComputationError::ComputationError;
 };
 
-/// Runs `action`. Returns an empty text, or 'i' (InputError), 'm' (no memory) or 'e' (any other
-/// exception) followed by the exception's text. Local.
+/// Runs `action`. Returns an empty text, or 'i' (InputError) or 'e' (any other exception) followed
+/// by the exception's text. Local.
 template <class Action>
 std::string failure_of(Action const& action) {
     try {
         action();
     } catch (InputError const& error) {
         return 'i' + std::string(error.what());
-    } catch (std::bad_alloc const& error) {
-        return 'm' + std::string(error.what());
     } catch (std::exception const& error) {
         return 'e' + std::string(error.what());
     }
     return "";
 }
-/// Throws what failure_of() returned: InputError and std::bad_alloc as themselves, all others as
-/// SharedError.
+/// Throws what failure_of() returned: InputError as InputError, all others as SharedError.
 inline void throw_failure(std::string const& failure) {
     if (failure.empty()) return;
     if (failure.front() == 'i') throw InputError(failure.substr(1));
-    if (failure.front() == 'm') throw std::bad_alloc();
     throw SharedError(failure.substr(1));
 }
 

@@ -87,7 +87,7 @@ std::string why_not_together(Communicator const& communicator,
                              std::initializer_list<std::function<void()>> steps) {
     try {
         for (auto const& step : steps) on_every_rank(communicator, step);
-    } catch (std::runtime_error const& error) {  // of every rank
+    } catch (std::runtime_error const& error) {
         return error.what();
     }
     return "";

@@ -339,6 +339,54 @@ TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
     }
 }
 
+TEST(EveryRank, WrongInputOfTheLastRankIsWrongInputOnAll) {
+    std::string thrown;
+    try {
+        on_every_rank(world(), [] {
+            if (world().rank() == world().size() - 1) throw InputError("bad (file): mend it");
+        });
+    } catch (InputError const& error) {
+        thrown = error.what();
+    }
+    EXPECT_EQ(thrown, "bad (file): mend it");
+}
+
+/// Rank r contributes r + 1 values, and rank 1 none.
+TEST(Collectives, BlocksOfAnyLengthComeInRankOrder) {
+    auto const block_of = [](int rank) {
+        return std::vector<int>(rank == 1 ? 0 : static_cast<std::size_t>(rank) + 1, 10 * rank);
+    };
+    std::vector<int> all;
+    for (int rank = 0; rank < world().size(); ++rank)
+        for (int const value : block_of(rank)) all.push_back(value);
+    auto const own = block_of(world().rank());
+    EXPECT_EQ(all_gathered_blocks(world(), own).values, all);
+    auto const at_first = gathered_blocks(world(), own);
+    EXPECT_EQ(at_first.values, world().rank() == 0 ? all : std::vector<int>{});
+    std::vector<std::vector<int>> blocks;
+    if (world().rank() == 0)
+        at_first.each([&](std::span<int const> b) { blocks.emplace_back(b.begin(), b.end()); });
+    for (std::size_t rank = 0; rank < blocks.size(); ++rank)
+        EXPECT_EQ(blocks[rank], block_of(static_cast<int>(rank)));
+}
+
+TEST(Collectives, TextsOfRankZeroTakeTheirLengthAlong) {
+    for (std::string const& sent : {std::string("of rank zero"), std::string()}) {
+        std::string text = world().rank() == 0 ? sent : "something much longer than that";
+        broadcast(world(), text);
+        EXPECT_EQ(text, sent);
+    }
+}
+
+TEST(Collectives, TheFirstTextIsThatOfTheFirstRankThatHasOne) {
+    int const first = world().size() / 2;
+    std::string const own = world().rank() < first ? "" : std::string(5, 'a' + world().rank());
+    RankText const found = first_text(world(), own);
+    EXPECT_EQ(found.rank, first);
+    EXPECT_EQ(found.text, std::string(5, 'a' + first));
+    EXPECT_EQ(first_text(world(), "").rank, -1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Connections, CommunicatorTest,
                          ::testing::Values(Connection{"Whole"}, Connection{"InPieces", true},
                                            Connection{"OneHost", false, 1},
