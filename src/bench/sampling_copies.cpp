@@ -66,6 +66,12 @@ double sum_of(std::vector<double> const& values, std::size_t first = 0) {
 
 }  // namespace
 
+void warm_bonds(std::vector<Vec3>& positions, double kt, std::mt19937_64& draw) {
+    std::normal_distribution<double> along_axis(0, std::sqrt(0.5 * kt / calvados2::bond_stiffness));
+    for (Vec3& x : positions)
+        for (int axis = 0; axis < 3; ++axis) x[axis] += along_axis(draw);
+}
+
 double SamplingCopies::cutoff() {
     return std::max(calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,12 @@
 #include "scene/scene.hpp"
 
 namespace catena::command {
+
+/// Gives each bond of a chain a length as at the temperature; `kt` is in kJ/mol. A friction of
+/// 0.01/ps would take hundreds of ps to do so. Each bead moves on its own: changes of length that
+/// added up along a chain would push beads far apart in the sequence into each other. Lengths of
+/// neighbouring bonds are correlated, which a few ps mend.
+void warm_bonds(std::vector<Vec3>& positions, double kt, std::mt19937_64& draw);
 
 /// The copies and their current start.
 class SamplingCopies {

@@ -71,15 +71,6 @@ class CatenaMover final : public Mover {
     CatenaSteps catena_;
 };
 
-/// Gives the bonds lengths as at the temperature. A friction of 0.01/ps would take hundreds of ps
-/// to do so. Each bead moves on its own: changes of length that added up along a chain would push
-/// beads far apart in the sequence into each other.
-void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
-    std::normal_distribution<double> along_axis(0, std::sqrt(0.5 * kt / calvados2::bond_stiffness));
-    for (Vec3& x : chain.beads.position)
-        for (int axis = 0; axis < 3; ++axis) x[axis] += along_axis(draw);
-}
-
 /// Moves the copies by OpenMM's own integrator.
 class OpenMmMover final : public Mover {
   public:
@@ -90,7 +81,8 @@ class OpenMmMover final : public Mover {
         std::vector<Vec3> x;
         for (ChainSpec& chain : scene.chains) {
             if (links == OwnLinks::bonds)
-                warm_bonds(chain, scene.boltzmann() * scene.dynamics.temperature, draw);
+                warm_bonds(chain.beads.position, scene.boltzmann() * scene.dynamics.temperature,
+                           draw);
             x.insert(x.end(), chain.beads.position.begin(), chain.beads.position.end());
         }
         own_ = make_openmm_integrator(*scene.forces.openmm, beads, communicator, links,

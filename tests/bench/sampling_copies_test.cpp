@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/absolute_dynamics.hpp"
+#include "structure/calvados2.hpp"
 
 namespace catena::command {
 namespace {
@@ -45,6 +46,29 @@ TEST(SamplingCopies, EachHasTheForcesThatItHasAlone) {
         EXPECT_LT(largest_difference(one.forces(own), force, 140 * copy), 1e-4 * largest);
         EXPECT_LT(largest_difference(exact.forces(own), force, 140 * copy), 1e-4 * largest);
     }
+}
+
+/// The variance of a bond is kT over its stiffness, and no bead goes far: beads that are close
+/// together and far apart in the sequence stay apart.
+TEST(WarmBonds, HaveThermalLengthsAndMoveNoBeadFar) {
+    std::size_t constexpr n = 20001;
+    double const kt = 2.5, thermal = kt / calvados2::bond_stiffness;
+    std::vector<Vec3> const straight = [] {
+        std::vector<Vec3> x;
+        for (std::size_t k = 0; k < n; ++k) x.push_back({0.38 * static_cast<double>(k), 0, 0});
+        return x;
+    }();
+    std::vector<Vec3> x = straight;
+    std::mt19937_64 draw(1);
+    warm_bonds(x, kt, draw);
+    double sum = 0;
+    for (std::size_t k = 1; k < n; ++k) {
+        double const change = norm(x[k] - x[k - 1]) - 0.38;
+        sum += change * change;
+    }
+    // Five standard errors of a variance; neighbouring bonds are correlated by one half.
+    EXPECT_NEAR(sum / (n - 1), thermal, 5 * thermal * std::sqrt(2 * 1.5 / (n - 1)));
+    EXPECT_LT(largest_difference(straight, x, 0), 6 * std::sqrt(thermal));
 }
 
 TEST(SamplingCopies, TheyStandApartAndAMeetingIsSeen) {
