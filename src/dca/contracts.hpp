@@ -1,6 +1,6 @@
 // What the solver's templates require of their arguments, as concepts: leaves, sweeps and Spaces.
-// contracts.cpp, cuda/space/memory.cpp and cuda/space/contracts.cu assert that every type that
-// claims one has it.
+// contracts.cpp, cuda/space/memory.cpp and cuda/space/contracts.cu assert them for the types there;
+// TreeSolver takes no others.
 #pragma once
 
 #include <concepts>

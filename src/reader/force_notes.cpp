@@ -28,7 +28,7 @@ double constexpr celsius_zero = 273.15;
 double constexpr same_temperature = 1e-9;
 
 /// Longest plausible step of residues with friction, and longest one that was shown to sample
-/// them rightly (`catena bench sampling`), ps.
+/// them correctly (`catena bench sampling`), ps.
 double constexpr longest_usual_step = 0.2, longest_shown_step = 0.06;
 
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
@@ -89,7 +89,7 @@ void note_forces(Scene& scene) {
     else if (run.step > longest_shown_step && !openmm.builder.empty())
         scene.note(
             fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to "
-                        "sample such chains rightly, longer ones were not.",
+                        "sample such chains correctly, longer ones were not.",
                         1000 * run.step, 1000 * longest_shown_step));
 }
 
