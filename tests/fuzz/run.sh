@@ -76,17 +76,17 @@ files=("${tree[@]}" src/scene/files.cpp src/scene/fields.cpp)
 read_hdf5=(src/io/hdf5_handle.cpp src/io/output_file.cpp)
 target scene -lyaml-cpp "${tree[@]}"
 target table -lyaml-cpp "${files[@]}"
-target pdb -lyaml-cpp "${files[@]}" src/structure/{pdb_file,pdb_sites,structure_file,structure_residues}.cpp \
-    src/structure/{atom_masses,residue_names,no_gemmi}.cpp
+structures=(src/structure/{pdb_file,pdb_sites,structure_file,structure_residues,atom_masses,residue_names,no_gemmi}.cpp)
+target pdb -lyaml-cpp "${files[@]}" "${structures[@]}"
 target fasta -lyaml-cpp "${files[@]}" src/structure/fasta.cpp src/structure/residue_names.cpp src/structure/residue_table.cpp
 target residues -lyaml-cpp "${files[@]}" src/structure/residue_table.cpp
 target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
-domains=(src/domains/{assembly,confident_domains,domain_file,predicted_error,residue_numbers,rigid_entry}.cpp src/keys/chain_keys.cpp)
+domains=(src/domains/{assembly,confident_domains,domain_file,predicted_error,range_forms,residue_numbers,rigid_entry}.cpp src/keys/chain_keys.cpp)
 target dcd -lyaml-cpp "${tree[@]}" src/frames/dcd_file.cpp
 target domains -lyaml-cpp "${files[@]}" "${domains[@]}"
 target pae -lyaml-cpp "${files[@]}" "${domains[@]}"
-target settings -lyaml-cpp "${files[@]}" src/foreign/{calvados_folder,no_polychrom_arguments,scene_text,settings}.cpp src/io/output_file.cpp \
-    src/systems/xml_scan.cpp
+target settings -lyaml-cpp "${files[@]}" "${structures[@]}" src/systems/{pdb_topology,xml_scan}.cpp src/io/output_file.cpp \
+    src/foreign/{calvados_checks,calvados_folder,no_polychrom_arguments,package_file,scene_text,settings,system_text}.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/freedom.cpp \
         src/io/{memory_limit,trial}.cpp
