@@ -23,7 +23,7 @@ namespace {
 void copy(nb::handle value, char const* name, std::span<Triple> to) {
     Numbers<2> rows;
     if (!nb::try_cast(value, rows, true))
-        refuse(fmt::format("the {} are no array of two dimensions", name), to.size());
+        refuse(fmt::format("the {} are no array of numbers in two dimensions", name), to.size());
     if (rows.shape(0) != to.size() || rows.shape(1) != 3)
         refuse(fmt::format("the {} have the shape ({}, {})", name, rows.shape(0), rows.shape(1)),
                to.size());
