@@ -147,8 +147,8 @@ void note_complexes(Analysis& to, Topology const& topology) {
     if (complexes > 0)
         to.notes.push_back(
             fmt::format("{} `{}` are joined by rigid bodies: numbers are those of the whole "
-                        "complex, separations "
-                        "follow its beads; --members takes each member as a chain",
+                        "complex, which has no ends, bonds and separations; --members takes each "
+                        "member as a chain",
                         complexes == 1 ? "the members of chain" : "the members of chains such as",
                         topology.chains[first].name));
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "analysis/displacement.hpp"
+#include "frames/member_order.hpp"
 
 namespace catena::analysis {
 namespace {
@@ -39,6 +40,7 @@ std::vector<Estimate> histogram(CopyValues const& values, double least, double m
 ChainNumbers::ChainNumbers(Topology const& topology, Kind const& kind, std::int64_t frames)
     : topology_(topology),
       kind_(kind),
+      is_complex_(is_complex(topology, kind.chains.front())),
       radius_(kind.copies()),
       end_to_end_(kind.copies()),
       asphericity_(kind.copies()),
@@ -63,6 +65,8 @@ void ChainNumbers::report(Analysis& to, Options const& options, EvenFrames const
     if (kind_.sites > 1) {
         report_sizes(to);
         report_distribution(to);
+    }
+    if (kind_.sites > 1 && !is_complex_) {
         report_distances(to, options);
         report_bonds(to);
     }
@@ -74,7 +78,7 @@ void ChainNumbers::report_sizes(Analysis& to) const {
     to.quantities.push_back(
         {"radius_of_gyration", kind_.name, unit, radius_.estimate(), "weighted by mass"});
     to.series.push_back({"radius_of_gyration", kind_.name, unit, radius_});
-    if (!kind_.ring) {
+    if (!kind_.ring && !is_complex_) {
         to.quantities.push_back({"end_to_end_distance", kind_.name, unit, end_to_end_.estimate(),
                                  "first to last site"});
         to.series.push_back({"end_to_end_distance", kind_.name, unit, end_to_end_});

@@ -17,8 +17,8 @@ class ChainNumbers {
   public:
     ChainNumbers(Topology const&, Kind const&, std::int64_t frames);
     void add(Snapshot const&);
-    /// Adds quantities, curves and series of this kind to an analysis. `even`: frames whose
-    /// interval of time is the first one.
+    /// Adds quantities, curves and series of this kind to an analysis. Complexes have no ends,
+    /// bonds and separations of their own. `even`: frames whose interval of time is the first one.
     void report(Analysis&, Options const&, EvenFrames const& even) const;
 
   private:
@@ -30,6 +30,8 @@ class ChainNumbers {
 
     Topology const& topology_;
     Kind const& kind_;
+    /// True if the chains have several members: their beads do not follow one backbone.
+    bool is_complex_;
     CopyValues radius_, end_to_end_, asphericity_;
     InternalMeans internal_;
     std::vector<Vec3> centres_;  // [frame][copy]

@@ -2,7 +2,6 @@
 #include "frames/member_order.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <set>
 #include <utility>
@@ -98,7 +97,7 @@ std::optional<Members> members_of_sites(Topology const& topology,
     for (std::size_t c = 0, k = 0; c < topology.chains.size(); ++c)
         for (std::int64_t i = 0; i < topology.chains[c].count; ++i, ++k) {
             if (member[k] < 0 || member[k] >= std::ssize(identifiers) || place[k] < 0 ||
-                place[k] > largest || std::abs(number[k]) > largest)
+                place[k] > largest || number[k] > largest || number[k] < -largest)
                 return std::nullopt;
             auto const m = static_cast<std::size_t>(member[k]);
             if (chain_of[m] < c) return std::nullopt;

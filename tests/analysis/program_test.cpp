@@ -223,9 +223,13 @@ TEST_F(Trajectories, MembersOfAComplexAreChainsIfAskedFor) {
     expect_good(whole);
     EXPECT_NE(whole.out.find("1 x H+L of 12 sites"), std::string::npos) << whole.out;
     EXPECT_NE(whole.out.find("--members takes each member as a chain"), std::string::npos);
+    EXPECT_NE(whole.out.find("radius_of_gyration"), std::string::npos);
+    for (char const* const name : {"end_to_end_distance", "scaling_exponent", "bond_length"})
+        EXPECT_EQ(whole.out.find(name), std::string::npos) << name;
     Ended const members = in_folder({"analyse", "run", "--members"});
     expect_good(members);
     EXPECT_NE(members.out.find("2 x H+L of 6 sites"), std::string::npos) << members.out;
+    EXPECT_NE(members.out.find("end_to_end_distance"), std::string::npos);
     EXPECT_EQ(members.out.find("--members takes"), std::string::npos);
 }
 
