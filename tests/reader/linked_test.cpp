@@ -258,9 +258,8 @@ TEST_F(Domains, refusals) {
               "the list of rigid domains is empty (s.yaml: chains[0].rigid, line 1): leave the key "
               "out or " +
                   give);
-    EXPECT_EQ(refusal_of(yaml("[3]")),
-              "`3` is not a range of residues" + place +
-                  "write \"FIRST-LAST\", such as \"1-95\", or [1, 95]");
+    EXPECT_EQ(refusal_of(yaml("[3]")), "`3` is not a range of residues" + place +
+                                           "write \"FIRST-LAST\", such as \"1-95\", or [1, 95]");
     EXPECT_EQ(refusal_of(yaml("[[9, 13]]")), "residue 13 of a chain of 12" + place + give);
     EXPECT_EQ(refusal_of(yaml("[[2, 3]]")),
               "residues 2 to 3 do not form a rigid body, which needs three residues that do not "
