@@ -1,6 +1,7 @@
 // Simulations in memory: stops, checkpoints, failures and what is said at the start.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "tests/catena/models.hpp"
@@ -28,6 +29,13 @@ TEST(Simulation, StopsWhereItIsAskedToWithTheSameBits) {
     EXPECT_EQ(stopped.step(), 37);
     EXPECT_EQ(stopped.run(63), 63);
     EXPECT_EQ(stopped.state().position, whole.state().position);
+}
+
+TEST(Simulation, TakesTheLargestNumberOfStepsAfterOthers) {
+    Simulation simulation(pendulum());
+    simulation.run(5);
+    auto const until_eight = [](std::int64_t step) { return step < 8; };
+    EXPECT_EQ(simulation.run(std::numeric_limits<std::int64_t>::max(), until_eight), 3);
 }
 
 TEST(Simulation, GoesOnAfterAnExceptionOfItsObserver) {
