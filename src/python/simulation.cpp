@@ -50,6 +50,7 @@ class LiveSimulation {
             });
         });
         if (auto interrupt = force_.take_interrupt()) signal.emplace(std::move(*interrupt));
+        if (!signal) has_signal(signal);  // Python would raise it before the observers are called
         return signal ? nb::borrow(signal->value()) : nb::none();
     }
     SimulationState state() {
