@@ -73,7 +73,7 @@ TEST(Simulation, RefusesCheckpointsOfOtherScenesAndDamagedOnes) {
     EXPECT_NE(message_of([&] { simulation.restore(damaged); }).find("checksum"), std::string::npos);
     EXPECT_NE(message_of([&] { simulation.restore(kept.substr(0, 22)); }).find("cut off"),
               std::string::npos);
-    EXPECT_NE(message_of([&] { simulation.restore("text"); }).find("no checkpoint"),
+    EXPECT_NE(message_of([&] { simulation.restore("text"); }).find("not a checkpoint"),
               std::string::npos);
     Simulation forced(pendulum(), [](auto const&, auto const&) { return std::nullopt; });
     EXPECT_NE(message_of([&] { forced.restore(kept); }).find("own force"), std::string::npos);

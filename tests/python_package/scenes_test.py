@@ -58,6 +58,9 @@ class Scenes(Case):
         simulation.step()
         self.assertEqual(simulation.time, 0.002)
 
+    def test_none_removes_a_key(self):
+        self.assert_same(catena.solve(catena.load(PENDULUM).set("forces", None)).accelerations, np.zeros((2, 3)))
+
     def test_representations_name_the_origin(self):
         self.assertEqual(repr(catena.Model(PENDULUM).set("units", "si")), "<catena.Model: dict with 1 chain, 1 change>")
         self.assertIn("pendulum.yaml'>", repr(catena.Model(scene("pendulum.yaml"))))
@@ -72,6 +75,13 @@ class Scenes(Case):
             catena.check(catena.load(PENDULUM).set("dynamics.step", "0.01"))
         with self.assertRaisesRegex(catena.InputError, r"a set cannot be a value of a scene \(dynamics.step\)"):
             catena.Model(units="si").set("dynamics.step", {0.1})
+        for use in (catena.Simulation, catena.solve, catena.check, catena.load):
+            with self.assertRaisesRegex(catena.InputError, "None is not a scene"):
+                use(None)
+        with self.assertRaisesRegex(catena.InputError, r"the key 5 is not a string"):
+            catena.Model(units="si").set(5, 1)
+        with self.assertRaisesRegex(catena.InputError, r"the name .* is not a string"):
+            catena.Model(units="si").add(PENDULUM["chains"][0]["bodies"])
         with self.assertRaisesRegex(catena.InputError, "no such file"):
             catena.load("nowhere.yaml")
         with self.assertRaisesRegex(catena.InputError, "cannot be added"):

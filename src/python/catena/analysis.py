@@ -59,6 +59,8 @@ def _is_group(positions: Any) -> bool:
 
 def _frames_of(positions: Any) -> np.ndarray:
     if not _is_group(positions):
+        if np.ndim(positions) == 2:
+            raise InputError("the positions have 2 dimensions (positions): give (n_frames, n_beads, 3); a frame x is x[None]")
         return _doubles(positions, 3, "positions")
     trajectory = positions.universe.trajectory
     frames = np.array([positions.positions for _ in trajectory], dtype=float) / 10

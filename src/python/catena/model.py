@@ -57,6 +57,8 @@ class Model:
         """
         if not isinstance(self._scene, dict):
             raise InputError("chains cannot be added to a file or text (Model.add): begin with a dict or Model(units=...)")
+        if name is not None and not isinstance(name, str):
+            raise InputError(f"the name {name!r} is not a string (Model.add): give other keys by name, as in bodies=[...]")
         if name is not None:
             keys = {"name": name, **keys}
         chains = self._scene.setdefault("chains", [])
@@ -69,9 +71,11 @@ class Model:
     def set(self, key: str, value: Any) -> Model:
         """Sets a key of the scene, such as ``set("dynamics.step", 0.01)`` or ``set("chains[0].count", 10)``.
 
-        The value is a number, a string, a list or a dict. Returns the model, so that calls can be chained. A wrong
-        key is reported when the model is used.
+        The value is a number, a string, a list or a dict; None removes the key. Returns the model, so that calls can
+        be chained. A wrong key is reported when the model is used.
         """
+        if not isinstance(key, str):
+            raise InputError(f"the key {key!r} is not a string (Model.set): give a key such as 'dynamics.step'")
         self._changes.append((key, value_text(value, key)))
         self._read = None
         return self
@@ -122,7 +126,7 @@ def load(scene: Scene) -> Model:
     Relative paths in a file start from its folder, those in texts and dicts from the working folder.
     Raises InputError if a file cannot be read. The scene itself is checked when the model is used.
     """
-    return Model(scene)
+    return Model(model_of(scene))
 
 
 def check(scene: Scene) -> list[str]:
@@ -135,7 +139,9 @@ def check(scene: Scene) -> list[str]:
 
 
 def model_of(scene: Scene) -> Model:
-    """Returns a model as it is, or the model of a path, text or dict."""
+    """Returns a model as it is, or the model of a path, text or dict. Raises InputError for None."""
+    if scene is None:
+        raise InputError("None is not a scene (scene): give a path, a text, a dict or a Model")
     return scene if isinstance(scene, Model) else Model(scene)
 
 
