@@ -191,6 +191,7 @@ void add_simulation(nb::module_& module) {
         .def(nb::init<Model const&, nb::object>(), nb::arg("model"),
              nb::arg("force").none() = nb::none())
         .def("run", &LiveSimulation::run, nb::arg("steps"),
+             nb::sig("def run(self, steps: int) -> BaseException | None"),
              "Takes steps until a signal arrives; returns its exception, or None.")
         .def("state", &LiveSimulation::state, "Returns the present state.")
         .def("checkpoint", &LiveSimulation::checkpoint, "Returns the present state as bytes.")
