@@ -70,7 +70,7 @@ std::string bytes_of(Checkpoint const& c) {
 
 Checkpoint checkpoint_of(std::string const& bytes) {
     std::string_view rest(bytes);
-    if (!rest.starts_with(mark)) refuse("these bytes are no checkpoint of this version");
+    if (!rest.starts_with(mark)) refuse("these bytes are not a checkpoint of this version");
     rest.remove_prefix(mark.size());
     std::uint64_t sum = 0;
     if (rest.size() < size_of_sum) refuse("the checkpoint is cut off");

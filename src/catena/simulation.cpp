@@ -72,7 +72,7 @@ class Simulation::Content {
                              "give 0 or more");
         std::int64_t const first = step_;
         bool goes_on = true;
-        while (goes_on && step_ < first + steps) {
+        while (goes_on && step_ - first < steps) {
             guarded([&] { take_step(); });
             goes_on = !after_step || after_step(step_);
         }

@@ -23,7 +23,7 @@ namespace {
 void copy(nb::handle value, char const* name, std::span<Triple> to) {
     Numbers<2> rows;
     if (!nb::try_cast(value, rows, true))
-        refuse(fmt::format("the {} are no array of numbers in two dimensions", name), to.size());
+        refuse(fmt::format("the {} are not a two-dimensional array of numbers", name), to.size());
     if (rows.shape(0) != to.size() || rows.shape(1) != 3)
         refuse(fmt::format("the {} have the shape ({}, {})", name, rows.shape(0), rows.shape(1)),
                to.size());
@@ -60,7 +60,7 @@ std::optional<double> PythonForce::evaluate(BodyPositions const& at, BodyForces 
     nb::object const result = result_of(at);
     std::size_t const bodies = on.force.size();
     if (!nb::isinstance<nb::tuple>(result) || nb::len(result) < 2 || nb::len(result) > 3)
-        refuse("the force returned no tuple of two or three", bodies);
+        refuse("the function did not return a tuple of 2 or 3", bodies);
     copy(result[1], "forces", on.force);
     if (nb::len(result) == 3) copy(result[2], "torques", on.torque);
     nb::object const energy = result[0];
@@ -69,7 +69,7 @@ std::optional<double> PythonForce::evaluate(BodyPositions const& at, BodyForces 
     PyObject* const number = PyNumber_Float(energy.ptr());
     if (number == nullptr) {
         PyErr_Clear();
-        refuse("the energy is no number", bodies);
+        refuse("the energy is not a number", bodies);
     }
     value = PyFloat_AsDouble(number);
     Py_DECREF(number);

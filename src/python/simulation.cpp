@@ -1,4 +1,4 @@
-// Binds Simulation: steps without the interpreter's lock, states as arrays, checkpoints as bytes.
+// Binds Simulation: steps without the GIL, states as arrays, checkpoints as bytes.
 #include "catena/simulation.hpp"
 
 #include <nanobind/nanobind.h>
@@ -21,47 +21,63 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Time between looks for signals, which need the interpreter's lock.
+/// Time between looks for signals, which need the GIL.
 constexpr auto between_looks = std::chrono::milliseconds(20);
 
-/// A Simulation that computes without the interpreter's lock, for one caller at a time.
+/// A Simulation that computes without the GIL, for one caller at a time. Step count, time and notes
+/// are copies, which other threads may read during a computation.
 class LiveSimulation {
   public:
     LiveSimulation(Model const& model, nb::object force)
-        : force_(std::move(force)), simulation_(make(model)) {}
+        : force_(std::move(force)), simulation_(make(model)) {
+        remember();
+        pass_interrupt();
+    }
 
-    std::int64_t run(std::int64_t steps) {
+    /// Takes steps until a signal arrives. Returns the exception of that signal, or None. The
+    /// caller raises it; the simulation can go on.
+    nb::object run(std::int64_t steps) {
         std::optional<nb::python_error> signal;
-        std::int64_t taken = 0;
         alone([&] {
+            ++changes_;
             auto looked = Clock::now();
-            taken = simulation_.run(steps, [&](std::int64_t) {
+            simulation_.run(steps, [&](std::int64_t) {
+                remember_step();
                 if (force_.was_interrupted()) return false;
                 if (Clock::now() - looked < between_looks) return true;
                 looked = Clock::now();
                 return !has_signal(signal);
             });
         });
-        if (signal) throw std::move(*signal);
-        return taken;
+        if (auto interrupt = force_.take_interrupt()) signal.emplace(std::move(*interrupt));
+        if (!signal) has_signal(signal);  // Python would raise it before the observers are called
+        return signal ? nb::borrow(signal->value()) : nb::none();
     }
     SimulationState state() {
         SimulationState state;
         alone([&] { state = simulation_.state(); });
+        pass_interrupt();
         return state;
     }
     nb::bytes checkpoint() {
         std::string bytes;
         alone([&] { bytes = simulation_.checkpoint(); });
+        pass_interrupt();
         return nb::bytes(bytes.data(), bytes.size());
     }
     void restore(nb::bytes const& checkpoint) {
         std::string const bytes(checkpoint.c_str(), checkpoint.size());
-        alone([&] { simulation_.restore(bytes); });
+        alone([&] {
+            ++changes_;
+            simulation_.restore(bytes);
+        });
+        pass_interrupt();
     }
-    std::int64_t steps() const { return simulation_.step(); }
-    double time() const { return simulation_.time(); }
-    std::vector<std::string> notes() const { return simulation_.notes(); }
+    std::int64_t steps() const { return steps_; }
+    double time() const { return time_; }
+    std::vector<std::string> const& notes() const { return notes_; }
+    /// Counts runs and restorations. States with the same count are equal.
+    std::int64_t changes() const { return changes_; }
     PythonForce& force() { return force_; }
 
   private:
@@ -70,8 +86,7 @@ class LiveSimulation {
         nb::gil_scoped_release const free;
         return Simulation(model, force_.function());
     }
-    /// Runs `action` without the interpreter's lock. Throws Error if a call is still computing.
-    /// Passes a signal that arrived in the force.
+    /// Runs `action` without the GIL. Throws Error if another call is still computing.
     template <class Action>
     void alone(Action const& action) {
         if (computes_.exchange(true))
@@ -80,11 +95,28 @@ class LiveSimulation {
                 "inside its own force",
                 Error::Reason::computation);
         Turn const turn{computes_};
-        {
+        try {
             nb::gil_scoped_release const free;
             action();
+        } catch (...) {
+            force_.take_interrupt();  // the failure ends the call as well
+            remember();
+            throw;
         }
+        remember();
+    }
+    /// Throws the exception of a signal that arrived in the force.
+    void pass_interrupt() {
         if (auto interrupt = force_.take_interrupt()) throw std::move(*interrupt);
+    }
+    void remember_step() {
+        steps_ = simulation_.step();
+        time_ = simulation_.time();
+    }
+    /// Copies what other threads may read. Needs the GIL.
+    void remember() {
+        remember_step();
+        notes_ = simulation_.notes();
     }
     /// Lets the signal handlers run; keeps the exception of one in `signal`.
     static bool has_signal(std::optional<nb::python_error>& signal) {
@@ -102,6 +134,9 @@ class LiveSimulation {
     PythonForce force_;
     Simulation simulation_;
     std::atomic<bool> computes_ = false;
+    std::atomic<std::int64_t> steps_ = 0, changes_ = 0;
+    std::atomic<double> time_ = 0;
+    std::vector<std::string> notes_;
 };
 
 /// A force may refer to its simulation: the collector of garbage must see that circle.
@@ -155,13 +190,16 @@ void add_simulation(nb::module_& module) {
                                "Steps of the integrator that a model names.")
         .def(nb::init<Model const&, nb::object>(), nb::arg("model"),
              nb::arg("force").none() = nb::none())
-        .def("run", &LiveSimulation::run, nb::arg("steps"), "Takes steps; returns their number.")
+        .def("run", &LiveSimulation::run, nb::arg("steps"),
+             nb::sig("def run(self, steps: int) -> BaseException | None"),
+             "Takes steps until a signal arrives; returns its exception, or None.")
         .def("state", &LiveSimulation::state, "Returns the present state.")
         .def("checkpoint", &LiveSimulation::checkpoint, "Returns the present state as bytes.")
         .def("restore", &LiveSimulation::restore, nb::arg("checkpoint"),
              "Returns to the state of a checkpoint.")
         .def_prop_ro("steps", &LiveSimulation::steps)
         .def_prop_ro("time", &LiveSimulation::time)
+        .def_prop_ro("changes", &LiveSimulation::changes)
         .def_prop_ro("notes", &LiveSimulation::notes);
 }
 

@@ -1,6 +1,7 @@
 // Simulations in memory: stops, checkpoints, failures and what is said at the start.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "tests/catena/models.hpp"
@@ -28,6 +29,13 @@ TEST(Simulation, StopsWhereItIsAskedToWithTheSameBits) {
     EXPECT_EQ(stopped.step(), 37);
     EXPECT_EQ(stopped.run(63), 63);
     EXPECT_EQ(stopped.state().position, whole.state().position);
+}
+
+TEST(Simulation, TakesTheLargestNumberOfStepsAfterOthers) {
+    Simulation simulation(pendulum());
+    simulation.run(5);
+    auto const until_eight = [](std::int64_t step) { return step < 8; };
+    EXPECT_EQ(simulation.run(std::numeric_limits<std::int64_t>::max(), until_eight), 3);
 }
 
 TEST(Simulation, GoesOnAfterAnExceptionOfItsObserver) {
@@ -65,7 +73,7 @@ TEST(Simulation, RefusesCheckpointsOfOtherScenesAndDamagedOnes) {
     EXPECT_NE(message_of([&] { simulation.restore(damaged); }).find("checksum"), std::string::npos);
     EXPECT_NE(message_of([&] { simulation.restore(kept.substr(0, 22)); }).find("cut off"),
               std::string::npos);
-    EXPECT_NE(message_of([&] { simulation.restore("text"); }).find("no checkpoint"),
+    EXPECT_NE(message_of([&] { simulation.restore("text"); }).find("not a checkpoint"),
               std::string::npos);
     Simulation forced(pendulum(), [](auto const&, auto const&) { return std::nullopt; });
     EXPECT_NE(message_of([&] { forced.restore(kept); }).find("own force"), std::string::npos);

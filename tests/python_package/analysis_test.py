@@ -48,7 +48,7 @@ class Sizes(Case):
         self.assertTrue(math.isnan(catena.analysis.mean([1.0]).error))
 
     def test_wrong_arrays_are_refused(self):
-        for x, mass, words in ((np.zeros((3, 3)), None, "2 dimensions"), (np.zeros((3, 4, 2)), None, "wrong shape"),
+        for x, mass, words in ((np.zeros((3, 3)), None, "2 dimensions"), (np.zeros((3, 4, 2)), None, "wrong shape"), (np.zeros(3), None, "1 dimensions"),
                                (np.full((2, 4, 3), np.nan), None, "not finite"), (chains(2, 5), np.ones(4), "number of masses"),
                                (chains(2, 5), np.zeros(5), "not positive"), (np.zeros((0, 5, 3)), None, "no values")):
             with self.assertRaisesRegex(catena.InputError, words):

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Scenes of the Python package: dicts, texts, files and models chain by chain; their checks and solutions."""
+import copy
 import csv
 import gc
 import json
 import pathlib
+import pickle
 import unittest
 import warnings
 
@@ -43,7 +45,26 @@ class Scenes(Case):
         mine = {**PENDULUM, "chains": list(PENDULUM["chains"])}
         model = catena.Model(mine)
         mine["chains"].append({"name": "wrong"})
-        self.assertEqual(model.bodies, 2)
+        self.assertEqual(model.n_bodies, 2)
+
+    def test_copies_of_models_have_changes_of_their_own(self):
+        model = catena.Model(PENDULUM).set("dynamics.step", 0.002)
+        self.assertEqual(model.n_bodies, 2)
+        for other in (copy.copy(model), copy.deepcopy(model), pickle.loads(pickle.dumps(model)), catena.Model(model)):
+            other.add("more", base="fixed", bodies=PENDULUM["chains"][0]["bodies"][:1]).set("dynamics.step", 0.003)
+            self.assertEqual((other.n_bodies, model.n_bodies), (3, 2))
+            self.assertEqual(catena.Simulation(other).step(1), 1)
+        simulation = catena.Simulation(model)
+        simulation.step()
+        self.assertEqual(simulation.time, 0.002)
+
+    def test_none_removes_a_key(self):
+        self.assert_same(catena.solve(catena.load(PENDULUM).set("forces", None)).accelerations, np.zeros((2, 3)))
+
+    def test_representations_name_the_origin(self):
+        self.assertEqual(repr(catena.Model(PENDULUM).set("units", "si")), "<catena.Model: dict with 1 chain, 1 change>")
+        self.assertIn("pendulum.yaml'>", repr(catena.Model(scene("pendulum.yaml"))))
+        self.assertRegex(repr(catena.solve(PENDULUM)), "<catena.Solution: 2 bodies, valid, residual [0-9.e-]+>")
 
     def test_errors_have_the_words_of_the_program(self):
         wrong = {**PENDULUM, "forces": {"gravitation": [0, 0, 1]}}
@@ -52,8 +73,15 @@ class Scenes(Case):
         self.assertTrue(issubclass(catena.InputError, (catena.Error,)) and issubclass(catena.InputError, ValueError))
         with self.assertRaisesRegex(catena.InputError, "quot"):
             catena.check(catena.load(PENDULUM).set("dynamics.step", "0.01"))
-        with self.assertRaisesRegex(catena.InputError, r"a set is no value of a scene \(dynamics.step\)"):
+        with self.assertRaisesRegex(catena.InputError, r"a set cannot be a value of a scene \(dynamics.step\)"):
             catena.Model(units="si").set("dynamics.step", {0.1})
+        for use in (catena.Simulation, catena.solve, catena.check, catena.load):
+            with self.assertRaisesRegex(catena.InputError, "None is not a scene"):
+                use(None)
+        with self.assertRaisesRegex(catena.InputError, r"the key 5 is not a string"):
+            catena.Model(units="si").set(5, 1)
+        with self.assertRaisesRegex(catena.InputError, r"the name .* is not a string"):
+            catena.Model(units="si").add(PENDULUM["chains"][0]["bodies"])
         with self.assertRaisesRegex(catena.InputError, "no such file"):
             catena.load("nowhere.yaml")
         with self.assertRaisesRegex(catena.InputError, "cannot be added"):

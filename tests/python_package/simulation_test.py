@@ -3,6 +3,7 @@
 import csv
 import gc
 import os
+import pathlib
 import signal
 import threading
 import time
@@ -50,6 +51,28 @@ class Bits(Case):
         self.assert_same(parts.positions, whole.positions)
         self.assert_same(parts.velocities, whole.velocities)
         self.assertEqual((parts.steps, parts.time), (60, 0.6))
+
+    def test_whole_numbers_of_all_types_are_steps(self):
+        simulation = catena.Simulation(PENDULUM)
+        for n in (2, np.int64(2), 2.0, np.float64(2)):
+            self.assertEqual(simulation.step(n), 2)
+        self.assertEqual(simulation.steps, 8)
+        for n in (2.5, "2", None, float("nan")):
+            with self.assertRaisesRegex(catena.InputError, r"whole number"):
+                simulation.step(n)
+
+    def test_scenes_are_taken_in_every_form(self):
+        first = catena.Simulation(scene("pendulum.yaml"))
+        for form in (pathlib.Path(scene("pendulum.yaml")), catena.load(scene("pendulum.yaml"))):
+            self.assert_same(catena.Simulation(form).positions, first.positions)
+        with self.assertRaisesRegex(catena.InputError, "a list is not a scene"):
+            catena.Simulation([1])
+
+    def test_representations_name_size_and_step(self):
+        simulation = catena.Simulation(PENDULUM)
+        simulation.step(20)
+        self.assertEqual(repr(simulation), "<catena.Simulation: 2 bodies, step 20, time 0.02>")
+        self.assertEqual(repr(simulation.state), "<catena.State: 2 bodies, step 20, time 0.02>")
 
 
 class Arrays(Case):
@@ -106,8 +129,8 @@ class OwnForces(Case):
 
     def test_wrong_results_are_refused(self):
         zero = np.zeros((2, 3))
-        for result, words in ((zero, "no tuple"), ((0.0, np.zeros((3, 3))), r"shape \(3, 3\)"), ((0.0, "text"), "no array"), (("much", zero), "no number"),
-                              ((0.0, zero, np.zeros(3)), "torques"), ((0.0, zero, zero, zero), "no tuple")):
+        for result, words in ((zero, "tuple of 2 or 3"), ((0.0, np.zeros((3, 3))), r"shape \(3, 3\)"), ((0.0, "text"), "not a two-dimensional array"), (("much", zero), "not a number"),
+                              ((0.0, zero, np.zeros(3)), "torques"), ((0.0, zero, zero, zero), "tuple of 2 or 3")):
             with self.assertRaisesRegex(catena.InputError, words):
                 catena.Simulation(self.still, lambda x, q, result=result: result).step()
         with self.assertRaisesRegex(catena.InputError, "not callable"):
@@ -177,6 +200,22 @@ class Observers(Case):
             simulation.stop_observing(observer)
         with self.assertRaises(catena.InputError):
             simulation.observe(observer, every=0)
+        with self.assertRaisesRegex(catena.InputError, "not callable"):
+            simulation.observe(None)
+
+    def test_methods_can_stop_observing(self):
+        class Counter:
+            seen = 0
+
+            def look(self, simulation):
+                self.seen += 1
+
+        simulation, counter = catena.Simulation(PENDULUM), Counter()
+        simulation.observe(counter.look)
+        simulation.step(3)
+        simulation.stop_observing(counter.look)
+        simulation.step(3)
+        self.assertEqual(counter.seen, 3)
 
     def test_their_exceptions_leave_a_usable_simulation(self):
         simulation = catena.Simulation(PENDULUM)
@@ -226,6 +265,88 @@ class Interruption(Case):
             self.assert_same(again.positions, positions)
             self.assertEqual(simulation.step(3), 3)
 
+    def test_the_largest_number_of_steps_is_taken_after_others(self):
+        for n in (2**63 - 1, 10**30):
+            simulation = catena.Simulation(PENDULUM)
+            simulation.step(2)
+            self.interrupted(simulation, n)
+            self.assertGreater(simulation.steps, 2)
+
+    def test_an_interrupted_step_is_observed(self):
+        force = InterruptedForce()
+        simulation = catena.Simulation(OwnForces.still, force)
+        seen = []
+        simulation.observe(lambda s: seen.append(s.steps), every=4)
+        force.interrupts = True
+        with self.assertRaises(KeyboardInterrupt):
+            simulation.step(10)
+        stopped = simulation.steps
+        self.assertEqual((stopped, seen), (1, []))
+        simulation.step(2)
+        force.interrupts = True
+        with self.assertRaises(KeyboardInterrupt):
+            simulation.step(10)
+        self.assertEqual((simulation.steps, seen), (4, [4]))
+        simulation.step(4)
+        self.assertEqual(seen, [4, 8])
+
+    def test_short_runs_between_observations_are_observed_too(self):
+        simulation = catena.Simulation(beads(1000))
+        observed = 0
+        for _ in range(5):
+            seen = []
+            observer = lambda s: seen.append(s.steps)
+            simulation.observe(observer)
+            self.interrupted(simulation, 10**9)
+            simulation.stop_observing(observer)
+            observed += seen[-1] == simulation.steps
+        self.assertGreaterEqual(observed, 3)  # Ctrl-C may also arrive in an observer
+
+    def test_a_restored_state_is_there_after_ctrl_c(self):
+        force = InterruptedForce()
+        simulation = catena.Simulation(beads(), force)
+        kept, positions = simulation.checkpoint(), simulation.positions
+        simulation.step(50)
+        self.assertFalse(np.array_equal(simulation.positions, positions))
+        force.interrupts = True
+        with self.assertRaises(KeyboardInterrupt):
+            simulation.restore(kept)
+        self.assertEqual(simulation.steps, 0)
+        self.assert_same(simulation.positions, positions)
+
+    def test_ctrl_c_in_the_force_ends_the_construction(self):
+        force = InterruptedForce()
+        force.interrupts = True
+        with self.assertRaises(KeyboardInterrupt):
+            catena.Simulation(beads(), force)
+
+    def test_a_failure_after_ctrl_c_is_the_only_exception(self):
+        force = InterruptedForce()
+        simulation = catena.Simulation(OwnForces.still, force)
+        kept = simulation.checkpoint()
+        force.interrupts = force.fails = True
+        with self.assertRaises(ZeroDivisionError):
+            simulation.step()
+        force.fails = False
+        simulation.restore(kept)
+        self.assertEqual(simulation.step(3), 3)
+
+
+class InterruptedForce:
+    """The weight, with Ctrl-C during its next call if ``interrupts``; it fails after that if ``fails``."""
+
+    interrupts = fails = False
+
+    def __call__(self, x, q):
+        if self.interrupts:
+            self.interrupts = False
+            raise KeyboardInterrupt
+        if self.fails:
+            raise ZeroDivisionError
+        return weight(x, q)
+
+
+class Threads(Case):
     def test_other_threads_run_while_steps_are_computed(self):
         simulation = catena.Simulation(PENDULUM)
         thread = threading.Thread(target=simulation.step, args=(20000,))
@@ -237,6 +358,75 @@ class Interruption(Case):
         thread.join()
         self.assertGreater(turns, 10)
         self.assertEqual(simulation.steps, 20000)
+
+    def test_other_threads_read_progress(self):
+        simulation = catena.Simulation(PENDULUM)
+        kept = simulation.checkpoint()
+
+        def work():
+            for _ in range(40):
+                simulation.step(500)
+                simulation.restore(kept)
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        seen = set()
+        while thread.is_alive():
+            seen.add((simulation.steps, bool(simulation.time >= 0), len(simulation.notes)))
+        thread.join()
+        between = [steps for steps, _, _ in seen if 0 < steps < 500]
+        self.assertGreater(len(between), 3)
+        self.assertEqual({(valid, notes) for _, valid, notes in seen}, {(True, 0)})
+
+    def test_progress_is_read_inside_the_force(self):
+        seen = []
+
+        def force(x, q):
+            if holder:
+                seen.append((holder[0].steps, holder[0].time, len(holder[0].notes)))
+            return weight(x, q)
+
+        holder = []
+        holder.append(catena.Simulation(beads(), force))
+        holder[0].step(3)
+        self.assertEqual(sorted(set(seen)), [(0, 0.0, 0), (1, 0.01, 0), (2, 0.02, 0)])  # of steps that are complete
+
+    def test_steps_of_a_second_thread_are_refused_by_their_reason(self):
+        simulation = catena.Simulation(PENDULUM)
+        inside, goes_on = threading.Event(), threading.Event()
+        simulation.observe(lambda s: (inside.set(), goes_on.wait(30)))
+        thread = threading.Thread(target=simulation.step)
+        thread.start()
+        self.assertTrue(inside.wait(30))
+        try:
+            with self.assertRaisesRegex(catena.ComputationError, "another thread"):
+                simulation.step()
+        finally:
+            goes_on.set()
+            thread.join()
+        simulation.observe(lambda s: None)
+        self.assertEqual(simulation.step(), 1)
+
+    def test_a_state_of_before_another_threads_steps_is_not_kept(self):
+        simulation = catena.Simulation(PENDULUM)
+
+        class Late:
+            """The C++ part; another thread takes steps between the computation of a state and its return."""
+
+            def __getattr__(self, name):
+                return getattr(live, name)
+
+            def state(self):
+                found = live.state()
+                simulation._live = live
+                thread = threading.Thread(target=simulation.step, args=(10,))
+                thread.start()
+                thread.join()
+                return found
+
+        live, simulation._live = simulation._live, Late()
+        self.assertEqual(simulation.state.steps, 0)
+        self.assertEqual(simulation.state.steps, 10)
 
     def test_a_second_thread_is_refused(self):
         simulation = catena.Simulation(PENDULUM)
@@ -278,6 +468,9 @@ class Checkpoints(Case):
             catena.Simulation(beads()).restore(kept)
         with self.assertRaisesRegex(catena.InputError, "damaged"):
             simulation.restore(kept[:-1] + bytes([kept[-1] ^ 1]))
+        with self.assertRaisesRegex(catena.InputError, r"load\(path\)"):
+            simulation.restore("here.checkpoint")
+        simulation.restore(bytearray(kept))
         with self.assertRaisesRegex(catena.InputError, "-3"):
             simulation.step(-3)
 

@@ -1,8 +1,9 @@
 """Motion of very long articulated chains: proteins, polymers, mechanisms, cables.
 
-A scene is a file, a text, a dict or a ``Model`` that is built chain by chain. ``solve`` computes accelerations and
-joint forces at its start, ``Simulation`` moves it in time, ``check`` only reads it. Units are nm, ps, amu and kJ/mol,
-or SI with ``units: si``. Bodies and beads are numbered through all chains, from 0, in all arrays.
+A scene is a path, a text, a dict or a ``Model`` that is built chain by chain; all functions take any of these.
+``solve`` computes accelerations and joint forces at its start, ``Simulation`` moves it in time, ``check`` only checks
+it. Units are nm, ps, amu and kJ/mol, or SI with ``units: si``. Arrays number bodies and beads from 0 through all
+chains.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ except ImportError as error:
     if "OpenMM" not in str(error):
         raise
     raise ImportError(
-        f"the library of OpenMM with which catena was built cannot be loaded ({error}): install openmm in this "
-        "environment, in the version that was there when catena was installed, or install catena again"
+        f"the OpenMM library that catena was built with cannot be loaded ({error}): install the same version of "
+        "openmm in this environment, or install catena again"
     ) from error
 
 from catena import analysis

@@ -1,7 +1,7 @@
 """Sizes of chains with their errors, by the formulas of ``catena analyse``.
 
-Positions are arrays of shape (n_frames, n_beads, 3), or MDAnalysis atom groups, whose trajectory is read frame by
-frame and whose lengths in angstrom become nm.
+Positions are arrays of shape (n_frames, n_beads, 3) or MDAnalysis atom groups. Of an atom group the whole trajectory is
+read, and lengths in angstrom become nm.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Estimate(NamedTuple):
 def radius_of_gyration(positions: Any, masses: Any = None) -> Estimate:
     """Returns the radius of gyration, weighted by mass.
 
-    ``masses`` has shape (n_beads,). Without it an atom group's own masses are taken, and equal ones for an array.
-    The lengths are those of the array, or nm for an atom group.
+    ``masses`` has shape (n_beads,). The default is the atom group's masses, or equal masses for an array. The result
+    has the array's unit of length, or nm for an atom group.
     """
     frames = _frames_of(positions)
     if masses is None:
@@ -59,6 +59,8 @@ def _is_group(positions: Any) -> bool:
 
 def _frames_of(positions: Any) -> np.ndarray:
     if not _is_group(positions):
+        if np.ndim(positions) == 2:
+            raise InputError("the positions have 2 dimensions (positions): give (n_frames, n_beads, 3); a frame x is x[None]")
         return _doubles(positions, 3, "positions")
     trajectory = positions.universe.trajectory
     frames = np.array([positions.positions for _ in trajectory], dtype=float) / 10
@@ -68,7 +70,7 @@ def _frames_of(positions: Any) -> np.ndarray:
 def _doubles(values: Any, dimensions: int, name: str) -> np.ndarray:
     array = np.ascontiguousarray(values, dtype=float)
     if array.ndim != dimensions:
-        raise InputError(f"the {name} have {array.ndim} dimensions ({name}): give an array of {dimensions}")
+        raise InputError(f"the {name} have {array.ndim} dimensions ({name}): give an array with {dimensions}")
     if not np.isfinite(array).all():
         raise InputError(f"a number is not finite ({name}): leave out such frames")
     return array

@@ -1,8 +1,8 @@
-"""Exceptions of Catena, with the words of the program."""
+"""Exceptions of Catena, with the messages of the program."""
 
 
 class Error(Exception):
-    """Base of all errors of Catena: one line that says what is wrong, where, and what to do."""
+    """Base of all errors of Catena. The message is one line: what is wrong, where, and what to do."""
 
 
 class InputError(Error, ValueError):
@@ -10,7 +10,7 @@ class InputError(Error, ValueError):
 
 
 class ComputationError(Error, RuntimeError):
-    """The computation failed although its input was acceptable. The program would exit with status 1."""
+    """The computation failed with valid input. The program would exit with status 1."""
 
 
 class Note(UserWarning):

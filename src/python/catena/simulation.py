@@ -2,26 +2,34 @@
 
 from __future__ import annotations
 
+import operator
 import os
+import threading
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from catena import _core
-from catena.errors import InputError
+from catena.errors import ComputationError, InputError
 from catena.model import Scene, model_of, say
+
+#: Largest number of steps that one call of the C++ part takes.
+_MOST_STEPS = 2**62
 
 
 class State:
     """State of a simulation at one step.
 
-    Every state has memory of its own: its arrays are read-only views of it, without further copies. They do not
-    change when the simulation goes on, and stay valid as long as they are used.
+    Its arrays are read-only and do not change when the simulation goes on. They are views of the state's own memory,
+    which lives as long as they do.
     """
 
     def __init__(self, found: _core.State) -> None:
         self._found = found
+
+    def __repr__(self) -> str:
+        return f"<catena.State: {len(self.positions)} bodies, step {self.steps}, time {self.time:.6g}>"
 
     @property
     def steps(self) -> int:
@@ -65,7 +73,7 @@ class State:
 
     @property
     def joint_positions(self) -> np.ndarray:
-        """Coordinates of inboard joints (n_bodies, 4): unused numbers are zero, of a free joint only its quaternion.
+        """Coordinates of inboard joints (n_bodies, 4), padded with zeros; of a free joint only its quaternion.
 
         All are zero if the integrator works in absolute coordinates.
         """
@@ -73,7 +81,7 @@ class State:
 
     @property
     def joint_rates(self) -> np.ndarray:
-        """Rates of inboard joints (n_bodies, 3): unused numbers are zero, of a free joint only its angular velocity."""
+        """Rates of inboard joints (n_bodies, 3), padded with zeros; of a free joint only its angular velocity."""
         return self._found.joint_rates
 
     @property
@@ -83,7 +91,7 @@ class State:
 
     @property
     def potential_energies(self) -> dict[str, float]:
-        """Potential energy by term, kJ/mol (J in SI): gravity, springs, those of OpenMM, ``own force``."""
+        """Potential energy by term, kJ/mol (J in SI): gravity, springs, OpenMM's forces and ``own force``."""
         terms: dict[str, float] = {}
         for name, value in self._found.potential_energies:
             terms[name] = terms.get(name, 0.0) + value
@@ -91,7 +99,7 @@ class State:
 
     @property
     def potential_energy(self) -> float:
-        """Sum of ``potential_energies``. An own force that returns no energy is not in it."""
+        """Sum of ``potential_energies``, without forces of your own that return no energy."""
         return sum(value for _, value in self._found.potential_energies)
 
     @property
@@ -103,7 +111,7 @@ class State:
     def temperature(self) -> float | None:
         """Temperature of the kinetic energy, K.
 
-        None with prescribed motions, for implicit integrators, and in SI units without a thermostat.
+        It is None if motions are prescribed, for implicit integrators, and in SI units without a thermostat.
         """
         return self._found.temperature
 
@@ -116,65 +124,79 @@ class State:
 class Simulation:
     """A scene that moves in time by the integrator that its key ``dynamics`` names.
 
+    ``scene`` is a path, the text of a scene file, a dict or a ``Model``.
+
     ``force(positions, orientations)`` is a force of your own. It returns ``(energy, forces)`` or
     ``(energy, forces, torques)``: arrays of shape (n_bodies, 3) in ground axes, and a potential energy or None. The
     arguments are copies of the centres of mass and beads (n_bodies, 3) and of the quaternions (n_bodies, 4). The
     force is called at every evaluation, up to several times in a step, and must depend on its arguments alone.
 
-    Making a simulation prepares the start: it relaxes the scene if asked, draws thermal velocities and closes joints.
+    A new simulation prepares its start: it relaxes the scene if asked, draws thermal velocities and closes joints.
     Notes become warnings. Raises InputError if the scene is wrong or has no ``dynamics``.
 
     States have the bits of ``catena run`` with the same backend and without ``output.checkpoint_every``.
+
+    One thread at a time computes. Other threads may read ``steps``, ``time`` and ``notes`` meanwhile.
     """
 
     def __init__(self, scene: Scene, force: Callable[..., Any] | None = None) -> None:
-        self._live = _core.Simulation(model_of(scene)._core(), force)
-        self._state: State | None = None
+        model = model_of(scene)
+        self._live = _core.Simulation(model._core(), force)
+        self._n_bodies = model.n_bodies
+        self._kept: tuple[int, State] | None = None
         self._observers: list[tuple[Callable[[Simulation], Any], int]] = []
-        self._steps_inside = False
+        self._turn = threading.Lock()
+        self._stepping_thread: int | None = None
         say(self._live.notes)
+
+    def __repr__(self) -> str:
+        return f"<catena.Simulation: {self.n_bodies} bodies, step {self.steps}, time {self.time:.6g}>"
 
     def step(self, n: int = 1) -> int:
         """Takes ``n`` steps, whatever ``dynamics.steps`` says, and returns their number.
 
-        The interpreter's lock is released while steps are computed. Ctrl-C stops after a step and raises
-        KeyboardInterrupt; the simulation can go on. Exceptions of observers pass alike. After a failed step, or an
-        exception of the own force, only ``restore`` helps.
+        The GIL is released while steps are computed. Ctrl-C stops after a step, whose observers are still called, and
+        raises KeyboardInterrupt. The simulation can go on, also after an exception in an observer. After a failed
+        step, or an exception in your own force, only ``restore`` helps.
         """
-        if n < 0:
-            raise InputError(f"the number of steps is {n} (Simulation.step): give 0 or more")
-        if self._steps_inside:
+        n = _count(n, "the number of steps", "Simulation.step", least=0)
+        if self._stepping_thread == threading.get_ident():
             raise InputError("an observer takes steps of its simulation (Simulation.step): let step() return first")
-        last = self.steps + n
-        self._steps_inside = True
+        if not self._turn.acquire(blocking=False):
+            raise ComputationError("another thread takes steps (Simulation.step): wait until its step() returns")
         try:
-            while self.steps < last:
-                self._state = None
-                self._live.run(min([last, *self._next_looks()]) - self.steps)
-                self._look()
+            self._stepping_thread = threading.get_ident()
+            self._step_to(self.steps + n)
         finally:
-            self._steps_inside = False
+            self._stepping_thread = None
+            self._turn.release()
         return n
 
     def observe(self, observer: Callable[[Simulation], Any], every: int = 1) -> None:
         """Calls ``observer(simulation)`` after each step whose number is a multiple of ``every``."""
-        if every < 1:
-            raise InputError(f"every is {every} (Simulation.observe): give 1 or more steps")
-        self._observers.append((observer, every))
+        if not callable(observer):
+            raise InputError(f"the observer {observer!r} is not callable (Simulation.observe): give a function")
+        self._observers.append((observer, _count(every, "every", "Simulation.observe", least=1)))
 
     def stop_observing(self, observer: Callable[[Simulation], Any]) -> None:
-        """Removes an observer. Raises InputError if it is none."""
-        kept = [each for each in self._observers if each[0] is not observer]
+        """Removes an observer. Raises InputError if ``observe`` was not called with it."""
+        kept = [each for each in self._observers if each[0] != observer]
         if len(kept) == len(self._observers):
-            raise InputError("this function observes nothing (Simulation.stop_observing): name one that observes")
+            raise InputError("this function is not an observer (Simulation.stop_observing): give one that observes")
         self._observers = kept
+
+    @property
+    def n_bodies(self) -> int:
+        """Number of bodies and beads."""
+        return self._n_bodies
 
     @property
     def state(self) -> State:
         """The present state. It is computed once a step, which costs an evaluation in joint coordinates."""
-        if self._state is None:
-            self._state = State(self._live.state())
-        return self._state
+        changes, kept = self._live.changes, self._kept
+        if kept is None or kept[0] != changes:
+            kept = self._kept = (changes, State(self._live.state()))
+        return kept[1]
 
     @property
     def steps(self) -> int:
@@ -227,10 +249,10 @@ class Simulation:
         return self._live.notes
 
     def checkpoint(self) -> bytes:
-        """Returns the present state as bytes, from which ``restore`` continues.
+        """Returns the present state as bytes, from which ``restore`` continues with the same bits.
 
-        It does so with the same bits, but for forces of OpenMM's platforms CPU and CUDA, which remember their
-        neighbour lists: those round differently at first.
+        The exceptions are forces on OpenMM's platforms CPU and CUDA. Their neighbour lists are not part of a
+        checkpoint, so that the first steps round differently.
         """
         return self._live.checkpoint()
 
@@ -239,8 +261,10 @@ class Simulation:
 
         Raises InputError, and changes nothing, if the bytes are damaged or belong to another scene.
         """
-        self._live.restore(checkpoint)
-        self._state = None
+        if isinstance(checkpoint, (str, os.PathLike)):
+            raise InputError("the checkpoint is not bytes (Simulation.restore): read files with load(path)")
+        self._kept = None
+        self._live.restore(checkpoint if isinstance(checkpoint, bytes) else bytes(memoryview(checkpoint)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes ``checkpoint()`` to a file, which is replaced as a whole."""
@@ -252,15 +276,39 @@ class Simulation:
         os.replace(part, path)
 
     def load(self, path: str | os.PathLike[str]) -> None:
-        """Restores the checkpoint of a file that ``save`` wrote."""
+        """Restores the checkpoint in a file that ``save`` wrote."""
         with open(path, "rb") as file:
             self.restore(file.read())
 
-    def _next_looks(self) -> list[int]:
-        """Returns the number of the next step that each observer wants."""
-        return [self.steps - self.steps % every + every for _, every in self._observers]
+    def _step_to(self, last: int) -> None:
+        """Takes steps up to number ``last`` and calls the observers, also after the step at which a signal arrives."""
+        while self.steps < last:
+            self._kept = None
+            interrupt = self._live.run(min(self._next_stop(last) - self.steps, _MOST_STEPS))
+            try:
+                self._look()
+            finally:
+                if interrupt is not None:
+                    raise interrupt
+
+    def _next_stop(self, last: int) -> int:
+        """Returns the number of the next step at which an observer is called, at most ``last``."""
+        return min([last, *(self.steps - self.steps % every + every for _, every in self._observers)])
 
     def _look(self) -> None:
         for observer, every in list(self._observers):
             if self.steps % every == 0:
                 observer(self)
+
+
+def _count(value: Any, what: str, where: str, least: int) -> int:
+    """Returns a whole number, also of a float such as 1e6. Raises InputError if it is none or less than ``least``."""
+    if isinstance(value, float) and value.is_integer():
+        return _count(int(value), what, where, least)
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InputError(f"{what} is {value!r} ({where}): give a whole number") from None
+    if number < least:
+        raise InputError(f"{what} is {number} ({where}): give {least} or more")
+    return number

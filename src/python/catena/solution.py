@@ -14,13 +14,17 @@ from catena.model import Scene, model_of, say
 class Solution:
     """Result of ``solve``. Bodies and beads are numbered through all chains.
 
-    The arrays are read-only views of the solver's memory, without copies; they stay valid as long as they are used.
+    The arrays are read-only views of the result's own memory, which lives as long as they do.
     """
 
     def __init__(self, found: _core.Solution, notes: list[str]) -> None:
         self._found = found
         #: One sentence each on what the reader assumed, changed or left out.
         self.notes = notes
+
+    def __repr__(self) -> str:
+        validity = "valid" if self.valid else "not valid"
+        return f"<catena.Solution: {len(self.accelerations)} bodies, {validity}, residual {self.residual:.3g}>"
 
     @property
     def joint_accelerations(self) -> np.ndarray:
@@ -64,7 +68,7 @@ class Solution:
 
     @property
     def residual_bound(self) -> float:
-        """Bound of the residual by rounding."""
+        """Largest residual that rounding explains."""
         return self._found.residual_bound
 
     @property
@@ -83,21 +87,22 @@ class Solution:
         return self._found.valid
 
     def of_joint(self, body: int) -> np.ndarray:
-        """Returns the accelerations of the coordinates of a body's inboard joint, a view.
+        """Returns a view of the accelerations of one body's joint coordinates.
 
-        A revolute joint has 1 number, a spherical 3 (body axes), a free 6 (angular, then the origin's), a bead 3.
+        They are 1 number for a revolute joint, 3 for a spherical joint (body axes), 6 for a free joint (angular, then
+        those of the origin) and 3 for a bead.
         """
         first = self._found.first
         if not 0 <= body < len(first) - 1:
-            raise IndexError(f"body {body} of {len(first) - 1}")
+            raise IndexError(f"there is no body {body} (Solution.of_joint): give 0 to {len(first) - 2}")
         return self.joint_accelerations[first[body] : first[body + 1]]
 
 
 def solve(scene: Scene, force: Callable[..., Any] | None = None) -> Solution:
     """Computes accelerations and joint forces of a scene at its start, by the divide-and-conquer algorithm.
 
-    ``force`` is a force of your own, see ``Simulation``. Notes of the reader become warnings. The interpreter's lock
-    is released. Raises InputError if the scene is wrong, and ComputationError if a joint's matrix is singular.
+    ``force`` is a force of your own, see ``Simulation``. The reader's notes become warnings. The GIL is released.
+    Raises InputError if the scene is wrong, and ComputationError if a joint's matrix is singular.
     """
     model = model_of(scene)
     notes = model.notes

@@ -1,4 +1,4 @@
-"""Python values as YAML, without loss: numbers keep all their digits, and texts are quoted."""
+"""Python values as YAML, without loss: numbers keep all their digits, and strings are quoted."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*\Z")
 def value_text(value: Any, where: str) -> str:
     """Returns one value in YAML's flow style. ``where`` is its key, for messages.
 
-    Takes None, bool, numbers, str, paths, mappings, lists, tuples, and NumPy's numbers and arrays.
+    It takes None, bool, numbers, str, paths, mappings, lists, tuples, and NumPy's numbers and arrays.
     Raises InputError for anything else.
     """
     if isinstance(value, Mapping):
@@ -33,23 +33,23 @@ def value_text(value: Any, where: str) -> str:
     if type(value).__module__.partition(".")[0] == "numpy" and hasattr(value, "tolist"):
         return value_text(value.tolist(), where)
     raise InputError(
-        f"a {type(value).__name__} is no value of a scene ({where}): give a number, a text, a list or a dict"
+        f"a {type(value).__name__} cannot be a value of a scene ({where}): give a number, a string, a list or a dict"
     )
 
 
 def scene_text(scene: Mapping[str, Any]) -> str:
-    """Returns the text of a scene file, with a line for each of its keys and chains."""
+    """Returns a scene as the text of a scene file. Each key and each chain has a line."""
     return "".join(f"{_key(key, 'scene')}: {value_text(value, str(key))}\n" for key, value in scene.items())
 
 
 def _key(key: Any, where: str) -> str:
     if not isinstance(key, str):
-        raise InputError(f"the key {key!r} is no text ({where}): give texts as keys")
+        raise InputError(f"the key {key!r} is not a string ({where}): give strings as keys")
     return key if _PLAIN.match(key) else json.dumps(key, ensure_ascii=False)
 
 
 def _list_text(items: list[str]) -> str:
-    """Lists of maps and of lists have a line for each entry."""
+    """Returns a list in flow style, with a line for each entry that is a list or a map itself."""
     is_long = any(item[0] in "{[" for item in items)
     return "[\n  " + ",\n  ".join(items) + "]" if is_long else "[" + ", ".join(items) + "]"
 
