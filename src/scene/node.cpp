@@ -241,7 +241,7 @@ std::string Node::where(char const* noun, std::int64_t index) const {
     if (parent) place += ": " + path();
     if (index == 0) index = body();
     if (index > 0) place += fmt::format(", {} {}", noun, index);
-    if (parent) place += line > 0 ? fmt::format(", line {}", line) : ", from --set or set()";
+    if (parent) place += line > 0 ? fmt::format(", line {}", line) : ", set outside the file";
     return place;
 }
 

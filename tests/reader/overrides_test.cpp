@@ -91,9 +91,9 @@ Bad const bad[] = {
      "a key is not plain text (--set title=[1, 2): write `name: value`, and close every bracket"},
     {"box={a: 1, a: 2}", "key `a` is given twice (--set box={a: 1, a: 2}): keep one of them"},
     {"chains[0].coutn=1",
-     "unknown key `coutn` (s.yaml: chains[0].coutn, from --set or set()): did you mean `count`?"},
+     "unknown key `coutn` (s.yaml: chains[0].coutn, set outside the file): did you mean `count`?"},
     {"chains[0].count=0",
-     "count 0 is below 1 (s.yaml: chains[0].count, from --set or set()): give 1 or more"},
+     "count 0 is below 1 (s.yaml: chains[0].count, set outside the file): give 1 or more"},
 };
 
 TEST(Overrides, bad_ones) {
