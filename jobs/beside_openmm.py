@@ -16,7 +16,7 @@ import replicas
 from replicas import ROOT, UserError
 
 MODEL = "calvados2"
-LONGEST_STEP = 0.1  # ps
+LONGEST_STEP = 0.06  # ps
 MOST_APART = 3  # standard errors
 KNOWN = -0.012  # of the radius: what rigid links in place of stiff bonds change, by `catena bench sampling` of alpha-synuclein
 
@@ -181,6 +181,8 @@ def main():
         raise UserError(f"--step {asked.step:g} ps is too long for either method: give 0.01 to 0.06 (ps)")
     if asked.picture is not None:
         replicas.check_picture(asked)
+    if asked.json is not None and not os.path.isdir(os.path.dirname(asked.json) or "."):
+        raise UserError(f"there is no folder for the table (--json {asked.json}): make it first")
     proteins = chosen(replicas.read_proteins(asked.proteins), asked.only)
     asked.model, asked.steps = MODEL, 1
     for row in proteins:

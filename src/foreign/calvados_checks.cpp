@@ -69,6 +69,17 @@ void refuse_lost_forces(PackageFile const& config, SystemText const& system, boo
     }
 }
 
+/// Notes an external force that the configuration does not ask for: a pull towards a slab, say,
+/// would act throughout.
+void note_unasked_force(PackageFile const& config, SystemText const& system, Settings& settings) {
+    char const* const kind = "CustomExternalForce";
+    if (!system.holds(kind) || config.truth("slab_eq") || config.truth("ext_force")) return;
+    settings.notes.push_back(fmt::format(
+        "{} has a {} that config.yaml does not ask for (slab_eq, ext_force): it acts throughout. "
+        "If it should not, import with --leave-out {}.",
+        bare_name(system.file()), kind, kind));
+}
+
 /// Last line of a text that does not end with a line feed; empty for others.
 std::string open_line(std::string const& text) {
     std::size_t const feed = text.rfind('\n');
@@ -114,6 +125,7 @@ void check_configuration(PackageFile const& config, Files const& files, bool is_
     SystemText const system(files.system);
     refuse_another_size(config, system);
     refuse_lost_forces(config, system, is_continued);
+    note_unasked_force(config, system, settings);
     if (settings.steps > 0 && settings.every > settings.steps)
         settings.notes.push_back(
             fmt::format("config.yaml has wfreq {} and {} steps: the package would write no frame, "

@@ -89,7 +89,7 @@ void note_forces(Scene& scene) {
     else if (run.step > longest_shown_step && !openmm.builder.empty())
         scene.note(
             fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to "
-                        "sample such chains correctly, longer ones were not.",
+                        "sample chains of beads correctly, longer ones were not.",
                         1000 * run.step, 1000 * longest_shown_step));
 }
 

@@ -142,6 +142,15 @@ TEST_F(DamagedPackage, AForceThatTheSystemLacksIsRefused) {
     expect_note("The start is checkpoint.pdb");
 }
 
+TEST_F(DamagedPackage, AnExternalForceThatWasNotAskedForIsSaid) {
+    std::string xml = text_in(folder + "/idr.xml");
+    xml.insert(xml.find("</Forces>"),
+               "<Force type=\"CustomExternalForce\" version=\"1\" forceGroup=\"0\" energy=\"0\">"
+               "<PerParticleParameters/><GlobalParameters/><Particles/></Force>");
+    write(folder + "/idr.xml", xml);
+    expect_note("idr.xml has a CustomExternalForce that config.yaml does not ask for");
+}
+
 TEST_F(DamagedPackage, SettingsThatNobodyMeansAreSaid) {
     replace("wfreq: 7000", "wfreq: 70000000");
     expect_note("config.yaml has wfreq 70000000 and 7070000 steps: the package would write no fra");
