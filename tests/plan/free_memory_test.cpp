@@ -28,7 +28,8 @@ class FreeHostMemory : public ::testing::Test {
         std::filesystem::create_directories(path.parent_path());
         std::ofstream(path) << text;
     }
-    std::string const root_ = ::testing::TempDir() + "catena-free-memory/";
+    std::string const root_ =
+        ::testing::TempDir() + "catena-free-memory-" + std::to_string(::getpid()) + "/";
 };
 
 TEST_F(FreeHostMemory, IsWhatTheKernelCallsAvailable) {
