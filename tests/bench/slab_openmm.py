@@ -129,7 +129,10 @@ def run_openmm(asked, seed):
     system = make_system(openmm, beads)
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, FRICTION, STEP)
     integrator.setRandomNumberSeed(seed)
-    context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(asked.platform))
+    # Processes that compile kernels beside each other must not share OpenMM's folders for them.
+    os.environ["OPENMM_CACHE_DIR"] = os.path.abspath(folder)
+    properties = {"TempDirectory": os.path.abspath(folder)} if asked.platform == "CUDA" else {}
+    context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(asked.platform), properties)
     context.setPositions([openmm.Vec3(*at) for _, _, at in beads])
     energy = context.getState(getEnergy=True, groups={1, 2}).getPotentialEnergy()._value
     context.setVelocitiesToTemperature(TEMPERATURE, seed)
