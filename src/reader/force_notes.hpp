@@ -2,7 +2,10 @@
 // is unusual about them.
 #pragma once
 
+#include <optional>
+
 #include "scene/scene.hpp"
+#include "systems/import.hpp"
 
 namespace catena::scene {
 
@@ -14,6 +17,12 @@ void note_water(Scene&);
 /// strength, pH or step. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
+/// Notes a step of a System's beads beyond those that were shown to sample chains correctly, at
+/// the beads' masses and the links' lengths. Precondition: the chains have been read.
+void note_system_step(Scene&);
+/// Notes charges of a System that act as in water of another temperature than the run's, and water
+/// that is frozen or boils. Precondition: all sections except the chains have been read.
+void note_screening(Scene&, std::optional<Screening> const&);
 /// Notes residues between which no forces act, if the scene is to be run: they would move as an
 /// ideal chain. Precondition: all sections have been read.
 void note_missing_forces(Scene&);

@@ -184,11 +184,14 @@ Scene parse_scene(std::string const& text, std::string const& name,
     made.chains.reserve(drafts.size());
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
     scene::note_missing_forces(made);
+    scene::note_system_step(made);
     scene::note_water(made);
     made.hash = scene::fingerprint(made);
     return made;
 } catch (std::bad_alloc const&) {
-    throw InputError("the scene does not fit into memory", name, "make fewer bodies or copies");
+    throw InputError("the scene does not fit into memory", name,
+                     is_limited_by_ulimit() ? "raise `ulimit -v`, or make fewer bodies or copies"
+                                            : "make fewer bodies or copies");
 }
 
 }  // namespace catena
