@@ -340,7 +340,8 @@ void note_insertions(Numbering const& by, RigidBodies& made) {
 }
 
 RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numbering const& by) {
-    if (list(rigid).items.empty())
+    refuse_no_list(rigid);
+    if (rigid.items.empty())
         fail(rigid, "the list of rigid domains is empty", "leave the key out or " + by.remedy());
     RigidBodies made;
     for (Node const& item : rigid.items) {
