@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "io/memory_limit.hpp"
 #include "io/printable.hpp"
 #include "keys/maps.hpp"
 #include "place/concentration.hpp"
