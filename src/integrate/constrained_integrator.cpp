@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "dynamics/closing.hpp"
 #include "error.hpp"
 
 namespace catena {
@@ -148,8 +149,8 @@ void ConstrainedIntegrator::choose_sweeps() {
     }
     std::ostringstream line;
     line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance
-         << " within " << most_sweeps << " sweeps of a step of " << scheme_.step << " (error "
-         << last_error_ << "): "
+         << " within " << most_sweeps << " sweeps of a step of " << scheme_.step << " ("
+         << closing_error(last_error_) << "): "
          << (last_error_ < 1e-13 ? "this is rounding error, use a tolerance of 1e-12 or more"
                                  : "choose a smaller dynamics.step");
     throw ComputationError(line.str());
