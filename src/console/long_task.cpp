@@ -2,6 +2,7 @@
 // an allocation of a second thread reserves much address space.
 #include "console/long_task.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 #include <utility>
@@ -12,6 +13,7 @@ namespace catena::command {
 
 LongTask::LongTask(bool speaks, std::string what, std::chrono::milliseconds every)
     : what_(printable(what)), every_(every) {
+    std::replace(what_.begin(), what_.end(), '\n', ' ');
     if (!speaks) return;
     try {
         thread_ = std::thread([this] { speak(); });

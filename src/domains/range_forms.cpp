@@ -101,7 +101,7 @@ std::string plain(std::string text, int& dashes, int& spaces) {
 std::vector<std::string> ranges_of(std::string const& text) {
     int ignored = 0;
     std::string const written = plain(text, ignored, ignored);
-    for (char const* const marks : {",;&+", ",;&+ \t"}) {
+    for (char const* const marks : {",;&+ \t", ",;&+"}) {
         std::vector<std::string> parts = parts_of(written, marks), ranges;
         std::string chain;
         for (std::string const& part : parts) {

@@ -364,7 +364,9 @@ RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numberin
 
 RigidBodies read_rigid_bodies(Node const& rigid, RigidSource const& source) {
     Numbering const numbering(source.numbers);
-    if (is_map_of_ranges(rigid)) refuse_map(rigid);
+    bool const keyed =
+        rigid.kind == Node::Kind::map && (rigid.find("domains") || rigid.find("pae"));
+    if (!keyed && is_map_of_ranges(rigid)) refuse_map(rigid);
     RigidBodies made = rigid.kind == Node::Kind::map ? RigidMap(rigid, source).read()
                                                      : read_list(rigid, source.numbers, numbering);
     if (rigid.kind == Node::Kind::map)

@@ -91,6 +91,7 @@ class Relaxation {
         std::vector<Vec3> const given = at_;
         StartRelaxation found;
         found.from = found.to = look();
+        if (found.from.is_undefined()) refuse_absurd(scene_, found.from);
         for (int knocks = 0;; ++knocks) {
             descend(found);
             found.to = look();

@@ -79,7 +79,7 @@ std::string names_of(OpenMM::System const& system, bool custom_bonds_only) {
         OpenMM::Force const& force = system.getForce(i);
         if (custom_bonds_only && dynamic_cast<OpenMM::CustomBondForce const*>(&force) == nullptr)
             continue;
-        std::string const name = label_of(force);
+        std::string const name = custom_bonds_only ? shown_name(force) : label_of(force);
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));

@@ -69,7 +69,7 @@ TEST_F(RigidFiles, of_the_package_may_have_segments_whose_loops_become_rigid_whe
               "residues 10 to 12 would be a flexible loop between two parts of one rigid body, "
               "which a serial chain cannot hold (s.yaml: chains[0].rigid, line 1): write \"2-15\" "
               "to make the loop rigid, too (with `domains` or `pae`: `longest_loop: 3`), or make "
-              "two bodies of the parts: rigid: [\"6-9\", \"13-15\"]");
+              "two bodies of the parts: rigid: [\"2-9\", \"13-15\"]");
     EXPECT_EQ(bodies_of("domains: domains.yaml, longest_loop: 3"),
               (Offsets{0, 1, 15, 16, 17, 18, 19, 20}));
     // A domain within the loop is then part of the body.
