@@ -146,7 +146,8 @@ bool StartForces::is_absurd() const {
 }
 
 bool StartForces::is_undefined() const {
-    return std::isnan(energy) && std::isfinite(largest_force);
+    double const kt = Scene().boltzmann() * temperature;
+    return !std::isfinite(energy) && largest_force <= ::catena::largest_force * kt;
 }
 
 std::string StartForces::energy_text() const {
