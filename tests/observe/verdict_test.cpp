@@ -57,6 +57,16 @@ TEST(Verdict, AnEnergyThatIsNoNumberMakesAnyRunInvalid) {
         EXPECT_NE(v.advice.find("not a finite number at step 700"), std::string::npos) << v.advice;
     }
 }
+TEST(Closing, PositionsThatAreNotFiniteAreSaid) {
+    try {
+        Closing().close(0, [] { return NAN; }, [] {});
+        FAIL();
+    } catch (ComputationError const& error) {
+        EXPECT_NE(std::string(error.what()).find("(positions are no longer finite)"),
+                  std::string::npos)
+            << error.what();
+    }
+}
 TEST(Verdict, ASmallDriftIsSaid) {
     Scene const scene = chain_under("rattle");
     EnergyWatch watch(scene);
