@@ -30,9 +30,9 @@ double constexpr celsius_zero = 273.15;
 /// Relative difference below which temperatures count as equal.
 double constexpr same_temperature = 1e-9;
 
-/// Longest plausible step of residues with friction, and longest one that was shown to sample
-/// them correctly (`catena bench sampling`), ps.
-double constexpr longest_usual_step = 0.2, longest_shown_step = 0.06;
+/// Shortest and longest plausible step of residues with friction, and longest one that was shown to
+/// sample them correctly (`catena bench sampling`), ps.
+double constexpr shortest_usual_step = 0.001, longest_usual_step = 0.2, longest_shown_step = 0.06;
 /// Mass of the lightest residue in amu and length of a link in nm for which that step was shown.
 double constexpr shown_mass = 57.05, shown_link = 0.38;
 /// Relative difference of masses and lengths that leaves the step as it is.
@@ -124,38 +124,47 @@ void note_forces(Scene& scene) {
             "did you mean {:.6g} (for {:.6g} "
             "mmol/l)?",
             openmm.ionic_strength, openmm.ionic_strength / 1000, openmm.ionic_strength));
-    if (!run.given || scene.si || is_implicit(run.integrator)) return;
-    if (run.step > longest_usual_step)
-        scene.note(
-            fmt::format("dynamics.step is {0:.6g} ps, that is {1:.6g} fs: steps of such chains are "
-                        "0.01 to 0.06 ps. Did you mean {2:.6g}?",
-                        run.step, 1000 * run.step, run.step / 1000));
-    else if (run.step > longest_shown_step && !openmm.builder.empty())
-        scene.note(
-            fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to "
-                        "sample chains of beads correctly, longer ones were not.",
-                        1000 * run.step, 1000 * longest_shown_step));
 }
 
-void note_system_step(Scene& scene) {
+namespace {
+
+/// Sentence on a step of chains like those whose steps were shown; empty if it needs none.
+std::string step_of_residues(double step) {
+    if (step > longest_usual_step)
+        return fmt::format(
+            "dynamics.step is {:.6g} ps, that is {:.6g} fs: steps of such chains are "
+            "0.01 to 0.06 ps.{}",
+            step, 1000 * step,
+            step / 1000 < shortest_usual_step ? ""
+                                              : fmt::format(" Did you mean {:.6g}?", step / 1000));
+    if (step <= longest_shown_step) return "";
+    return fmt::format(
+        "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to sample chains of beads "
+        "correctly, longer ones were not.",
+        1000 * step, 1000 * longest_shown_step);
+}
+
+/// The same for a System's beads of other masses and distances.
+std::string step_of_others(double step, FastestBead const& fastest) {
+    double const shown = longest_shown_step * fastest.scale;
+    if (step <= shown) return "";
+    return fmt::format(
+        "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown for residues, which are "
+        "{:.2g} fs for the System's beads of {:.4g} amu on links of {:.4g} nm.",
+        1000 * step, 1000 * longest_shown_step, 1000 * shown, fastest.mass, fastest.length);
+}
+
+}  // namespace
+
+void note_step(Scene& scene) {
     DynamicsSpec const& run = scene.dynamics;
-    bool const applies = scene.forces.openmm && !scene.forces.openmm->system.empty() && run.given &&
-                         !scene.si && !is_implicit(run.integrator);
-    if (!applies || run.step > longest_usual_step) return;  // note_forces() has noted longer steps
+    if (!scene.forces.openmm || !run.given || scene.si || is_implicit(run.integrator)) return;
     FastestBead const fastest = fastest_bead(scene);
-    bool const alike = std::abs(fastest.scale - 1) < similar || std::isinf(fastest.scale) ||
+    bool const alike = !scene.forces.openmm->builder.empty() || std::isinf(fastest.scale) ||
+                       std::abs(fastest.scale - 1) < similar ||
                        (fastest.scale > 1 && has_amino_acids(scene));
-    double const shown = longest_shown_step * (alike ? 1 : fastest.scale);
-    if (run.step <= shown) return;
-    scene.note(
-        alike ? fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to "
-                            "sample chains of beads correctly, longer ones were not.",
-                            1000 * run.step, 1000 * longest_shown_step)
-              : fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown for "
-                            "residues, which are {:.2g} fs for the System's beads of {:.4g} amu on "
-                            "links of {:.4g} nm.",
-                            1000 * run.step, 1000 * longest_shown_step, 1000 * shown, fastest.mass,
-                            fastest.length));
+    std::string const note = alike ? step_of_residues(run.step) : step_of_others(run.step, fastest);
+    if (!note.empty()) scene.note(note);
 }
 
 void note_screening(Scene& scene, std::optional<Screening> const& screening) {

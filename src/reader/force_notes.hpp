@@ -14,12 +14,13 @@ namespace catena::scene {
 void note_water(Scene&);
 
 /// Notes a temperature of the force field that differs from the run's, and implausible ionic
-/// strength, pH or step. Water outside the range of measured permittivity is noted, too.
+/// strength or pH. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
-/// Notes a step of a System's beads beyond those that were shown to sample chains correctly, at
-/// the beads' masses and the links' lengths. Precondition: the chains have been read.
-void note_system_step(Scene&);
+/// Notes a step that is implausible, or beyond those that were shown to sample chains correctly. A
+/// System's beads are judged by their masses and the lengths of their links. Precondition: the
+/// chains have been read.
+void note_step(Scene&);
 /// Notes charges of a System that act as in water of another temperature than the run's, and water
 /// that is frozen or boils. Precondition: all sections except the chains have been read.
 void note_screening(Scene&, std::optional<Screening> const&);

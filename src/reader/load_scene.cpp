@@ -185,7 +185,7 @@ Scene parse_scene(std::string const& text, std::string const& name,
     made.chains.reserve(drafts.size());
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
     scene::note_missing_forces(made);
-    scene::note_system_step(made);
+    scene::note_step(made);
     scene::note_water(made);
     made.hash = scene::fingerprint(made);
     return made;
