@@ -8,7 +8,9 @@
 #include <filesystem>
 
 #include "command/commands.hpp"
+#include "console/long_task.hpp"
 #include "console/option_values.hpp"
+#include "console/terminal.hpp"
 #include "console/text.hpp"
 #include "error.hpp"
 #include "foreign/files.hpp"
@@ -34,12 +36,18 @@ struct Written {
     Json check;
 };
 
+/// Reads the scene, and says so while that takes long.
+Scene read_with_words(std::string const& text, foreign::SceneDraft const& draft) {
+    LongTask const task(!is_quiet(), "reading " + draft.system);
+    return parse_scene(text, draft.file);
+}
+
 /// Reads and checks the text of a scene. Throws InputError, which names the file and key that a
 /// wrong value came from: the scene is not there yet.
 Written checked(foreign::SceneDraft const& draft) {
     Written written{draft.file, text_of(draft), {}, {}};
     try {
-        Scene const scene = parse_scene(written.text, draft.file);
+        Scene const scene = read_with_words(written.text, draft);
         written.check = check_scene(scene, *serial_communicator(), true).json;
         written.notes = scene.notes;
     } catch (InputError const& error) {
