@@ -1,7 +1,9 @@
-// Kernels that move positions and forces between OpenMM's arrays and the inboxes of ranks.
+// Kernels that move positions and forces between OpenMM's arrays, those of layers and the inboxes
+// of ranks.
 #include <cuda/atomic>
 
 #include "cuda/exchange/peer_exchange.cuh"
+#include "cuda/openmm/gpu_layer.hpp"
 #include "cuda/openmm/gpu_path.hpp"
 #include "cuda/openmm/pair_share.hpp"
 #include "cuda/space/kernels.cuh"
@@ -44,6 +46,13 @@ __global__ void meet(PeerBoxes boxes) {
 void put(std::int64_t count, ArrivedBeads const& arrived, cudaStream_t stream) {
     each(count, arrived, stream);
 }
+template <class Number>
+void copy(std::int64_t count, LayerPositions<Number> const& positions, cudaStream_t stream) {
+    each(count, positions, stream);
+}
+template void copy(std::int64_t, LayerPositions<float> const&, cudaStream_t);
+template void copy(std::int64_t, LayerPositions<double> const&, cudaStream_t);
+void add(LayerForces const& forces, cudaStream_t stream) { each(3 * forces.count, forces, stream); }
 void send(std::int64_t count, SentPositions const& sent, cudaStream_t stream) {
     each(3 * count, sent, stream);
 }

@@ -4,6 +4,7 @@
 // there. The chains' own work continues during the transfer.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -84,6 +85,7 @@ class GhostPath final : public GpuPath {
         pairs_->wait_for_positions(stream_);
         pairs_->take_positions(particles_.position, *inboxes_, stream_);
         is_taken_.record(stream_);
+        put_layers();
     }
 
     /// Enqueues the gathering and sending of own beads that are ghosts elsewhere. The streams
@@ -136,11 +138,42 @@ class GhostPath final : public GpuPath {
             halo_.note_carried();
         else
             halo_.carry(out(), in());
-        if (!goes_directly_) place_all(beads);
+        if (!goes_directly_) {
+            place_all(beads);
+            put_layers();
+        }
         exchange_.end = seconds_now();
         if (pairs_) choose_pairs();
         compute(beads);
-        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // see SingleRankPath
+        if (pairs_) keep_lists();
+    }
+
+    /// See PairList.
+    void keep_lists() {
+        std::vector<OpenMmOnDevice*> const all = contexts();
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (pairs_->has_list(i)) all[i]->keep_list();
+    }
+
+    void compute_contexts() override {
+        openmm_->compute();
+        for (auto const& layer : layers_) layer->compute();
+    }
+
+    /// Returns the Context of all particles, then those of the layers.
+    std::vector<OpenMmOnDevice*> contexts() const {
+        std::vector<OpenMmOnDevice*> all{openmm_.get()};
+        for (auto const& layer : layers_) all.push_back(&layer->openmm());
+        return all;
+    }
+    /// Returns the distance, nm, that particles may move before a list must be rebuilt. All lists
+    /// are then rebuilt at once, by all ranks.
+    double lists_last() const {
+        std::vector<OpenMmOnDevice*> const all = contexts();
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (pairs_->has_list(i)) least = std::min(least, all[i]->list_lasts());
+        return least;
     }
 
     /// Puts arrived ghosts, and own beads if necessary, into OpenMM's arrays; reorders particles if
@@ -191,11 +224,11 @@ class GhostPath final : public GpuPath {
 
     /// Chooses this rank's pairs and records if their list is rebuilt.
     void choose_pairs() {
-        bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
+        bool const anew = pairs_->choose(contexts(), of_this_order_ == 0);
         if (halo_.is_audited()) audit_list(anew);
         if (!pairs_->has_list()) return;
         of_an_order_ = evaluations_of_a_listed_order;
-        note_list(anew);
+        note_list(anew, lists_last());
     }
 
     /// Checks on the host, in double precision, that no bead has moved farther than the kept list
@@ -204,10 +237,11 @@ class GhostPath final : public GpuPath {
     void audit_list(bool anew) {
         std::vector<Vec3> x = positions();
         bool holds = true;
+        double const lasts = lists_last();
         for (std::size_t i = 0; !anew && i < x.size(); ++i) {
             double const rounding =
                 0x1p-22 * (norm(x[i] - particles_.origin) + norm(particles_.box));
-            holds = holds && norm(x[i] - listed_at_[i]) <= openmm_->list_lasts() + rounding;
+            holds = holds && norm(x[i] - listed_at_[i]) <= lasts + rounding;
         }
         if (halo_.communicator().sum(holds ? 0 : 1) > 0)
             throw SharedError(

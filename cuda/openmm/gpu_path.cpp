@@ -23,8 +23,8 @@ class SingleRankPath final : public GpuPath {
     SingleRankPath(OpenMM::Context& context, DevicePathPlan plan)
         : GpuPath(context, std::move(plan), evaluations_of_an_order) {
         compute_with(on_device(context));
-        may_ask_ = plan_.keeps_list && why_pairs_cannot_be_shared().empty();
-        if (may_ask_) openmm_->share(-1, 0, 1);
+        list_ = std::make_unique<PairList>(
+            *openmm_, plan_.keeps_list && why_pairs_cannot_be_shared().empty());
     }
     // The members' memory belongs to OpenMM's CUDA context.
     ~SingleRankPath() override { make_current(); }
@@ -35,7 +35,8 @@ class SingleRankPath final : public GpuPath {
         if (of_this_order_ == 0) order_anew(beads);
         start(beads, timed);
         put_own(beads);
-        computes_later_ = asks_ && plan_.overlap;
+        put_layers();
+        computes_later_ = list_->is_kept() && plan_.overlap;
         if (!computes_later_) choose_list_and_compute(beads);
         if (timed) events_->chains_begin.record(stream_of(*beads.front()));
     }
@@ -52,11 +53,10 @@ class SingleRankPath final : public GpuPath {
     }
 
   private:
-    /// For thousands of particles OpenMM keeps a pair list. Before it checks if any particle has
-    /// moved far, it sorts blocks of particles, at every evaluation. Here the check is made while
-    /// positions are written, and the host reads its result while the chains continue.
+    /// The host reads if particles have moved far while the chains continue.
     void choose_list_and_compute(std::span<DeviceBeads* const> beads) {
-        if (asks_) {
+        is_anew_ = false;
+        if (list_->is_kept()) {
             placed_.record(stream_);
             exchange_.begin = seconds_now();
             placed_.wait();
@@ -65,15 +65,20 @@ class SingleRankPath final : public GpuPath {
             // reached.
             if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
             bool const far = std::exchange(flags_->data()->far, 0) != 0;
-            bool const anew = far || of_this_order_ == 0 || !std::exchange(has_list_, true);
-            if (anew) openmm_->make_list(0, 1);
-            note_list(anew);
+            is_anew_ = list_->choose(far || of_this_order_ == 0);
+            note_list(is_anew_, openmm_->list_lasts());
         }
         compute(beads);
-        // The list is kept until it is rebuilt, also for energies that are requested meanwhile.
-        if (asks_) openmm_->keep_list();
-        if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
-        if (asks_) of_an_order_ = evaluations_of_a_listed_order;
+        if (list_->is_kept()) of_an_order_ = evaluations_of_a_listed_order;
+    }
+
+    /// OpenMM returns only when a new list is complete. Layers then begin to compute before.
+    void compute_contexts() override {
+        bool const new_order = of_this_order_ == 0;
+        if (!is_anew_) openmm_->compute();
+        for (auto const& layer : layers_) layer->choose_list_and_compute(new_order);
+        if (is_anew_) openmm_->compute();
+        list_->note_evaluation();
     }
 
     void order_anew(std::span<DeviceBeads* const> beads) {
@@ -85,8 +90,8 @@ class SingleRankPath final : public GpuPath {
         order(x, {}, mean(x));
     }
 
-    bool may_ask_ = false, has_computed_ = false, has_list_ = false, asks_ = false,
-         computes_later_ = false;
+    std::unique_ptr<PairList> list_;
+    bool is_anew_ = false, computes_later_ = false;
     Event placed_{Event::For::clock};
 };
 
@@ -104,6 +109,8 @@ GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
     particles_.trouble = &flags_->data()->trouble;
     particles_.bead = own_->data();
     if (plan_.box) particles_.box = *plan_.box;
+    for (DeviceLayer& layer : plan_.layers)
+        layers_.push_back(std::make_unique<GpuLayer>(std::move(layer)));
 }
 
 // The members' memory belongs to OpenMM's CUDA context.
@@ -156,6 +163,7 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
     place_.resize(particles);
     for (std::size_t i = 0; i < particles; ++i)
         place_[static_cast<std::size_t>(particle_at[i])] = static_cast<std::int32_t>(i);
+    for (auto const& layer : layers_) layer->order(of_particle, place_);
     std::vector<DeviceBead> beads(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_of(plan_.particle[i], x[i]);
     upload(*own_, beads.data(), beads.size());
@@ -173,28 +181,27 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
     particles_.listed = nullptr;
     particles_.double_listed = nullptr;
     particles_.far = nullptr;
-    of_this_order_ = lists_of_this_order_ = 0;
+    of_this_order_ = 0;
+    moved_in_this_order_ = 0;
 }
 
-void GpuPath::note_list(bool anew) {
+void GpuPath::note_list(bool anew, double lasts) {
     ++(anew ? pair_lists_.made : pair_lists_.kept);
     if (!anew) return;
-    ++lists_of_this_order_;
-    bool const twice = particles_.double_position != nullptr;
-    void const* const now =
-        twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
-    auto const numbers = static_cast<std::size_t>(4 * particles_.places);
-    double* const listed = listed_.of(twice ? numbers : numbers / 2).data();
-    check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)),
-                          cudaMemcpyDeviceToDevice, stream_),
-          "receive lists");
-    auto const lasts = static_cast<float>(openmm_->list_lasts());
-    if (twice)
-        particles_.double_listed = listed;
+    moved_in_this_order_ += lasts + most_of_a_step;
+    listed_.take(openmm_->arrays(), stream_);
+    if (particles_.double_position)
+        particles_.double_listed = static_cast<double const*>(listed_.data());
     else
-        particles_.listed = reinterpret_cast<float const*>(listed);
-    particles_.farthest_squared = lasts * lasts;
+        particles_.listed = static_cast<float const*>(listed_.data());
+    particles_.farthest_squared = static_cast<float>(lasts) * static_cast<float>(lasts);
     particles_.far = &flags_->data()->far;
+}
+
+std::vector<DevicePath::PairLists> GpuPath::pair_lists_of_layers() const {
+    std::vector<PairLists> lists;
+    for (auto const& layer : layers_) lists.push_back(layer->pair_lists());
+    return lists;
 }
 
 void GpuPath::put_own(std::span<DeviceBeads* const> beads) {
@@ -207,16 +214,23 @@ void GpuPath::put_own(std::span<DeviceBeads* const> beads) {
     }
 }
 
+void GpuPath::put_layers() {
+    if (layers_.empty()) return;
+    events_->all_positions.record(stream_);
+    for (auto const& layer : layers_) layer->put(particles_, events_->all_positions);
+}
+
 void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     if (timed_) events_->openmm_begin.record(stream_);
-    openmm_->compute();
+    compute_contexts();
+    for (auto const& layer : layers_) layer->add_to(particles_, stream_);
     complete_forces();
     if (timed_) events_->openmm_end.record(stream_);
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));
     of_this_order_ =
-        lists_of_this_order_ < lists_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
+        moved_in_this_order_ < distance_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
 }
 
 void GpuPath::finish(std::span<DeviceBeads* const> beads) {

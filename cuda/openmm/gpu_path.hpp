@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "cuda/device/owners.hpp"
+#include "cuda/openmm/gpu_layer.hpp"
 #include "cuda/openmm/openmm_on_device.hpp"
+#include "cuda/openmm/pair_list.hpp"
+#include "cuda/openmm/room.hpp"
 #include "neighbours/bead_tables.hpp"
 #include "neighbours/device_path.hpp"
 
@@ -19,25 +22,6 @@ std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context&);
 
 /// Returns the mean of the positions `x`.
 Vec3 mean(std::span<Vec3 const> x);
-
-/// Memory that is reallocated with 1/8 more than requested if a request exceeds it.
-template <class Owner>
-class Room {
-  public:
-    Owner& of(std::size_t count) {
-        if (!owner_ || capacity_ < count) {
-            owner_.reset();
-            capacity_ = count + count / 8;
-            owner_ = std::make_unique<Owner>(capacity_);
-        }
-        return *owner_;
-    }
-    Owner& operator*() const { return *owner_; }
-
-  private:
-    std::unique_ptr<Owner> owner_;
-    std::size_t capacity_ = 0;
-};
 
 /// Enqueues the copy of `count` arrived ghosts to their places in OpenMM's arrays.
 void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
@@ -56,18 +40,19 @@ class GpuPath : public DevicePath {
     Clock clock() override;
     std::vector<Vec3> positions() override;
     PairLists pair_lists() const override { return pair_lists_; }
+    std::vector<PairLists> pair_lists_of_layers() const override;
 
   protected:
-    /// Numbers of evaluations, and of pair lists, after which particles are brought into a new
-    /// order. OpenMM's own integrators reorder after 250 evaluations, which would cost a twentieth
-    /// of a step of 100,000 beads. Chains move little in that time. In a condensate of 7,143 chains
-    /// OpenMM's forces take as long before a reordering after 6,600 evaluations as after it (2.11
-    /// ms, H200). Without checks of how far beads have moved, particles are reordered more often.
-    /// With such checks they are also reordered after `lists_of_an_order` pair lists. Beads move at
-    /// most some 0.2 nm per list, and coordinates far from their periodic cell lose digits in
-    /// single precision.
-    static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 8000,
-                         lists_of_an_order = 400;
+    /// Numbers of evaluations after which particles are brought into a new order. OpenMM's own
+    /// integrators reorder after 250 evaluations, which would cost a twentieth of a step of 100,000
+    /// beads. Chains move little in that time. In a condensate of 7,143 chains OpenMM's forces take
+    /// as long before a reordering after 6,600 evaluations as after it (2.11 ms, H200). Without
+    /// checks of how far beads have moved, particles are reordered more often.
+    static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 8000;
+    /// With such checks particles are also reordered before a bead can have moved this distance,
+    /// nm: coordinates far from their periodic cell lose digits in single precision. A bead may
+    /// exceed the distance for which a list lasts by its motion in one step, nm.
+    static constexpr double distance_of_an_order = 80, most_of_a_step = 0.04;
 
     /// Flags that kernels set in pinned memory. The flag `trouble` is the index of an own bead
     /// whose position or force is not finite, `of_ghosts` that of a ghost; -1: none. The
@@ -80,7 +65,8 @@ class GpuPath : public DevicePath {
         Event begun{Event::For::clock}, chains_begin{Event::For::clock},
             chains_end{Event::For::clock}, openmm_begin{Event::For::clock},
             openmm_end{Event::For::clock};
-        Event positions{Event::For::order}, forces{Event::For::order};
+        Event positions{Event::For::order}, all_positions{Event::For::order},
+            forces{Event::For::order};
     };
 
     static cudaStream_t stream_of(DeviceBeads const& group) {
@@ -111,13 +97,19 @@ class GpuPath : public DevicePath {
     /// OpenMM has read the previous positions by then, because the chains' streams waited for its
     /// forces.
     void put_own(std::span<DeviceBeads* const> beads);
-    /// Enqueues OpenMM's computation of forces and counts the evaluation.
+    /// Enqueues the copy of all particles' positions to the layers, after OpenMM's stream has them.
+    void put_layers();
+    /// Enqueues OpenMM's computation of forces, those of the layers included, and counts the
+    /// evaluation.
     void compute(std::span<DeviceBeads* const> beads);
     /// Returns the time of an event of a timed evaluation, seconds of std::chrono::steady_clock.
     double at(Event const& event) const { return begun_ + event.seconds_since(events_->begun); }
+    /// Enqueues OpenMM's computation of forces in the Context of all particles and in those of the
+    /// layers.
+    virtual void compute_contexts() = 0;
     /// Records before compute() if OpenMM's pair list is rebuilt (`anew`). If so, particles that
-    /// move far from their present positions are detected from now on.
-    void note_list(bool anew);
+    /// move farther than `lasts` (nm) from their present positions are detected from now on.
+    void note_list(bool anew, double lasts);
     /// Completes the forces within compute(), after OpenMM's work was enqueued; by default they are
     /// complete.
     virtual void complete_forces() {}
@@ -136,17 +128,18 @@ class GpuPath : public DevicePath {
     std::unique_ptr<PinnedBuffer<Flags>> flags_;
     std::unique_ptr<Events> events_;
     std::unique_ptr<Buffer<DeviceBead>> own_;
-    Room<Buffer<double>> listed_;  // positions at which the last pair list was built
+    ListedPositions listed_;
     DeviceParticles particles_;
     std::vector<std::int32_t> place_;  // place of each particle in OpenMM's arrays
     std::vector<DeviceBeads*> beads_;  // groups of beads of the last evaluation
-    /// Evaluations per order, evaluations since the last reordering, and pair lists built since
-    /// then.
-    int of_an_order_, of_this_order_ = 0, lists_of_this_order_ = 0;
+    /// Evaluations per order and since the last reordering.
+    int of_an_order_, of_this_order_ = 0;
+    double moved_in_this_order_ = 0;  // distance that a bead may have moved since then, nm
     bool timed_ = false;
     double begun_ = 0;   // time at which the evaluation began, s
     Interval exchange_;  // interval of the exchange, for clock()
     PairLists pair_lists_;
+    std::vector<std::unique_ptr<GpuLayer>> layers_;
 };
 
 /// Makes the coupling of one rank among several.

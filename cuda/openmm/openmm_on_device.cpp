@@ -9,6 +9,7 @@
 #include <openmm/cuda/CudaPlatform.h>
 
 #include <string>
+#include <utility>
 
 #include "force/openmm_impl.hpp"
 
@@ -57,6 +58,38 @@ void* address(OpenMM::CudaArray& array) {
     return array.isInitialized() ? reinterpret_cast<void*>(array.getDevicePointer()) : nullptr;
 }
 
+/// A stream of its own for some of a Context's work. This one is for versions of OpenMM whose
+/// Contexts have one stream only: it stays in use.
+template <class Gpu>
+struct OwnStream {
+    void open(Gpu&) {}
+    template <class Action>
+    auto use(Gpu&, Action const& action) const {
+        return action();
+    }
+};
+template <class Gpu>
+    requires requires(Gpu& gpu) { gpu.setCurrentQueue(gpu.createQueue()); }
+class OwnStream<Gpu> {
+  public:
+    void open(Gpu& gpu) { queue_ = gpu.createQueue(); }
+    /// Returns what `action` returns, whose work runs in this stream if it is open.
+    template <class Action>
+    auto use(Gpu& gpu, Action const& action) const {
+        if (!queue_) return action();
+        /// Restores the default stream, also after an exception.
+        struct Use {
+            Gpu& gpu;
+            ~Use() { gpu.restoreDefaultQueue(); }
+        } const restored{gpu};
+        gpu.setCurrentQueue(queue_);
+        return action();
+    }
+
+  private:
+    decltype(std::declval<Gpu&>().createQueue()) queue_;
+};
+
 /// Access to one Context; see OpenMmOnDevice.
 class OnDevice final : public OpenMmOnDevice {
   public:
@@ -72,13 +105,14 @@ class OnDevice final : public OpenMmOnDevice {
     bool make_current() noexcept override {
         return cuCtxSetCurrent(gpu_.getContext()) == CUDA_SUCCESS;
     }
+    void take_own_stream() override { own_stream_.open(gpu_); }
     OpenMmArrays arrays() override {
         return {address(gpu_.getPosq()),
                 gpu_.getUseMixedPrecision() ? address(gpu_.getPosqCorrection()) : nullptr,
                 gpu_.getUseDoublePrecision(),
                 address(gpu_.getLongForceBuffer()),
                 gpu_.getPaddedNumAtoms(),
-                gpu_.getCurrentStream()};
+                own_stream_.use(gpu_, [this] { return gpu_.getCurrentStream(); })};
     }
     std::vector<int> const& order(std::vector<double> const& positions) override {
         std::vector<OpenMM::Vec3> particles(positions.size() / 3);
@@ -88,10 +122,14 @@ class OnDevice final : public OpenMmOnDevice {
         context_.setPositions(particles);  // this also reorders
         return gpu_.getAtomIndex();
     }
-    void compute() override { impl_.calcForcesAndEnergy(true, false, groups_); }
+    void compute() override {
+        own_stream_.use(gpu_, [this] { return impl_.calcForcesAndEnergy(true, false, groups_); });
+    }
     void share(int groups, int part, int parts) override {
         groups_ = groups;
-        auto const tiles = static_cast<std::int64_t>(pairs().getExclusionTiles().getSize());
+        OpenMM::CudaArray& exclusions = pairs().getExclusionTiles();
+        auto const tiles =
+            exclusions.isInitialized() ? static_cast<std::int64_t>(exclusions.getSize()) : 0;
         std::string const begin = std::to_string(tiles * part / parts),
                           end = std::to_string(tiles * (part + 1) / parts);
         std::string const padded =
@@ -124,6 +162,7 @@ class OnDevice final : public OpenMmOnDevice {
     OpenMM::Context& context_;
     OpenMM::ContextImpl& impl_;
     OpenMM::CudaContext& gpu_;
+    OwnStream<OpenMM::CudaContext> own_stream_;
     CUcontext before_ = nullptr;
 };
 

@@ -32,6 +32,10 @@ class OpenMmOnDevice {
     /// Makes OpenMM's CUcontext current in this thread; returns false if that fails. The destructor
     /// restores the context that was current before.
     virtual bool make_current() noexcept = 0;
+    /// Lets arrays() and compute() use a stream of this Context's own, if this OpenMM has such
+    /// streams. OpenMM's other functions continue to use the default stream: callers must put both
+    /// in order. OpenMM's CUcontext must be current.
+    virtual void take_own_stream() = 0;
     /// Returns the current addresses.
     virtual OpenMmArrays arrays() = 0;
     /// Lets OpenMM reorder its particles so that neighbours in space are neighbours in its arrays.

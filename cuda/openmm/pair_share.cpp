@@ -52,23 +52,35 @@ bool PairShare::fit(bool direct) {
     return false;
 }
 
-bool PairShare::choose(OpenMmOnDevice& openmm, bool new_order) {
-    Communicator const& communicator = halo_.communicator();
-    int const rank = communicator.rank(), ranks = communicator.size();
+bool PairShare::choose(std::span<OpenMmOnDevice* const> contexts, bool new_order) {
+    auto const rank = static_cast<std::size_t>(halo_.communicator().rank());
+    int const ranks = halo_.communicator().size();
     std::int64_t const before = evaluations_++;
-    if (has_list_ && !new_order && !is_early(before) && !halo_.some_are_far()) return false;
+    if (has_list() && !new_order && !is_early(before) && !halo_.some_are_far()) return false;
     if (before == 0) {
-        openmm.share(*halo_.groups_of_share(), rank, ranks);
-        cuts_ = equal_cuts(ranks);
+        for (std::size_t i = 0; i < contexts.size(); ++i)
+            contexts[i]->share(i == 0 ? *halo_.groups_of_share() : -1, static_cast<int>(rank),
+                               ranks);
+        cuts_.assign(contexts.size(), equal_cuts(ranks));
     } else if (new_order || is_early(before)) {
-        std::vector<double> const all =
-            all_gathered(communicator, static_cast<double>(openmm.tiles()));
-        cuts_ = evened_cuts(cuts_, all);
-        has_list_ = *std::max_element(all.begin(), all.end()) > 0;
+        even_out(contexts);
     }
-    openmm.make_list(cuts_[static_cast<std::size_t>(rank)],
-                     cuts_[static_cast<std::size_t>(rank) + 1]);
+    for (std::size_t i = 0; i < contexts.size(); ++i)
+        contexts[i]->make_list(cuts_[i][rank], cuts_[i][rank + 1]);
     return true;
+}
+
+void PairShare::even_out(std::span<OpenMmOnDevice* const> contexts) {
+    std::vector<double> own;
+    for (OpenMmOnDevice* const context : contexts) own.push_back(context->tiles());
+    std::vector<double> const all = all_gathered_alike(halo_.communicator(), own);
+    has_list_.assign(contexts.size(), false);
+    for (std::size_t i = 0; i < contexts.size(); ++i) {
+        std::vector<double> of_context;
+        for (std::size_t k = i; k < all.size(); k += contexts.size()) of_context.push_back(all[k]);
+        cuts_[i] = evened_cuts(cuts_[i], of_context);
+        has_list_[i] = *std::max_element(of_context.begin(), of_context.end()) > 0;
+    }
 }
 
 void PairShare::place(std::span<std::int32_t const> own, std::span<std::int32_t const> others) {

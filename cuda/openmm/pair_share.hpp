@@ -2,6 +2,7 @@
 // (force/pair_decomposition.hpp). Exchanges then sum the forces on its own beads.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -37,12 +38,16 @@ class PairShare {
     /// `direct`: GPUs write to each other's memory. Returns true if they do so here too.
     /// Collective.
     bool fit(bool direct);
-    /// Chooses this rank's pairs; to be called before each evaluation. `new_order`: OpenMM's
-    /// particles were reordered. Returns true if the pair list is rebuilt; otherwise the caller has
-    /// kept the previous one. Collective.
-    bool choose(OpenMmOnDevice&, bool new_order);
-    /// True if OpenMM keeps a pair list on some rank, as far as is known.
-    bool has_list() const { return has_list_; }
+    /// Chooses this rank's pairs in each of the Contexts: that of all particles and those of the
+    /// layers, the same at every call. To be called before each evaluation. `new_order`: OpenMM's
+    /// particles were reordered. Returns true if all pair lists are rebuilt; otherwise the caller
+    /// has kept the previous ones. Collective.
+    bool choose(std::span<OpenMmOnDevice* const> contexts, bool new_order);
+    /// True if OpenMM keeps a pair list on some rank, as far as is known: in Context i, in any.
+    bool has_list(std::size_t i) const { return i < has_list_.size() && has_list_[i]; }
+    bool has_list() const {
+        return std::find(has_list_.begin(), has_list_.end(), true) != has_list_.end();
+    }
     /// Sets the places of beads in OpenMM's arrays. Own beads are listed in the order in which they
     /// are sent, others in the order in which they are received.
     void place(std::span<std::int32_t const> own, std::span<std::int32_t const> others);
@@ -67,6 +72,8 @@ class PairShare {
     std::int64_t sent() const { return static_cast<std::int64_t>(halo_.lists().particle.size()); }
     /// Number of forces received: one per own bead and other rank.
     std::int64_t received() const { return own() * static_cast<std::int64_t>(messages_.size()); }
+    /// Evens the shares in each Context by the sizes of the ranks' lists. Collective.
+    void even_out(std::span<OpenMmOnDevice* const> contexts);
     /// Exchanges forces from GPU to GPU.
     template <class Number>
     void exchange(DeviceParticles const&, cudaStream_t) const;
@@ -80,9 +87,10 @@ class PairShare {
 
     Halo& halo_;
     std::vector<Halo::Message> messages_;  // messages of forces: those of positions, reversed
-    std::vector<double> cuts_;  // boundaries of the ranks' shares in the row of blocks, fractions
+    /// Boundaries of the ranks' shares in each Context's row of blocks, fractions.
+    std::vector<std::vector<double>> cuts_;
     std::int64_t evaluations_ = 0;
-    bool has_list_ = false;
+    std::vector<bool> has_list_;             // for each Context
     std::unique_ptr<GhostInboxes> inboxes_;  // null: forces pass through the host
     std::shared_ptr<PeerMemory> memory_;
     PeerBoxes boxes_;

@@ -126,6 +126,13 @@ void add_parallel(Text& text, Json const& summary, std::string const& reason) {
     }
 }
 
+/// Says how often OpenMM's lists of pairs were made and kept.
+std::string text_of_lists(Json const& lists) {
+    return fmt::format(
+        "made {}, kept at {}", counted(lists.at("made").get<std::int64_t>(), "time", "times"),
+        counted(lists.at("kept").get<std::int64_t>(), "other evaluation", "other evaluations"));
+}
+
 /// Adds platform, overlap, lists and warnings of OpenMM.
 void add_forces(Text& text, Json const& forces) {
     text.entry("OpenMM",
@@ -134,11 +141,9 @@ void add_forces(Text& text, Json const& forces) {
     text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces",
                                                   100 * number(forces, "matrix_sweep_hidden")));
     if (auto const lists = forces.find("pair_lists"); lists != forces.end())
-        text.entry("lists of pairs",
-                   fmt::format("made {}, kept at {}",
-                               counted(lists->at("made").get<std::int64_t>(), "time", "times"),
-                               counted(lists->at("kept").get<std::int64_t>(), "other evaluation",
-                                       "other evaluations")));
+        text.entry("lists of pairs", text_of_lists(*lists));
+    for (Json const& lists : forces.value("pair_lists_of_layers", Json::array()))
+        text.entry("of a layer", text_of_lists(lists));
     if (auto const ghosts = forces.find("ghosts"); ghosts != forces.end())
         text.entry("ghosts", ghosts_text(*ghosts));
     for (auto const& line : forces.at("description")) {

@@ -1,6 +1,7 @@
 // Placement of particles and evaluation of forces and energies in one OpenMM Context.
 #include "force/context.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +40,14 @@ Placement placement_for(OpenMM::System const& system) {
                                 pairs->getExceptionsUsePeriodicBoundaryConditions());
     }
     return images ? Placement::wrapped : Placement::shifted;
+}
+
+Placement placement_for(std::span<std::shared_ptr<OpenMM::System const> const> systems) {
+    std::optional<Placement> common;
+    for (auto const& system : systems)
+        if (system->getNumForces() > 0)
+            common = std::min(common.value_or(Placement::wrapped), placement_for(*system));
+    return common.value_or(Placement::shifted);
 }
 
 ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system,

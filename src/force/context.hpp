@@ -28,6 +28,8 @@ enum class Placement {
 
 /// Returns the placement that all of the System's forces allow.
 Placement placement_for(OpenMM::System const&);
+/// Returns the placement that all forces of all Systems allow. A System without forces allows any.
+Placement placement_for(std::span<std::shared_ptr<OpenMM::System const> const>);
 
 /// An OpenMM Context with its System and a cache of the shifts applied to its particles.
 class ForceContext {

@@ -34,8 +34,7 @@ class HaloForces final : public RankForces, public Halo {
     void gather(std::span<Vec3 const> own) override;
     void evaluate(std::span<Vec3> own_forces) override;
     void find_energies(DevicePath* device, std::span<double> of_group) override;
-    /// Returns what make_device_path() needs to know about the own beads.
-    DevicePathPlan plan(bool overlap);
+    DevicePathPlan plan(bool overlap) override;
     std::unique_ptr<DevicePath> device_path(bool overlap) override;
     std::vector<Vec3> forces_again() override;
     void renew_ghosts() override { ghosts_.renew(); }

@@ -86,12 +86,14 @@ std::string why_not_by_pairs(OpenMM::System const& system) {
 PairForces::PairForces(RankPlan const& plan)
     : communicator_(plan.communicator),
       box_(plan.box),
+      placement_(plan.placement),
       audit_(plan.audit),
       in_single_(is_in_single(plan.platform)),
       first_of_rank_(plan.beads.first_of_rank),
+      groups_of_all_(groups_of(*plan.model.system, 0)),
       groups_(groups_of(*plan.model.system, plan.communicator.rank())),
       context_(std::make_unique<ForceContext>(of_rank(plan.model.system, plan.communicator.rank()),
-                                              plan.platform, plan.box)) {
+                                              plan.platform, plan.box, plan.home)) {
     std::vector<int> const particle_of_bead = particles_of_beads(plan.model.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : plan.beads.beads_of(rank)) {
@@ -144,8 +146,9 @@ DevicePathPlan PairForces::plan(bool overlap) {
     DevicePathPlan plan;
     plan.particle = particle_;
     plan.bead = number_;
-    if (context_->placement() == Placement::wrapped) plan.box = box_;
-    plan.shifted = context_->placement() == Placement::shifted;
+    Placement const placement = placement_.value_or(context_->placement());
+    if (placement == Placement::wrapped) plan.box = box_;
+    plan.shifted = placement == Placement::shifted;
     plan.overlap = overlap;
     plan.halo = this;
     return plan;
@@ -255,8 +258,10 @@ void PairForces::find_energies(DevicePath*, std::span<double> of_group) {
     std::vector<double> own(of_group.size());
     on_every_rank(communicator_, [&] { context_->find_energies(own, groups_); });
     std::vector<double> const all = all_gathered_alike(communicator_, own);
-    std::fill(of_group.begin(), of_group.end(), 0.0);
-    for (std::size_t i = 0; i < all.size(); ++i) of_group[i % own.size()] += all[i];
+    std::vector<double> sum(of_group.size());
+    for (std::size_t i = 0; i < all.size(); ++i) sum[i % own.size()] += all[i];
+    for (std::size_t group = 0; group < sum.size(); ++group)
+        if ((groups_of_all_ & 1 << group) != 0) of_group[group] = sum[group];
 }
 
 void PairForces::gather(std::span<Vec3 const>) {

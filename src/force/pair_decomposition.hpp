@@ -26,10 +26,10 @@ class PairForces final : public RankForces, public Halo {
     // Implementation of RankForces.
     void gather(std::span<Vec3 const> own) override;
     void evaluate(std::span<Vec3> own_forces) override;
-    /// Returns the sum of all ranks' energies on every rank.
+    /// Stores the sum of all ranks' energies on every rank.
     void find_energies(DevicePath*, std::span<double> of_group) override;
-    /// Returns what make_device_path() needs to know about the own beads.
-    DevicePathPlan plan(bool overlap);
+    DevicePathPlan plan(bool overlap) override;
+    ForceContext* device_context() override { return context_.get(); }
     std::unique_ptr<DevicePath> device_path(bool overlap) override;
     std::vector<Vec3> forces_again() override;
     void renew_ghosts() override { renew_ = true; }
@@ -73,6 +73,7 @@ class PairForces final : public RankForces, public Halo {
 
     Communicator const& communicator_;
     std::optional<Vec3> box_;
+    std::optional<Placement> placement_;  // RankPlan::placement
     bool audit_, in_single_;
     // size ranks + 1: rank r owns entries first_of_rank_[r] .. first_of_rank_[r + 1] - 1
     std::vector<std::int64_t> first_of_rank_;
@@ -84,8 +85,8 @@ class PairForces final : public RankForces, public Halo {
     std::vector<int> particle_of_all_;
     /// Index among all beads, rank after rank, of each position received.
     std::vector<std::int64_t> received_;
-    // bit mask of the force groups that this rank computes
-    int groups_;
+    // bit masks of the System's force groups, and of those that this rank computes
+    int groups_of_all_, groups_;
     std::unique_ptr<ForceContext> context_;
     /// Messages with every other rank: all of its beads, in the order in which it sends them.
     Lists lists_;

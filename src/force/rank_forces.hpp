@@ -33,6 +33,10 @@ class RankForces {
     /// Throws SharedError on all ranks, or what OpenMM throws on rank 0 alone if no collective
     /// operation follows.
     virtual void find_energies(DevicePath* device, std::span<double> of_group) = 0;
+    /// Returns what a path on which positions and forces stay on the GPU needs to know.
+    virtual DevicePathPlan plan(bool /*overlap*/) { return {}; }
+    /// Returns the Context of such a path; null if there is none.
+    virtual ForceContext* device_context() { return nullptr; }
     /// Returns the path on which positions and forces stay on the GPU, which replaces gather() and
     /// evaluate(). Precondition: this object was made for it.
     virtual std::unique_ptr<DevicePath> device_path(bool /*overlap*/) { return nullptr; }
@@ -79,6 +83,10 @@ struct RankPlan {
     bool audit = false;
     /// Longest reach of other forces on these beads, nm: their lists of ghosts last as long.
     double longest_reach = 0;
+    /// Path `device` with layers: placement of all of them, if not that of this System alone.
+    std::optional<Placement> placement = std::nullopt;
+    /// Context whose GPU context the new one shares and which must outlive it; null: none.
+    ForceContext* home = nullptr;
 };
 
 /// Makes a Context of all beads on each rank: for one rank, or for `replicate`. On a GPU it
@@ -104,6 +112,10 @@ using MakeRankForces = std::unique_ptr<RankForces> (*)(RankPlan const&);
 std::unique_ptr<RankForces> make_layered_forces(RankPlan const&,
                                                 std::vector<ForceLayer> const& layers,
                                                 MakeRankForces make);
+/// Makes the same for path `device`: `make` makes whole or pair forces.
+std::unique_ptr<RankForces> make_layers_on_device(RankPlan const&,
+                                                  std::vector<ForceLayer> const& layers,
+                                                  MakeRankForces make);
 
 /// Throws ComputationError if one of `vectors` is not finite. `bead`: number of the bead that each
 /// belongs to. `what`: subject of the message, such as "the position".

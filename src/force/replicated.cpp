@@ -17,7 +17,9 @@ class ReplicatedForces final : public RankForces {
         : model_(plan.model),
           platform_(plan.platform),
           communicator_(plan.communicator),
-          box_(plan.box) {
+          box_(plan.box),
+          placement_(plan.placement),
+          home_(plan.home) {
         BeadSystem const& beads = plan.beads;
         std::vector<int> const particle_of_bead = particles_of_beads(model_.bead_of_particle);
         for (int rank = 0; rank < communicator_.size(); ++rank) {
@@ -58,16 +60,21 @@ class ReplicatedForces final : public RankForces {
         if (!positions_.empty() && !are_set_) set_positions();
         context_->find_energies(of_group);
     }
-    std::unique_ptr<DevicePath> device_path(bool overlap) override {
+    DevicePathPlan plan(bool overlap) override {
         DevicePathPlan plan;
         plan.particle.assign(particle_.begin(), particle_.end());
         for (std::int64_t const particle : particle_)
             plan.bead.push_back(number_of_particle_[particle]);
-        if (context_->placement() == Placement::wrapped) plan.box = box_;
-        plan.shifted = context_->placement() == Placement::shifted;
+        Placement const placement = placement_.value_or(context_->placement());
+        if (placement == Placement::wrapped) plan.box = box_;
+        plan.shifted = placement == Placement::shifted;
         plan.overlap = overlap;
         plan.keeps_list = why_not_by_pairs(*model_.system).empty();
-        return cuda::make_device_path(context_->context(), std::move(plan));
+        return plan;
+    }
+    ForceContext* device_context() override { return context_.get(); }
+    std::unique_ptr<DevicePath> device_path(bool overlap) override {
+        return cuda::make_device_path(context_->context(), plan(overlap));
     }
     std::vector<Vec3> forces_again() override {
         std::vector<Vec3> own_forces;
@@ -81,7 +88,7 @@ class ReplicatedForces final : public RankForces {
 
   private:
     void make_context() {
-        context_ = std::make_unique<ForceContext>(model_.system, platform_, box_);
+        context_ = std::make_unique<ForceContext>(model_.system, platform_, box_, home_);
     }
     /// Sets the gathered positions once. Shifts last for a number of calls, and a run must not
     /// depend on when its energies are asked for.
@@ -94,6 +101,8 @@ class ReplicatedForces final : public RankForces {
     OpenMmPlatform const& platform_;
     Communicator const& communicator_;
     std::optional<Vec3> box_;
+    std::optional<Placement> placement_;  // RankPlan::placement
+    ForceContext* home_;                  // RankPlan::home
     /// Number of each particle's bead in the scene, for messages.
     std::vector<std::int64_t> number_of_particle_;
     /// Particle of each bead in the order of by_rank, and bytes of each rank's positions.

@@ -261,6 +261,9 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     std::vector<Vec3> own;
     Field<3> again;
     if (on_device()) {
+        // Each Context computes its forces anew into the array whose sums the chains may not have
+        // read: potential() lets them.
+        for (auto const& group : absolute_) group->potential();
         again = Field<3>(openmm_force_.size());
         openmm_->forces_again(again.view());
     }

@@ -24,6 +24,14 @@ struct Interval {
 
 class Halo;
 
+/// Forces on some of the particles of a path's Context, in a Context of their own.
+struct DeviceLayer {
+    OpenMM::Context* context = nullptr;  // shares the GPU context of the path's Context
+    /// Particle of the path's Context that is the same bead as each particle of `context`.
+    std::vector<int> particle;
+    bool keeps_list = false;  // true if all its pair forces use the shared neighbour list
+};
+
 /// Options of a DevicePath.
 struct DevicePathPlan {
     std::vector<int> particle;       // particle of each own bead
@@ -34,6 +42,9 @@ struct DevicePathPlan {
     bool overlap = true;      // true if the chains' own work overlaps with OpenMM's
     bool keeps_list = false;  // true if all pair forces use the shared neighbour list
     Halo* halo = nullptr;     // null on a single rank
+    /// Layers whose forces are added to those of the path's Context. On several ranks, these share
+    /// out pairs.
+    std::vector<DeviceLayer> layers = {};
 };
 
 /// Evaluation of OpenMM forces for beads in GPU memory. Over several ranks begin(), go_on() and
@@ -71,6 +82,8 @@ class DevicePath {
         std::int64_t made = 0, kept = 0;
     };
     virtual PairLists pair_lists() const { return {}; }
+    /// The same numbers for the Context of each layer.
+    virtual std::vector<PairLists> pair_lists_of_layers() const { return {}; }
     /// Positions in the last evaluation, nm, W. Waits for the GPU.
     virtual std::vector<Vec3> positions() = 0;
 };

@@ -68,6 +68,13 @@ CATENA_HD std::int64_t arrived_force(float force) {
     return std::fabs(force) < beyond ? static_cast<std::int64_t>(force) : INT64_MAX;
 }
 
+/// Returns the sum of two fixed-point forces. It is no number if one of them is none, although the
+/// sum of two values that are no numbers may look like one.
+CATENA_HD std::int64_t sum_of_forces(std::int64_t a, std::int64_t b) {
+    if (!DeviceParticles::is_number(a) || !DeviceParticles::is_number(b)) return INT64_MAX;
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
 /// Loop body that sends the forces that this GPU has computed on beads of other ranks.
 template <class Number>
 struct SentForces {
@@ -105,19 +112,12 @@ struct ReturnedForces {
     int messages = 0;
     CATENA_HD void operator()(std::int64_t i) const {
         std::int64_t& force = forces.at(i);
-        std::int64_t sum = force;
-        bool is_number = DeviceParticles::is_number(sum);
         for (int m = 0; m < messages; ++m) {
             Number& here = arrived[3 * m * beads + i];
             if (here == Number{0}) continue;
-            std::int64_t const part = arrived_force(here);
+            force = sum_of_forces(force, arrived_force(here));
             here = Number{0};
-            is_number = is_number && DeviceParticles::is_number(part);
-            sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) +
-                                            static_cast<std::uint64_t>(part));
         }
-        // The sum of two values that are not numbers may look like a number.
-        force = is_number ? sum : INT64_MAX;
     }
 };
 

@@ -37,6 +37,16 @@ json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, s
             {"bytes_a_step", a_step(traffic.bytes)}};
 }
 
+/// Adds how often OpenMM's lists of pairs were made and kept.
+void add_pair_lists(DevicePath const& path, json& summary) {
+    auto const counted = [](DevicePath::PairLists const& lists) {
+        return json{{"made", lists.made}, {"kept", lists.kept}};
+    };
+    if (path.pair_lists().made > 0) summary["pair_lists"] = counted(path.pair_lists());
+    for (DevicePath::PairLists const& lists : path.pair_lists_of_layers())
+        if (lists.made > 0) summary["pair_lists_of_layers"].push_back(counted(lists));
+}
+
 }  // namespace
 
 json summary_of_forces(ChainSystem const& system, std::int64_t steps) {
@@ -50,9 +60,7 @@ json summary_of_forces(ChainSystem const& system, std::int64_t steps) {
                     {"matrix_sweep_seconds", matrix},
                     {"matrix_sweep_hidden", matrix > 0 ? system.hidden_seconds() / matrix : 0.0},
                     {"largest_context", openmm->largest_context()}};
-    if (DevicePath const* const path = openmm->device_path())
-        if (auto const [made, kept] = path->pair_lists(); made > 0)
-            summary["pair_lists"] = {{"made", made}, {"kept", kept}};
+    if (DevicePath const* const path = openmm->device_path()) add_pair_lists(*path, summary);
     GhostTraffic const traffic = openmm->traffic();
     if (traffic.updates > 0) summary["ghosts"] = summary_of_ghosts(system, traffic, steps);
     return summary;

@@ -186,9 +186,10 @@ StartForces start_forces_of(Scene const& scene, BeadSystem const& beads,
 }
 
 StartForces look_at_start(ChainSystem& system) {
+    // The forces first: energies overwrite OpenMM's arrays of them.
+    std::vector<Vec3> const forces = system.bead_forces();
     double energy = 0;
     for (EnergyTerm const& term : system.openmm()->energies()) energy += term.value;
-    std::vector<Vec3> const forces = system.bead_forces();
     StartForces found;
     on_first_rank(system.communicator(), [&] {
         found = start_forces_of(system.scene(), system.beads(), bead_positions_of(system.scene()),

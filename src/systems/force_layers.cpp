@@ -164,6 +164,15 @@ std::vector<std::int64_t> own_places(ForceLayer const& layer, BeadSystem const& 
     return places;
 }
 
+std::vector<int> particles_in(ForceLayer const& layer, OpenMmModel const& model) {
+    std::vector<int> const particle_of_bead = particles_of_beads(model.bead_of_particle);
+    std::vector<int> particles;
+    for (std::int64_t const bead : layer.model.bead_of_particle)
+        particles.push_back(
+            particle_of_bead[static_cast<std::size_t>(layer.bead[static_cast<std::size_t>(bead)])]);
+    return particles;
+}
+
 std::string text_of(ForceLayer const& layer, BeadSystem const& all) {
     return fmt::format("{} in a Context of its own: it acts on {} of {} beads, up to {:g} nm",
                        fmt::join(layer.model.terms, ", "), layer.beads.size(), all.size(),

@@ -37,6 +37,10 @@ std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads,
 /// BeadSystem::by_rank.
 std::vector<std::int64_t> own_places(ForceLayer const&, BeadSystem const& all, int rank);
 
+/// For each particle of a layer: the particle of `model`, from which the layer was taken, that is
+/// the same bead.
+std::vector<int> particles_in(ForceLayer const&, OpenMmModel const& model);
+
 /// Returns, e.g., "yukawa in a Context of its own: it acts on 2500 of 10000 beads, up to 4 nm".
 std::string text_of(ForceLayer const&, BeadSystem const& all);
 

@@ -24,6 +24,7 @@ struct Case {
     double edge = 20;            // nm, the longest
     bool ghosts_change = false;  // there are beads that a rank does not feel
     int piece = 1;               // the shortest: numbers of ghosts are multiples of it
+    bool layers = false;         // charges are in a Context of their own where pairs are shared
 };
 
 /// What one way of computing found, and where it stood then.
@@ -62,6 +63,7 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         scene.forces.openmm->path = on_device ? "device" : "host";
         scene.forces.openmm->audit = on_device && std::string(split) == "ghosts";
         if (on_device) scene.forces.openmm->split = split;
+        scene.forces.openmm->layers = GetParam().layers ? "all" : "none";
         scene.forces.openmm->replicate = !on_device;  // the oracle
         return scene;
     }

@@ -98,9 +98,10 @@ TEST_P(PairsOnGpus, AfterManySteps) {
         Found const device = found(scene_with(precision, true, "pairs"), 400);
         EXPECT_EQ(device.traffic.rebuilds, 2);
         EXPECT_EQ(device.traffic.updates, 401);
-        EXPECT_EQ(device.contexts, 1);
-        if (std::ssize(device.own) * world_.size() > 2100) {      // OpenMM has lists
-            EXPECT_GT(device.lists.kept, 2 * device.lists.made);  // fewer where nothing falls
+        EXPECT_EQ(device.contexts, GetParam().layers ? 2 : 1);
+        if (std::ssize(device.own) * world_.size() > 2100) {  // OpenMM has lists
+            // Fewer where nothing falls; lists of layers do not last as long.
+            EXPECT_GT(device.lists.kept, (GetParam().layers ? 1 : 2) * device.lists.made);
             EXPECT_GT(device.lists.made, 6);
             EXPECT_EQ(device.lists.made + device.lists.kept,
                       400);  // the first evaluation finds out whether there are any
@@ -112,7 +113,7 @@ TEST_P(PairsOnGpus, AfterManySteps) {
     }
 }
 
-/// An order lasts 400 lists of pairs, or 8,000 evaluations.
+/// An order lasts until a bead may have moved 80 nm, or 8,000 evaluations.
 TEST_P(PairsOnGpus, AfterAnotherOrder) {
     if (scene_beads(scene_with("double", true)) < 2100)
         return;  // OpenMM has no list of their pairs
@@ -163,6 +164,11 @@ INSTANTIATE_TEST_SUITE_P(
              "conformation: self_avoiding, "
              "velocities: thermal}",
              "box: {periodic: [11.2, 11, 42]}", 42},
+        // So many that OpenMM has lists in both Contexts.
+        Case{"in_layers",
+             "{name: a, count: 110, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: thermal}",
+             "box: {periodic: [110, 26, 26]}", 110, false, 1, true},
         Case{"open",
              "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, "
              "velocities: thermal}",

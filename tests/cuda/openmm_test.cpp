@@ -1,15 +1,28 @@
-// OpenMM's forces on beads that stay on the GPU are those that pass through the host.
+// OpenMM's forces on beads that stay on the GPU, in one Context or in layers, are those that pass
+// through the host from one Context.
+#include <OpenMM.h>
 #include <gtest/gtest.h>
+#include <openmm/serialization/XmlSerializer.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
 #include "reader/load_scene.hpp"
+#include "scene/force_changes.hpp"
 #include "tests/cuda/openmm_scene.hpp"
 #include "tests/support/gpu.hpp"
+
+#define CATENA_TEST_DOMAINS                                                                    \
+    "pdb: " CATENA_SOURCE_DIR                                                                  \
+    "/inputs/multi-domain.cif, chain: A, model: calvados2, gaps: model, velocities: thermal, " \
+    "rigid: ['A:1-34', 'A:47-80', 'A:93-126']"
 
 namespace catena::test {
 namespace {
@@ -18,6 +31,32 @@ struct Case {
     char const* name;
     char const* chains;
     char const* rest;
+    bool layers = false;  // forces.openmm.layers: all
+    bool extra = false;   // a force on a seventh of the beads acts in addition
+};
+
+/// Repulsion between some of the beads, up to 3.2 nm, in a file that OpenMM has written.
+class ExtraForce {
+  public:
+    ExtraForce(std::int64_t beads, bool periodic) {
+        OpenMM::CustomNonbondedForce force("2*s1*s2*(1-r/3.2)^2");
+        force.addPerParticleParameter("s");
+        force.setNonbondedMethod(periodic ? OpenMM::CustomNonbondedForce::CutoffPeriodic
+                                          : OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
+        force.setCutoffDistance(3.2);
+        for (std::int64_t i = 0; i < beads; ++i) force.addParticle({i % 7 == 3 ? 1.0 : 0.0});
+        std::ofstream text(file_);
+        OpenMM::XmlSerializer::serialize<OpenMM::Force>(&force, "Force", text);
+    }
+    ~ExtraForce() { std::filesystem::remove(file_); }
+    ExtraForce(ExtraForce const&) = delete;
+    ExtraForce& operator=(ExtraForce const&) = delete;
+    std::string const& file() const { return file_; }
+
+  private:
+    std::string file_ = (std::filesystem::temp_directory_path() /
+                         ("catena-extra-" + std::to_string(::getpid()) + ".xml"))
+                            .string();
 };
 
 /// What one way of computing found, and where it stood then.
@@ -28,6 +67,7 @@ struct Found {
     std::vector<EnergyTerm> energies;
     std::map<std::string, std::vector<double>> state;
     DevicePath::PairLists lists;
+    std::vector<DevicePath::PairLists> lists_of_layers;
 };
 
 class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
@@ -40,16 +80,34 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
             FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
         GTEST_SKIP() << "NOT RUN: " << cuda::why_no_device_path();
     }
-    /// At step `last`, from the scene's start or from where another stood.
-    Found found(std::string const& path, std::string const& precision, std::int64_t last,
-                Found const* start = nullptr) {
+    /// Layers are on path `device` alone: the host has one Context.
+    Scene scene_with(std::string const& path, std::string const& precision) {
         Scene scene = parse_scene(
             openmm_scene(GetParam().chains, GetParam().rest, ", precision: " + precision),
             "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->path = path;
+        scene.forces.openmm->layers = GetParam().layers && path == "device" ? "all" : "none";
+        if (!GetParam().extra) return scene;
+        std::int64_t beads = 0;
+        for (ChainSpec const& chain : scene.chains)
+            beads += static_cast<std::int64_t>(chain.bead_count());
+        if (!extra_) extra_ = std::make_unique<ExtraForce>(beads, scene.box.has_value());
+        add_changes({.extra = {extra_->file()}, .leave_out = {}, .links = {}},
+                    *scene.forces.openmm);
+        return scene;
+    }
+    std::size_t terms() const { return GetParam().extra ? 5 : 4; }
+    std::int64_t contexts() const {
+        return 1 + (GetParam().layers ? 1 : 0) + (GetParam().layers && GetParam().extra ? 1 : 0);
+    }
+    /// At step `last`, from the scene's start or from where another stood.
+    Found found(std::string const& path, std::string const& precision, std::int64_t last,
+                Found const* start = nullptr) {
+        Scene const scene = scene_with(path, precision);
         ChainSystem system(scene, Axes::world, *communicator_);
         EXPECT_EQ(system.openmm()->path(), path);
+        EXPECT_EQ(system.openmm()->contexts(), path == "device" ? contexts() : 1);
         auto stepper = make_stepper(system, scene.dynamics);
         Found f;
         f.step = start ? start->step : 0;
@@ -76,7 +134,7 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
         f.again = system.bead_forces();
         f.state = system.state();
         if (DevicePath const* const device = system.openmm()->device_path())
-            f.lists = device->pair_lists();
+            f.lists = device->pair_lists(), f.lists_of_layers = device->pair_lists_of_layers();
         if (steps > 0) {
             EXPECT_GT(system.matrix_seconds(), 0);
             EXPECT_LE(system.hidden_seconds(), system.matrix_seconds() * (1 + 1e-12));
@@ -108,6 +166,7 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
     /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the
     /// order of its particles.
     static constexpr double rounding = 16.0 / 4294967296.0;
+    std::unique_ptr<ExtraForce> extra_;
     std::unique_ptr<Communicator> communicator_ = serial_communicator();
 };
 
@@ -143,8 +202,15 @@ TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
         expect_close(device, found("device", precision, steps, &device), tolerance);
         if (device.positions.size() < 2100) continue;  // OpenMM has no list of their pairs
         EXPECT_EQ(device.lists.made + device.lists.kept, steps);
-        EXPECT_GT(device.lists.kept, device.lists.made / 2);
-        EXPECT_GT(device.lists.made, 400);  // what falls moves fast
+        // What falls moves fast, and half as far for lists of half the reach.
+        EXPECT_GT(device.lists.kept, GetParam().layers ? 0 : device.lists.made / 2);
+        EXPECT_GT(device.lists.made, GetParam().layers ? 670 : 400);
+        for (DevicePath::PairLists const& lists : device.lists_of_layers) {
+            if (lists.made == 0) continue;  // of too few particles
+            EXPECT_EQ(lists.made + lists.kept, steps);
+            EXPECT_LE(lists.made, device.lists.made);
+            EXPECT_GT(lists.kept, lists.made / 2);
+        }
     }
 }
 
@@ -153,10 +219,7 @@ TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
 TEST_P(OpenMmOnGpu, BeadsThatAreSetElsewhere) {
     Found const there = found("host", "double", 300),
                 expected = found("host", "double", 300, &there);
-    Scene scene = parse_scene(
-        openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
-    scene.solver.backend = Backend::cuda;
-    scene.forces.openmm->path = "device";
+    Scene const scene = scene_with("device", "double");
     ChainSystem system(scene, Axes::world, *communicator_);
     auto const start = system.state();
     for (int i = 0; i < 4; ++i) system.evaluate();
@@ -170,10 +233,7 @@ TEST_P(OpenMmOnGpu, BeadsThatAreSetElsewhere) {
 }
 
 TEST_P(OpenMmOnGpu, ABeadAtNoFinitePlaceEndsTheRun) {
-    Scene scene = parse_scene(
-        openmm_scene(GetParam().chains, GetParam().rest, ", precision: mixed"), "scene.yaml");
-    scene.solver.backend = Backend::cuda;
-    scene.forces.openmm->path = "device";
+    Scene const scene = scene_with("device", "mixed");
     ChainSystem system(scene, Axes::world, *communicator_);
     system.evaluate();
     auto state = system.state();
@@ -190,23 +250,58 @@ TEST_P(OpenMmOnGpu, ABeadAtNoFinitePlaceEndsTheRun) {
 
 /// Nor does its list of pairs.
 TEST_P(OpenMmOnGpu, ARunDoesNotDependOnEnergiesAskedFor) {
-    Scene scene = parse_scene(
-        openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
-    scene.solver.backend = Backend::cuda;
-    scene.forces.openmm->path = "device";
+    Scene const scene = scene_with("device", "double");
     auto const run = [&](bool with_energies) {
         ChainSystem system(scene, Axes::world, *communicator_);
         auto stepper = make_stepper(system, scene.dynamics);
         for (std::int64_t n = 0; n < 60; ++n) {
             stepper->prepare(nullptr);
             if (with_energies) {
-                EXPECT_EQ(system.potential_energy().size(), 4u);
+                EXPECT_EQ(system.potential_energy().size(), terms());
             }
             stepper->step(n, nullptr);
         }
         return std::pair(system.state(), system.openmm()->device_path()->pair_lists().kept);
     };
     EXPECT_EQ(run(true), run(false));
+}
+
+TEST_P(OpenMmOnGpu, TheSameBitsAgain) {
+    for (char const* const precision : {"mixed", "double"}) {
+        Found const once = found("device", precision, 60), again = found("device", precision, 60);
+        EXPECT_EQ(once.state, again.state);
+        EXPECT_EQ(difference(once.forces, again.forces), 0);
+        EXPECT_EQ(difference(once.again, again.again), 0);
+        for (std::size_t i = 0; i < once.energies.size(); ++i)
+            EXPECT_EQ(once.energies[i].value, again.energies[i].value);
+    }
+}
+
+class LayersOnGpu : public OpenMmOnGpu {};
+
+/// Of few beads, layers would take longer than one Context.
+TEST_F(LayersOnGpu, OfManyBeadsAlone) {
+    auto const contexts_of = [&](int count, char const* layers) {
+        std::string const edge = std::to_string(12 * std::cbrt(count));
+        Scene scene = parse_scene(
+            openmm_scene("{name: a, count: " + std::to_string(count) +
+                             ", sequence: SEQ, model: calvados2, conformation: self_avoiding}",
+                         "box: {periodic: [" + edge + ", " + edge + ", " + edge + "]}"),
+            "scene.yaml");
+        scene.solver.backend = Backend::cuda;
+        scene.forces.openmm->layers = layers;
+        ChainSystem system(scene, Axes::world, *communicator_);
+        EXPECT_EQ(system.openmm()->path(), "device");
+        std::string said;
+        for (std::string const& line : system.openmm()->description()) said += line + "\n";
+        EXPECT_EQ(said.find("yukawa in a Context of its own: it acts on ") != std::string::npos,
+                  system.openmm()->contexts() == 2);
+        return system.openmm()->contexts();
+    };
+    EXPECT_EQ(contexts_of(100, "auto"), 1);
+    EXPECT_EQ(contexts_of(100, "all"), 2);
+    EXPECT_EQ(contexts_of(430, "auto"), 2);
+    EXPECT_EQ(contexts_of(430, "none"), 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -237,7 +332,30 @@ INSTANTIATE_TEST_SUITE_P(
              "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
              "velocities: "
              "thermal}",
-             "box: {periodic: [40, 40, 40]}"}),
+             "box: {periodic: [40, 40, 40]}"},
+        // Beads carried by rigid domains, and beads of linkers between them.
+        Case{"domains", "{name: a, " CATENA_TEST_DOMAINS "}", "box: {periodic: [40, 40, 40]}"},
+        Case{"many_domains", "{name: a, count: 20, " CATENA_TEST_DOMAINS "}",
+             "box: {periodic: [60, 60, 60]}"},
+        Case{"layers",
+             "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: "
+             "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
+             "box: {periodic: [16, 17, 18]}", true},
+        // So many that OpenMM keeps a list of the pairs of each layer but the extra force's.
+        Case{"many_in_layers",
+             "{name: a, count: 110, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: thermal}",
+             "box: {periodic: [50, 42, 40]}", true, true},
+        Case{"narrow_in_layers",
+             "{name: a, count: 110, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, "
+             "conformation: self_avoiding, "
+             "velocities: thermal}",
+             "box: {periodic: [11.2, 11, 42]}", true},
+        Case{"open_in_layers",
+             "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, "
+             "velocities: thermal}",
+             "", true, true}),
     [](auto const& scene) { return scene.param.name; });
 
 }  // namespace

@@ -96,6 +96,7 @@ TEST_F(Layers, OfParticlesInAnotherOrderThanBeads) {
     EXPECT_EQ(layers.front().bead, (std::vector<std::int64_t>{1, 6}));
     EXPECT_EQ(layers.front().model.bead_of_particle, (std::vector<std::int64_t>{1, 0}));
     EXPECT_EQ(layers.front().beads.chain_offset, (std::vector<std::int64_t>{0, 1, 2}));
+    EXPECT_EQ(particles_in(layers.front(), m), (std::vector<int>{1, 4}));
 }
 
 TEST_F(Layers, AreOneForEachReach) {
