@@ -163,10 +163,10 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads,
 /// Returns the largest part of the pairs of a single Context with which layers pay; 0: no layers.
 /// GPUs compute lists of a shorter reach less efficiently. CALVADOS 2 at 330 mg/ml has 0.21 of the
 /// pairs with layers, and OpenMM's pair kernels take 0.61 to 0.63 of the time (100,000 and a
-/// million beads, H200). Few beads take no longer in one Context, because each has launches of its
+/// million beads, H200). Few beads take less time in one Context, because each has launches of its
 /// own. Path `host` on a GPU waits for every Context.
 double OpenMmForces::most_pairs(OpenMmSpec const& spec, BeadSystem const& beads) const {
-    double constexpr few = 0.6, few_on_device = 0.4, all = 1;
+    double constexpr few = 0.6, few_on_device = 0.3, all = 1;
     std::int64_t constexpr many_beads_on_device = 30'000;
     if (spec.layers == "none" || spec.replicate || shares_one_list()) return 0;
     if (spec.layers == "all") return all;

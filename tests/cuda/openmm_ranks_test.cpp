@@ -61,6 +61,19 @@ TEST_P(OpenMmOnGpus, WithoutOverlap) {
     expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
 }
 
+/// Ghosts are in one Context, whatever layers the scene asks for.
+TEST_P(OpenMmOnGpus, OneListServesAllForces) {
+    Scene scene = scene_with("double", true);
+    scene.forces.openmm->layers = "all";
+    ChainSystem system(scene, Axes::world, world_);
+    bool said = false;
+    for (std::string const& line : system.openmm()->description()) {
+        said = said || line.ends_with("; one list of pairs serves all forces");
+        EXPECT_EQ(line.find("in a Context of its own"), std::string::npos) << line;
+    }
+    EXPECT_EQ(world_.max(said ? 1 : 0), world_.size() > 1 ? 1 : 0);
+}
+
 TEST_P(OpenMmOnGpus, ListsAreMadeAnewWhenAsked) { expect_lists_made_anew("ghosts"); }
 
 TEST_P(OpenMmOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) {
