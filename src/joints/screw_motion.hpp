@@ -19,6 +19,11 @@ struct ScrewMotion : MotionDefaults {
         auto const qd = j.rates(), s = j.screw(), along = j.axis();
         return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
     }
+    template <class Joint>
+    static CATENA_HD typename Joint::Vector3 shift(Joint const& j) {
+        auto const s = j.screw();
+        return (s[1] * s[2] * j.coordinate(0)) * j.axis();
+    }
     template <class Joint, class Motion>
     static CATENA_HD bool sets_omega(Joint const& j, Motion& m) {
         if (!j.pivots()) return false;
@@ -46,8 +51,9 @@ struct ScrewMotion : MotionDefaults {
         return plus_scaled(angular, s[0] * s[2] * qdd[0], axis);
     }
     /// Second derivatives of the coordinates. `relative_alpha` is the outboard minus the inboard
-    /// angular acceleration along the joint's axes. `relative_slide` is that of the meeting points
-    /// along the last axis. `drift` computes the velocity-dependent angular acceleration, M.
+    /// angular acceleration along the joint's axes; if the joint glides, its first two components
+    /// are the acceleration of the meeting points. `relative_slide` is that of the meeting points
+    /// along the last axis. `drift` computes the velocity-dependent relative acceleration, M.
     template <class Joint, class Drift>
     static CATENA_HD typename Joint::Vector3 acceleration(
         Joint const& j, typename Joint::Vector3 const& relative_alpha,
