@@ -188,8 +188,8 @@ constexpr bool has_pitch(JointType type) {
 /// True if some coordinates are lengths and others are angles.
 constexpr bool mixes_units(JointType type) {
     return with_joint(type, [](auto model) {
-        using Model = decltype(model);
-        return Model::lengths != 0 && Model::lengths != (1 << Model::numbers) - 1;
+        constexpr int lengths = decltype(model)::lengths;
+        return lengths != 0 && lengths != (1 << decltype(model)::numbers) - 1;
     });
 }
 /// Order of the directions of the joint's handles.

@@ -62,9 +62,10 @@ Scene swinging(RandomJoints joints, Base base) {
     scene.forces.gravity = {{0, 1, -2}};
     return scene;
 }
-RandomJoints const every_kind[] = {RandomJoints::revolute,  RandomJoints::spherical,
-                                   RandomJoints::universal, RandomJoints::prismatic,
-                                   RandomJoints::helical,   RandomJoints::mixed};
+RandomJoints const every_kind[] = {RandomJoints::revolute,    RandomJoints::spherical,
+                                   RandomJoints::universal,   RandomJoints::prismatic,
+                                   RandomJoints::helical,     RandomJoints::mixed,
+                                   RandomJoints::cylindrical, RandomJoints::planar3};
 
 /// Links of a plane, folded back upon themselves at their middle: what falls speeds up as it gets
 /// short.
@@ -83,8 +84,8 @@ Scene whip(int links) {
 }
 
 TEST(DormandPrince, IsOfFifthOrder) {
-    for (std::string const joint :
-         {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
+    for (std::string const joint : {"revolute", "spherical", "universal", "prismatic", "helical",
+                                    "mixed", "cylindrical", "planar3"})
         for (std::string const base : {"fixed", "free"}) {
             if (joint == "prismatic" && base == "fixed")
                 continue;  // slides in a constant field: without error

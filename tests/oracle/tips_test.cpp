@@ -2,6 +2,7 @@
 // against time, the balances.
 #include <gtest/gtest.h>
 
+#include "joints/joint_models.hpp"
 #include "tests/oracle/compare.hpp"
 #include "tests/support/random_chain.hpp"
 
@@ -17,27 +18,8 @@ RandomJoints const kinds[] = {
 /// Coordinates that are free to move.
 int freedoms(ChainSpec const& chain) {
     int dof = 0;
-    for (JointType const type : chain.bodies.joint) {
-        if (type == JointType::free) dof += 6;
-        if (type == JointType::spherical) dof += 3;
-        if (type == JointType::universal) dof += 2;
-        if (type == JointType::revolute || type == JointType::prismatic ||
-            type == JointType::helical)
-            dof += 1;
-    }
+    for (JointType const type : chain.bodies.joint) dof += freedom_of(type);
     return dof - static_cast<int>(chain.bodies.driven.size()) * 2;  // at most
-}
-int held_by(JointType tip) {
-    switch (tip) {
-        case JointType::weld:
-            return 6;
-        case JointType::spherical:
-            return 3;
-        case JointType::universal:
-            return 4;
-        default:
-            return 5;
-    }
 }
 
 class Tips : public ::testing::TestWithParam<JointType> {
@@ -46,8 +28,9 @@ class Tips : public ::testing::TestWithParam<JointType> {
         RandomJoints joints;
         /// Whether the joints leave the tip every motion it forbids, so that its forces are unique.
         bool held_once() const {
-            return chain.base == Base::free || (joints != RandomJoints::prismatic &&
-                                                freedoms(chain) >= held_by(chain.tip_joint.type));
+            return chain.base == Base::free ||
+                   (joints != RandomJoints::prismatic &&
+                    freedoms(chain) >= restricted_by(chain.tip_joint.type));
         }
     };
     static TipCase random_case(std::uint64_t seed, std::size_t largest) {
@@ -84,7 +67,8 @@ class Tips : public ::testing::TestWithParam<JointType> {
 INSTANTIATE_TEST_SUITE_P(Joints, Tips,
                          ::testing::Values(JointType::spherical, JointType::revolute,
                                            JointType::universal, JointType::weld,
-                                           JointType::prismatic, JointType::helical));
+                                           JointType::prismatic, JointType::helical,
+                                           JointType::cylindrical, JointType::planar3));
 
 TEST_P(Tips, SolversAgree) { compare<double>(320, 12); }
 TEST_P(Tips, SolversAgreeIn113Bits) { compare<Quad>(16, 4); }
@@ -220,7 +204,7 @@ TEST_P(Tips, StayClosed) {
     int moving = 0;
     for (std::uint64_t seed = 0; seed < 32; ++seed) {
         TipCase const c = random_case(seed, 6);
-        if (!c.held_once() || freedoms(c.chain) <= held_by(GetParam())) continue;
+        if (!c.held_once() || freedoms(c.chain) <= restricted_by(GetParam())) continue;
         auto const a = oracle::aba<double>(c.chain, c.loads);
         auto const [g, origin] = ground_frame(c.chain, c.loads);
         double const h = 2e-4, size = largest(a.com_acceleration) + largest(a.alpha);
