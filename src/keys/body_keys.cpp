@@ -80,8 +80,8 @@ constexpr Key joint_keys[] = {
      "required by `revolute`, `planar`, `prismatic`, `helical`, `cylindrical`", "",
      "The axis has this direction, the same in B and in J; it is normalised.", "axis: [0, 0, 1]"},
     {"axes", "2 axes", "required by `universal`, `planar3`", "",
-     "The first axis is fixed in J, the second in B; they are not parallel. Of `planar3` the first "
-     "is the direction of q[0], the second the normal.",
+     "The first axis is fixed in J, the second in B, not parallel; of `planar3` the direction of "
+     "q[0] and the normal.",
      "axes: [[1, 0, 0], [0, 1, 0]]"},
     {"pitch", "number, not 0", "required by `helical`", "length / radian",
      "The body shifts along `axis` by this much per radian.", "pitch: 0.1"},
