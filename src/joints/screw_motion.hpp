@@ -16,7 +16,8 @@ struct ScrewMotion : MotionDefaults {
     }
     template <class Joint>
     static CATENA_HD JointRate<typename Joint::Real> rate(Joint const& j) {
-        auto const qd = j.rates(), s = j.screw(), along = j.axis();
+        auto const qd = j.rates(), along = j.axis();
+        auto const s = j.screw();
         return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
     }
     template <class Joint>
@@ -46,7 +47,8 @@ struct ScrewMotion : MotionDefaults {
     static CATENA_HD typename Joint::Vector3 with_prescribed(Joint const& j, Vec3 const& qdd,
                                                              typename Joint::Vector3 const& angular,
                                                              typename Joint::Vector3& linear) {
-        auto const s = j.screw(), axis = j.axes().column(2);
+        auto const axis = j.axes().column(2);
+        auto const s = j.screw();
         linear = plus_scaled(linear, s[1] * s[2] * qdd[0], axis);
         return plus_scaled(angular, s[0] * s[2] * qdd[0], axis);
     }
