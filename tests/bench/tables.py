@@ -254,6 +254,26 @@ def radii():
         load(file)["command"]]
 
 
+def slab():
+    file = "slab-beside-openmm-nvidia-h200"
+    names = {"dense_concentration": ("dense phase (mg/ml)", 1), "slab_thickness": ("thickness (nm)", 2), "radius_of_gyration": ("radius of gyration (nm)", 3)}
+    rows = []
+    for key, (name, digits) in names.items():
+        found = load(file)["quantities"][key]
+        rows.append([name] + [f"{found[which][0]:{sign}.{digits}f} +- {found[which][1]:.{digits}f}"
+                              for which, sign in (("catena", ""), ("openmm", ""), ("difference", "+"))])
+    return ["of the slab", "Catena", "OpenMM", "difference of pairs"], rows, [file], [load(file)["command"]]
+
+
+def domain_steps():
+    file, rows = "domain-steps-nvidia-h200", []
+    for r in rows_of("domain-steps-nvidia-h200"):
+        bias = {name: f"{value:+.1f} +- {error:.1f} %" for name, (value, error) in r["biases_percent"].items()}
+        rows.append([f"{1000 * r['step_ps']:g} fs", f"{r['radius_of_gyration_nm']:.3f} +- {r['radius_of_gyration_error_nm']:.3f}",
+                     bias["radius"] if rows else "", bias["temperature"], f"{r['speed']['ns_per_day']:.0f}"])
+    return ["time step", "radius of gyration (nm)", "bias to 10 fs", "bias of the temperature", "ns/day of each copy"], rows, [file], [load(file)["command"]]
+
+
 def plan():
     """Predictions over measurements of what was chosen."""
     files = ("plan-intel-xeon", "plan-large-intel-xeon", "plan-amd-epyc", "plan-nvidia-h200", "plan-large-nvidia-h200")
@@ -319,7 +339,7 @@ def every_walk():
 TABLES = {"one core": one_core, "two threads": two_threads, "sixteen cores": sixteen_cores, "scaling": scaling, "peers": peers, "peers' errors": peer_errors,
           "one GPU": one_gpu,
           "one GPU, joints": one_gpu_joints, "two GPUs": two_gpus, "four GPUs": four_gpus, "OpenMM on a GPU": openmm_gpu,
-          "OpenMM on two threads": openmm_cpu, "a million beads": million_beads, "radii": radii, "plan": plan, "walks": walks, "every walk": every_walk}
+          "OpenMM on two threads": openmm_cpu, "a million beads": million_beads, "radii": radii, "slab": slab, "domain steps": domain_steps, "plan": plan, "walks": walks, "every walk": every_walk}
 
 
 def markdown(name):
