@@ -1,4 +1,4 @@
-// Instantiates the tree solver for chains with prismatic or helical joints (5 or 6 directions).
+// Instantiates the tree solver for chains with joints that translate (5 or 6 directions).
 #include "cuda/space/device_solver.cuh"
 
 namespace catena::cuda {

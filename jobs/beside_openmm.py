@@ -18,6 +18,8 @@ from replicas import ROOT, UserError
 MODEL = "calvados2"
 LONGEST_STEP = 0.06  # ps
 MOST_APART = 3  # standard errors
+FEW_COPIES = 10  # below which the errors themselves are uncertain by a quarter and more
+TELLING = 0.05  # of the radius: differences from here on should be told by a comparison
 KNOWN = -0.012  # of the radius: what rigid links in place of stiff bonds change, by `catena bench sampling` of alpha-synuclein
 
 
@@ -28,7 +30,7 @@ def parse_arguments():
                "  python3 jobs/beside_openmm.py inputs/saxs-radii.csv beside --copies 71 --duration 2000 --picture beside.svg")
     parser.add_argument("proteins", metavar="PROTEINS.csv", help="table of proteins")
     parser.add_argument("folder", metavar="FOLDER", help="where scenes, results and the table go")
-    parser.add_argument("--copies", type=int, default=71, metavar="N", help="copies of each protein (default: 71)")
+    parser.add_argument("--copies", type=replicas.whole, default=71, metavar="N", help="copies of each protein (default: 71)")
     parser.add_argument("--duration", type=float, default=2000, metavar="PS", help="sampled time of each copy, ps (default: 2000)")
     parser.add_argument("--discard", type=float, default=500, metavar="PS",
                         help="time before sampling, ps (default: 500); another two times that on rigid links before both")
@@ -156,6 +158,29 @@ def write_json(lines, found, asked):
         file.write("\n")
 
 
+def told(each):
+    """Smallest difference of the methods that the errors of a protein can tell, relative to OpenMM's radius; NaN without errors."""
+    error = math.hypot(each["simulated_error_nm"], each["openmm_error_nm"])
+    return MOST_APART * error / each["openmm_nm"] if each["openmm_nm"] > 0 else math.nan
+
+
+def say_notes(lines, found, copies):
+    """Says the program's notes, each once with the proteins that have it, and where there are too few copies for a verdict."""
+    proteins = {}
+    for line, each in zip(lines, found):
+        for note in each.get("notes", []):
+            proteins.setdefault(note, []).append(line["name"])
+    notes = [f"note on {names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}: {note}" for note, names in proteins.items()]
+    if copies < FEW_COPIES:
+        notes.append(f"{copies} copies are too few for a verdict: errors between copies are uncertain by {50 * (2 / (copies - 1)) ** 0.5:.0f} %; "
+                     f"take {FEW_COPIES} at least (--copies)")
+    for line in lines:
+        if math.isfinite(told(line)) and told(line) > TELLING:
+            notes.append(f"{line['name']}: the errors tell differences from {100 * told(line):.0f} % on: take more copies or a longer --duration")
+    for note in notes:
+        print(f"jobs/beside_openmm.py: {note}", file=sys.stderr)
+
+
 def chosen(proteins, only):
     """The proteins of the table that --only names."""
     if only is None:
@@ -195,6 +220,7 @@ def main():
         writer.writeheader()
         writer.writerows(lines)
     print_table(lines)
+    say_notes(lines, found, asked.copies)
     if asked.picture:
         draw([each for each in lines if math.isfinite(each["simulated_nm"] + each["openmm_nm"])], asked.picture)
     if asked.json:
@@ -203,7 +229,8 @@ def main():
     if wrong:
         print("INVALID: " + "; ".join(wrong))
         sys.exit(1)
-    print("VALID: all within 3 standard errors of OpenMM with the known difference")
+    least = max(told(each) for each in lines)
+    print(f"VALID: all within {MOST_APART} standard errors of OpenMM with the known difference; smaller differences than {100 * least:.1f} % cannot be told")
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 COLUMNS = ("name", "ionic", "temperature", "ph", "rg", "rg_error", "n", "doi", "sequence")
+BOND, BALL = 0.38, 0.246  # nm: length of a link; radius of gyration of a ball of one residue's volume
 SCENE = """title: {name}, {model}
 units: md
 chains:
@@ -30,6 +31,14 @@ class UserError(Exception):
     """What is wrong, where, and what to do."""
 
 
+def whole(text):
+    """A whole number, which may be written as 1e5."""
+    value = float(text)
+    if not value.is_integer():  # nor are inf and nan
+        raise ValueError(text)
+    return int(value)
+
+
 def parse_arguments():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -39,8 +48,8 @@ def parse_arguments():
                "    sbatch --array=1-40 --ntasks=1 jobs/slurm-array.sh saxs/scenes saxs")
     parser.add_argument("proteins", metavar="PROTEINS.csv", help="table of proteins")
     parser.add_argument("folder", metavar="FOLDER", help="where scenes, runs and the table go")
-    parser.add_argument("--replicas", type=int, default=1, metavar="R", help="runs of each protein (default: 1)")
-    parser.add_argument("--steps", type=int, default=200000, metavar="N", help="steps of each run, of 10 fs (default: 200000)")
+    parser.add_argument("--replicas", type=whole, default=1, metavar="R", help="runs of each protein (default: 1)")
+    parser.add_argument("--steps", type=whole, default=200000, metavar="N", help="steps of each run, of 10 fs (default: 200000)")
     parser.add_argument("--model", choices=("calvados2", "calvados3"), default="calvados2", help="the force field (default: calvados2)")
     parser.add_argument("--only", choices=("scenes", "table"), help="only write the scenes, or only the table of the runs that are there")
     parser.add_argument("--picture", metavar="FILE", help="also draw the table (PNG or SVG; needs matplotlib)")
@@ -74,6 +83,11 @@ def checked_protein(row, path, line):
     row.update({name: number_of(row, name, where) for name in ("rg", "rg_error", "n")})
     if len(row["sequence"]) != row["n"]:
         raise UserError(f"the sequence has {len(row['sequence'])} residues, not {row['n']:g} ({where}, {row['name']}): correct one of them")
+    # Radii of a straight chain and of a ball as dense as a protein; half the latter leaves room for tables of few digits.
+    most, least = BOND * (row["n"] - 1) / math.sqrt(12), 0.5 * BALL * row["n"] ** (1 / 3)
+    if not least <= row["rg"] <= max(most, 2 * least):
+        raise UserError(f"`rg` of {row['name']} is {row['rg']:g} nm, and {row['n']:g} residues have {least:.2g} to {max(most, 2 * least):.2g} nm "
+                        f"({where}): give it in nm")
     return row
 
 

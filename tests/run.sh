@@ -73,7 +73,7 @@ ctests() {
 build() {
     say "$1"
     check "$1-configure" cmake --preset "$1" -DCATENA_WERROR=ON -DCATENA_SANITIZE_QUICKLY="$([ $long = yes ] && echo OFF || echo ON)" -DCATENA_TESTS_LEFT_OUT="$(IFS=';'; echo "${*:2}")" \
-        -DCATENA_SLOW_DEVICE_CODE=$slow_device_code || return 1
+        -DCATENA_SLOW_DEVICE_CODE=$slow_device_code "${python_package[@]}" || return 1
     sed -n '/^-- Catena /,/^$/p' "$logs/$1-configure.log"
     check "$1-build" cmake --build --preset "$1" --parallel "$(build_jobs)"
 }
@@ -126,21 +126,25 @@ finish() {
 }
 
 say "Packages"
-need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev ccache git shellcheck
+need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev ccache git shellcheck python3-dev
 need_science
 tools=yes
 need_python "$root/tests/requirements.txt" || tools=no
 need_openmm_cuda || echo "   LEFT OUT: OpenMM on the GPU is not compiled (PyPI cannot be reached)"
 mpi_environment
+# Python does not load what sanitizers instrument: the package is built once, in the release build.
+python_package=(-DCATENA_WITH_PYTHON=OFF)
 
 say "format"
 [ $tools = yes ] || echo "   LEFT OUT: no clang-format (PyPI cannot be reached), only the shell scripts are checked"
 check format format || true
 
+if [ $tools = yes ]; then python_package=(-DCATENA_WITH_PYTHON=ON "-DPython_EXECUTABLE=$python"); else echo "   LEFT OUT: no nanobind (PyPI cannot be reached), no Python package"; fi
 if build release; then
     ctests release-tests --preset release
     if [ $long = yes ]; then ctests long-tests --test-dir build/release --output-on-failure -L long; fi
 fi
+python_package=(-DCATENA_WITH_PYTHON=OFF)
 if [ $cluster = yes ]; then cluster_tests; fi
 if [ $quick = yes ]; then finish; exit; fi
 

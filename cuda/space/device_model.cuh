@@ -93,7 +93,7 @@ class DeviceModel {
     Buffer<std::uint8_t> is_first_, is_last_, restricted_;
     /// Index of the jointed tip of a last body, and screw of each jointed tip.
     Buffer<std::int32_t> jointed_tip_;
-    Buffer<Vec3> tip_screw_;
+    Buffer<Vector<double, 4>> tip_screw_;
     /// Inverse masses, and inverse inertias about the centre of mass in body axes (lower
     /// triangles).
     AlikeField<1> inverse_mass_;
@@ -102,8 +102,8 @@ class DeviceModel {
     AlikeField<3> r1_, r2_;
     /// Axes of the inboard joint in its meeting frame, and of the outboard joint in body axes.
     AlikeField<6> axes1_, axes2_;
-    /// Parameters {c, s, rate} of prismatic and helical joints (ChainGroup::screw).
-    FixedField<3> screw_;
+    /// Parameters {c, s, rate, order} of joints that translate (ChainGroup::screw).
+    FixedField<4> screw_;
     /// Masses and inertias, only for articulated handles and runs on revolute joints.
     AlikeField<1> mass_;
     AlikeField<6> inertia_;

@@ -13,7 +13,7 @@ std::unique_ptr<ChainSolver> make_device_solver(ChainGroup const& group, DeviceS
     return with_number<2, 6>(
         group.directions, [&](auto directions) -> std::unique_ptr<ChainSolver> {
             constexpr int K = decltype(directions)::value;
-            if constexpr (K >= 5)  // Joints that slide restrict five directions.
+            if constexpr (K >= 5)  // Handles of joints that translate carry five directions or six.
                 if (group.has_screws) return make_joint_solver<K, true>(group, space, communicator);
             return make_joint_solver<K, false>(group, space, communicator);
         });

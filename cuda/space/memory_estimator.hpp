@@ -154,12 +154,12 @@ class MemoryEstimator : public HostAccess {
       private:
         List<std::uint8_t> is_first_, is_last_, restricted_;
         List<std::int32_t> jointed_tip_;
-        List<Vec3> tip_screw_;
+        List<Vector<double, 4>> tip_screw_;
         Alike<1> inverse_mass_;
         Alike<6> inverse_inertia_;
         Alike<3> r1_, r2_;
         Alike<6> axes1_, axes2_;
-        Fixed<3> screw_;
+        Fixed<4> screw_;
         Alike<1> mass_;
         Alike<6> inertia_;
     };

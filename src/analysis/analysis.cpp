@@ -159,7 +159,7 @@ Analysis frame_of(TrajectoryFile const& trajectory, Options const& options) {
     to.title = trajectory.topology().title;
     to.length_unit = trajectory.topology().si ? "m" : "nm";
     to.time_unit = trajectory.topology().si ? "s" : "ps";
-    to.kinds = kinds_of(trajectory.topology());
+    to.kinds = kinds_of(trajectory.topology(), trajectory.is_by_members());
     to.frames_in_file = trajectory.steps().size();
     to.first_frame = first_frame(trajectory, options);
     auto const skipped = static_cast<std::ptrdiff_t>(to.first_frame);

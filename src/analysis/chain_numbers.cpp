@@ -15,6 +15,11 @@ namespace {
 constexpr std::size_t histogram_bins = 40;
 constexpr double least_fitted = 6;  // separation; closer sites show the chain's local structure
 
+/// Spread of the radius of gyration, relative to its mean, below which a chain counts as folded: a
+/// flexible one has about 0.2. Rods, whose radius hardly varies either, are more aspherical.
+constexpr double of_folded = 0.05, least_rod = 0.5;
+constexpr std::int64_t least_sites = 10;  // of a chain that can fold
+
 /// Separations of the fit unless the user names others. Beyond half of the chain few pairs are
 /// left, and its ends weigh.
 Range default_fit(Kind const& kind) {
@@ -69,6 +74,7 @@ void ChainNumbers::report(Analysis& to, Options const& options, EvenFrames const
     if (kind_.sites > 1 && !is_complex_) {
         report_distances(to, options);
         report_bonds(to);
+        note_folded(to);
     }
     report_displacement(to, even);
 }
@@ -86,6 +92,19 @@ void ChainNumbers::report_sizes(Analysis& to) const {
     to.quantities.push_back({"asphericity", kind_.name, "", asphericity_.estimate(),
                              "0 sphere, 1 rod, weighted by mass"});
     to.series.push_back({"asphericity", kind_.name, "", asphericity_});
+}
+
+void ChainNumbers::note_folded(Analysis& to) const {
+    double const mean = radius_.estimate().mean;
+    double squares = 0;
+    for (double const value : radius_.values()) squares += (value - mean) * (value - mean);
+    double const varies = std::sqrt(squares / static_cast<double>(radius_.values().size())) / mean;
+    bool const is_rod = asphericity_.estimate().mean > least_rod;
+    if (kind_.sites < least_sites || is_rod || !(varies < of_folded)) return;
+    to.notes.push_back(fmt::format(
+        "the radius of gyration of {} varies by {:.2g} % only, as in a folded chain or a short "
+        "run: its scaling exponent and persistence length do not describe a flexible chain",
+        kind_.name, 100 * varies));
 }
 
 void ChainNumbers::report_distribution(Analysis& to) const {

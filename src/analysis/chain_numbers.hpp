@@ -23,6 +23,8 @@ class ChainNumbers {
 
   private:
     void report_sizes(Analysis&) const;
+    /// Notes a chain whose size hardly varies.
+    void note_folded(Analysis&) const;
     void report_distribution(Analysis&) const;
     void report_distances(Analysis&, Options const&) const;
     void report_bonds(Analysis&) const;

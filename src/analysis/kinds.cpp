@@ -1,6 +1,8 @@
 // Sorts the chains of a topology into kinds.
 #include "analysis/kinds.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -36,9 +38,29 @@ std::string shared_name(Topology const& topology, std::vector<std::size_t> const
                                     : name.substr(0, end + 1);
 }
 
+/// Returns the complexes' shared name with the members of the kind: "A+B:A and B". Chains that are
+/// no members have their shared name.
+std::string name_of_members(Topology const& topology, std::vector<std::size_t> const& chains) {
+    std::vector<std::string> members;
+    for (std::size_t const chain : chains) {
+        std::string const& name = topology.chains[chain].name;
+        std::size_t const colon = name.rfind(':');
+        if (colon == std::string::npos) return shared_name(topology, chains);
+        std::string const member = name.substr(colon + 1);
+        if (std::find(members.begin(), members.end(), member) == members.end())
+            members.push_back(member);
+    }
+    std::string const shared = shared_name(topology, chains);
+    if (chains.size() == 1) return shared;
+    std::string name = shared.substr(0, shared.find(':')) + ":" + members[0];
+    if (members.size() == 2) name += " and " + members[1];
+    if (members.size() > 2) name += fmt::format(" and {} more", members.size() - 1);
+    return name;
+}
+
 }  // namespace
 
-std::vector<Kind> kinds_of(Topology const& topology) {
+std::vector<Kind> kinds_of(Topology const& topology, bool by_members) {
     std::vector<Kind> kinds;
     std::map<std::string, std::size_t> known;
     for (std::size_t c = 0; c < topology.chains.size(); ++c) {
@@ -50,7 +72,8 @@ std::vector<Kind> kinds_of(Topology const& topology) {
     }
     std::set<std::string> taken;
     for (Kind& kind : kinds) {
-        std::string const name = shared_name(topology, kind.chains);
+        std::string const name = by_members ? name_of_members(topology, kind.chains)
+                                            : shared_name(topology, kind.chains);
         kind.name = name;
         for (int number = 2; !taken.insert(kind.name).second; ++number)
             kind.name = name + " (" + std::to_string(number) + ")";

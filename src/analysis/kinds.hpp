@@ -21,7 +21,8 @@ struct Kind {
 };
 
 /// Returns the kinds in the order of their first chains. Chains without sites belong to none. A
-/// kind of several copies is named by what the names of its chains begin with.
-std::vector<Kind> kinds_of(Topology const&);
+/// kind of several copies is named by what the names of its chains begin with. With `by_members`
+/// chains of the name COMPLEX:MEMBER are members, which the kind's name tells apart.
+std::vector<Kind> kinds_of(Topology const&, bool by_members = false);
 
 }  // namespace catena::analysis

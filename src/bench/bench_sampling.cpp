@@ -259,6 +259,7 @@ void conclude(Outcome& outcome, SamplingCopies const& copies, SamplingOptions co
                                                {"end_to_end_distance_nm", json_of(d.end_to_end)},
                                                {"cosine", json_of(d.cosine)}});
     outcome.json["valid"] = outcome.valid;
+    for (std::string const& note : copies.model().notes) remarks += "  - " + note + "\n";
     outcome.text = heading(copies, options) + table_of(rows) + remarks + distances_text(rows) +
                    usable_text(verdicts) + difference_text(differences);
 }
@@ -281,7 +282,8 @@ Json head(SamplingCopies const& copies, SamplingOptions const& options,
             {"discard_ps", options.discard},
             {"every_ps", options.every},
             {"equilibrate_ps", options.equilibration},
-            {"platform_of_samples", copies.platform()}};
+            {"platform_of_samples", copies.platform()},
+            {"notes", scene.notes}};
 }
 
 }  // namespace

@@ -207,11 +207,11 @@ class Hdf5Bodies {
             refuse("axis", k, make_direction(axis));
         });
         if (any(has_two_axes)) {
-            need("first_axis", "there are universal joints");
+            need("first_axis", "there are joints with two axes");
             vectors("first_axis", bodies_.first_axis, [&](std::size_t k, Vec3& axis) {
                 if (!has_two_axes(bodies_.joint[k])) return void(axis = Vec3::zero());
                 refuse("first_axis", k, make_direction(axis));
-                refuse("first_axis", k, check_two_axes(axis, bodies_.axis[k]));
+                refuse("first_axis", k, check_axes(bodies_.joint[k], axis, bodies_.axis[k]));
             });
         }
         if (!any(has_pitch)) return;

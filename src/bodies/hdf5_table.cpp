@@ -97,9 +97,8 @@ void Hdf5Table::refuse_too_large(std::string const& name) const {
     auto const present = static_cast<double>(memory_limit());
     if (rows * bytes_a_body > present)
         refuse(name, whole,
-               fmt::format(
-                   "{} bodies need about {:.3g} GB of memory, and only {:.3g} GB are available",
-                   rows_, rows * bytes_a_body * 1e-9, present * 1e-9),
+               fmt::format("{} bodies need about {:.3g} GB of memory, and only {}", rows_,
+                           rows * bytes_a_body * 1e-9, available_memory()),
                "make fewer bodies, or use a larger machine");
 }
 

@@ -76,7 +76,7 @@ std::vector<std::string_view> joint_keys(JointType type) {
     if (is_rigid(type)) return keys;
     for (char const* const key : {"q", "qd", "torque", "stiffness", "damping", "rest"})
         keys.emplace_back(key);
-    if (!is_ball(type)) keys.emplace_back("motion");
+    if (numbers_of(type) <= 2) keys.emplace_back("motion");
     return keys;
 }
 
@@ -88,11 +88,13 @@ Vec3 several(Node const& node, int count) {
     return v;
 }
 
-/// Reads the joint's numbers. For several coordinates with `alike` set, one number applies to all.
+/// Reads the joint's numbers. For several coordinates with `alike` set, one number applies to all,
+/// unless they have different units.
 Vec3 components(Node const& node, JointType type, bool alike) {
     int const count = numbers_of(type);
     Vec3 v = Vec3::zero();
-    if (count > 1 && !(alike && node.kind != Node::Kind::list)) return several(node, count);
+    bool const one = alike && !mixes_units(type) && node.kind != Node::Kind::list;
+    if (count > 1 && !one) return several(node, count);
     double const value = number(node);
     for (int i = 0; i < count; ++i) v[i] = value;
     return v;
@@ -113,7 +115,7 @@ Vec3 resistance(Node const& node, JointType type) {
 Four position(Node const& node, JointType type, bool alike) {
     if (has_quaternion(type)) return unit_quaternion(node);
     Vec3 const v = components(node, type, alike);
-    return {v[0], v[1], 0, 0};
+    return {v[0], v[1], v[2], 0};
 }
 
 /// Reads pose and rates of a free joint: position and velocity in W, omega in B.
@@ -140,10 +142,12 @@ void read_geometry(Fields const& joint, Entry& entry) {
         Node const& axes = joint.need("axes", "axes: [[1, 0, 0], [0, 1, 0]]");
         if (axes.kind != Node::Kind::list || axes.items.size() != 2)
             fail(axes, describe(axes) + " is not two axes",
-                 "give the first in the joint frame, the second in the body's frame");
+                 glides(entry.type)
+                     ? "give a direction in the plane, then its normal"
+                     : "give the first in the joint frame, the second in the body's frame");
         entry.first_axis = direction(axes.items[0]);
         entry.axis = direction(axes.items[1]);
-        if (auto const fault = check_two_axes(entry.first_axis, entry.axis))
+        if (auto const fault = check_axes(entry.type, entry.first_axis, entry.axis))
             fail(axes, fault->what, fault->remedy);
     }
     if (has_one_axis(entry.type)) entry.axis = direction(joint.need("axis", "axis: [0, 0, 1]"));
@@ -204,7 +208,7 @@ void read_state(Fields const& joint, JointEntry& entry) {
     if (Node const* const rest = joint.find("rest")) entry.rest = position(*rest, type, true);
     if (Node const* const qd = joint.find("qd")) entry.qd = components(*qd, type, false);
     if (Node const* const torque = joint.find("torque"))
-        entry.torque = components(*torque, type, has_two_axes(type));
+        entry.torque = components(*torque, type, turns_twice(type));
     if (Node const* const stiffness = joint.find("stiffness"))
         entry.stiffness = resistance(*stiffness, type);
     if (Node const* const damping = joint.find("damping"))
@@ -217,6 +221,10 @@ void read_state(Fields const& joint, JointEntry& entry) {
 }  // namespace
 
 int numbers_of(JointType type) { return numbers_of_joint(type); }
+
+std::optional<Fault> check_axes(JointType type, Vec3& first, Vec3 const& axis) {
+    return glides(type) ? check_plane(first, axis) : check_two_axes(first, axis);
+}
 
 // The joint's type decides which keys have a meaning.
 JointEntry read_joint(Node const& node) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "bodies/physics.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
@@ -51,5 +53,8 @@ TipEntry read_tip_joint(Node const& joint, bool ring);
 /// Number of components of the joint's torque, stiffness or damping: 1, 2 or 3. It is 0 for links,
 /// welds and free joints.
 int numbers_of(JointType type);
+/// Returns a fault if a joint of this type cannot have these two unit axes; makes those of a
+/// planar3 joint perpendicular to rounding.
+std::optional<Fault> check_axes(JointType type, Vec3& first, Vec3 const& axis);
 
 }  // namespace catena::scene

@@ -175,6 +175,15 @@ std::optional<Fault> check_two_axes(Vec3 const& first, Vec3 const& second) {
                  "give two directions, best at right angles, or use a revolute joint"};
 }
 
+std::optional<Fault> check_plane(Vec3& along, Vec3 const& normal) {
+    if (std::abs(dot(along, normal)) > printed_digits)
+        return Fault{"the two axes are not perpendicular",
+                     "give a direction in the plane, then its normal"};
+    along = plus_scaled(along, -dot(along, normal), normal);
+    along = (1 / norm(along)) * along;
+    return std::nullopt;
+}
+
 Sym3 inertia(Node const& node) {
     Sym3 j;
     refuse(node, make_inertia(full_inertia(node), j));

@@ -50,5 +50,8 @@ std::optional<Fault> make_direction(Vec3&);
 /// Returns a fault if the unit axes of a universal joint are parallel within the precision of seven
 /// printed digits.
 std::optional<Fault> check_two_axes(Vec3 const& first, Vec3 const& second);
+/// Returns a fault if a unit axis of translation is not perpendicular to the unit normal of its
+/// plane within the precision of seven printed digits. Otherwise makes it so to rounding.
+std::optional<Fault> check_plane(Vec3& along, Vec3 const& normal);
 
 }  // namespace catena::scene

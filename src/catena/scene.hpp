@@ -19,11 +19,12 @@ using FurtherKeys = std::map<std::string, std::string>;
 /// Joint that connects a body to the one before it, as `joint` of a scene. Lists have as many
 /// numbers as the type has coordinates; empty lists leave the defaults.
 struct Joint {
-    /// Name of the type: free, revolute, planar, universal, spherical, prismatic, helical or weld.
+    /// Name of the type: free, revolute, planar, universal, spherical, prismatic, helical,
+    /// cylindrical, planar3 or weld.
     std::string type = "revolute";
     /// Direction of the axis, the same in B and in the joint's frame J.
     std::optional<Triple> axis = {};
-    /// The two axes of a universal joint.
+    /// The two axes of a universal joint; direction of q[0] and normal of a planar3 joint.
     std::vector<Triple> axes = {};
     /// Origin of J in the inboard body, and J's rotation matrix relative to it, row by row.
     Triple translation{};

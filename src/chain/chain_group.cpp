@@ -29,17 +29,19 @@ Mat3 axes_about(Vec3 const& axis) {
     return columns(p, z.cross(p).normalized(), axis);
 }
 /// Returns the axes (p, q, axis) of a joint, right-handed; the identity if the joint has no axis.
-/// For a joint with two axes, p is normal to both.
+/// For a joint with two axes, p is normal to both, or the first one if the joint glides.
 Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
     if (has_one_axis(type)) return axes_about(axis);
     if (!has_two_axes(type)) return Mat3::identity();
-    Eigen::Vector3d const z = as_eigen(axis), p = as_eigen(first_axis).cross(z).normalized();
+    Eigen::Vector3d const z = as_eigen(axis), across = as_eigen(first_axis).cross(z).normalized();
+    Eigen::Vector3d const p = glides(type) ? z.cross(across).normalized() : across;
     return columns(p, z.cross(p).normalized(), axis);
 }
 
-/// Returns {c, s, rate}, see ChainGroup::screw.
-Vec3 screw_of(JointType type, double pitch) {
-    return with_joint(type, [&](auto model) { return decltype(model)::screw(pitch); });
+/// Returns {c, s, rate, order}, see ChainGroup::screw.
+Vector<double, 4> screw_of(JointType type, double pitch) {
+    Vec3 const s = with_joint(type, [&](auto model) { return decltype(model)::screw(pitch); });
+    return {{s[0], s[1], s[2], static_cast<double>(order_of(type))}};
 }
 
 /// Inverse of a rotational inertia, as a lower triangle.
@@ -118,9 +120,8 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     fill_inertia(group, b.inertia[body], k);
     if (group.planar) keep_axis_alone(group, b.inertia[body], b.axis[body], k);
     auto const axes = [&](std::int64_t joint) {
-        bool const universal = has_two_axes(b.joint[joint]);
-        return joint_axes(b.joint[joint], b.axis[joint],
-                          universal ? b.first_axis[joint] : Vec3::zero());
+        bool const two = has_two_axes(b.joint[joint]);
+        return joint_axes(b.joint[joint], b.axis[joint], two ? b.first_axis[joint] : Vec3::zero());
     };
     group.r1.set(k, -b.com[body]);
     group.axes1.set(k, kept_axes(axes(body)));
@@ -137,7 +138,7 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
         return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint)));
     };
     group.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
-    if (group.has_universal && has_two_axes(b.joint[body]))
+    if (group.has_universal && turns_twice(b.joint[body]))
         group.first_axis.set(k, b.first_axis[body]);
     if (!group.has_screws) return;
     bool const closing =
@@ -225,7 +226,7 @@ void allocate(ChainGroup& group) {
     group.joint_rotation = Field<4>(n);
     group.joint_translation = Field<3>(n);
     if (group.has_universal) group.first_axis = Field<3>(n);
-    if (group.has_screws) group.screw = Field<3>(n);
+    if (group.has_screws) group.screw = Field<4>(n);
 }
 
 /// Sets all arrays from the scene.
@@ -314,7 +315,7 @@ dca::TipTo tip_of(ChainSpec const& spec) {
 /// Records which kinds of joints a chain has.
 void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     auto const look = [&](JointType type) {
-        group.has_universal = group.has_universal || has_two_axes(type);
+        group.has_universal = group.has_universal || turns_twice(type);
         group.has_screws = group.has_screws || slides(type);
     };
     for (JointType const type : spec.bodies.joint) look(type);

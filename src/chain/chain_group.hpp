@@ -28,8 +28,8 @@ enum class Axes { joint, world };
 struct LocalTip {
     std::int64_t body = 0;  // local index of the chain's last body
     TipJoint joint;
-    Mat3 axes;   // axes in M, see ChainGroup::axes1
-    Vec3 screw;  // see ChainGroup::screw
+    Mat3 axes;                // axes in M, see ChainGroup::axes1
+    Vector<double, 4> screw;  // see ChainGroup::screw
     /// Number of constrained directions.
     int restricted = 0;
 };
@@ -48,14 +48,15 @@ struct LocalRing {
 /// Joint of this rank with prescribed motion.
 struct LocalDrive {
     std::int64_t body = 0;           // local index of the joint's outboard body
-    PrescribedMotion first, second;  // motion of each coordinate; `second` for universal joints
+    PrescribedMotion first, second;  // motion of each coordinate; `second` if there are two
 };
 
 /// Chains of one handle kind. Two bodies meet at a joint in its meeting frame M. M is the joint
 /// frame J, with two exceptions. For a universal joint, M is J rotated about the first axis; for a
-/// sliding joint, M moves with the outboard body along the axis. The last column of a joint's axes
-/// is its axis. For a universal joint the columns are the normal to both axes, the third unit
-/// vector, and the second axis.
+/// joint that translates, M moves with the outboard body's origin. The last column of a joint's
+/// axes is its axis. For a universal joint the columns are the normal to both axes, the third unit
+/// vector, and the second axis. For a planar3 joint they are the axes of its translations and the
+/// normal.
 struct ChainGroup {
     bool beads = false;   // true for point beads on links
     bool linked = false;  // true for rigid bodies and point beads on links
@@ -66,7 +67,7 @@ struct ChainGroup {
     Handles handles = Handles::projected;
     int directions = 6;           // K, the number of directions of a handle
     int smallest_directions = 6;  // number of directions that would suffice
-    /// True if some joint is universal, or some joint slides (prismatic, helical).
+    /// True if some joint is universal, or some joint translates.
     bool has_universal = false, has_screws = false;
     /// True for bodies on projected handles whose joints are revolute, except for the first joints
     /// of chains; tips are free.
@@ -119,9 +120,9 @@ struct ChainGroup {
     Field<3> joint_translation;
     /// First axis of a universal joint, J; empty if no joint is universal.
     Field<3> first_axis;
-    /// {c, s, rate}: the joint rotates by c rate q about its axis and slides by s rate q along it.
-    /// Empty if no joint slides.
-    Field<3> screw;
+    /// {c, s, rate, order}. A joint with a screw rotates by c rate q about its axis and slides by s
+    /// rate q along it. `order` is JointDefaults::order. Empty if no joint translates.
+    Field<4> screw;
     /// True if some body of the group carries beads, on any rank.
     bool carried_in_scene = false;
     /// Offset of the beads that body k carries; [size + 1]. Empty if no body carries beads.
@@ -133,7 +134,7 @@ struct ChainGroup {
     /// Jointed tips, ascending.
     std::vector<LocalTip> tips;
     /// Screws of `tips`, as `screw`.
-    std::vector<Vec3> tip_screw;
+    std::vector<Vector<double, 4>> tip_screw;
     /// Rings with an end on this rank.
     std::vector<LocalRing> rings;
 

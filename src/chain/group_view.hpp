@@ -13,12 +13,12 @@ struct GroupView {
     std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // first and last bodies of chains
     /// ChainGroup::jointed_tip; null if no chain of the group has a jointed tip.
     std::int32_t const* jointed_tip = nullptr;
-    Vec3 const* tip_screw = nullptr;  // screw of each jointed tip
+    Vector<double, 4> const* tip_screw = nullptr;  // screw of each jointed tip
     ConstView<1> inverse_mass;
     ConstView<6> inverse_inertia;
     ConstView<3> r1, r2;
     ConstView<6> axes1, axes2;
-    ConstView<3> screw;
+    ConstView<4> screw;
     ConstView<1> mass;  // empty unless sweeps read them (ChainGroup::mass_of_sweeps())
     ConstView<6> inertia;
 
@@ -26,7 +26,7 @@ struct GroupView {
         return jointed_tip && jointed_tip[k] >= 0;
     }
     /// Screw of the joint on the outboard side of body k. Precondition: there is one.
-    CATENA_HD Vec3 outboard_screw(std::int64_t k) const {
+    CATENA_HD Vector<double, 4> outboard_screw(std::int64_t k) const {
         return has_jointed_tip(k) ? tip_screw[jointed_tip[k]] : screw.load(k + 1);
     }
 };

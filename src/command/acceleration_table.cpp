@@ -21,8 +21,14 @@ std::string unit_of(Scene const& scene, ChainSpec const& chain, std::size_t k, s
     std::string const per = scene.si ? "/s^2" : "/ps^2", length = scene.si ? "m" : "nm";
     if (count == 0) return "";
     if (count == 6) return "rad" + per + ", " + length + per;
-    bool const linear = chain.is_beads() || chain.is_linked() || has_lengths(chain.bodies.joint[k]);
-    return (linear ? length : "rad") + per;
+    auto const unit = [&](bool linear) { return (linear ? length : "rad") + per; };
+    if (chain.is_beads() || chain.is_linked()) return unit(true);
+    JointType const joint = chain.bodies.joint[k];
+    if (!mixes_units(joint)) return unit(is_length(joint, 0));
+    std::string units;
+    for (std::size_t i = 0; i < count; ++i)
+        units += (i > 0 ? ", " : "") + unit(is_length(joint, static_cast<int>(i)));
+    return units;
 }
 
 std::string numbers_text(double const* numbers, std::size_t count) {

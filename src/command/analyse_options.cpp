@@ -1,7 +1,7 @@
 // The options of `catena analyse` and `catena convert`.
-#include <filesystem>
 
 #include "command/shared_options.hpp"
+#include "scene/files.hpp"
 
 namespace catena::command {
 namespace {
@@ -139,7 +139,7 @@ class ConvertCommand final : public Command {
         frames_.require_folder(name());
         request.folder = frames_.folder;
         request.frames.file = file_;
-        std::string const ending = std::filesystem::path(file_).extension();
+        std::string const ending = scene::ending_of(file_);
         request.xtc = ending == ".xtc";
         if (ending != ".dcd" && !request.xtc)
             throw InputError(file_.empty() ? "no file is named"

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "command/commands.hpp"
+#include "console/long_task.hpp"
 #include "console/terminal.hpp"
 #include "integrate/chain_system.hpp"
 #include "observe/observables.hpp"
@@ -33,6 +34,7 @@ Found find(Scene const& scene, Communicator const& communicator, bool skipped) {
     found.start.change = scene.start;
     if (relaxed) found.start.relaxation = relaxed->relaxation;
     if (!scene.forces.openmm || skipped) return found;
+    LongTask const task(communicator.rank() == 0 && !is_quiet(), "computing the forces once");
     if (!relaxed) refuse_coinciding(scene, communicator);
     ChainSystem system(relaxed ? relaxed->scene : scene, Axes::joint, communicator);
     found.openmm = system.openmm()->description();

@@ -8,7 +8,9 @@
 #include <filesystem>
 
 #include "command/commands.hpp"
+#include "console/long_task.hpp"
 #include "console/option_values.hpp"
+#include "console/terminal.hpp"
 #include "console/text.hpp"
 #include "error.hpp"
 #include "foreign/files.hpp"
@@ -34,12 +36,18 @@ struct Written {
     Json check;
 };
 
+/// Reads the scene, and says so while that takes long.
+Scene read_with_words(std::string const& text, foreign::SceneDraft const& draft) {
+    LongTask const task(!is_quiet(), "reading " + draft.system);
+    return parse_scene(text, draft.file);
+}
+
 /// Reads and checks the text of a scene. Throws InputError, which names the file and key that a
 /// wrong value came from: the scene is not there yet.
 Written checked(foreign::SceneDraft const& draft) {
     Written written{draft.file, text_of(draft), {}, {}};
     try {
-        Scene const scene = parse_scene(written.text, draft.file);
+        Scene const scene = read_with_words(written.text, draft);
         written.check = check_scene(scene, *serial_communicator(), true).json;
         written.notes = scene.notes;
     } catch (InputError const& error) {
@@ -84,15 +92,45 @@ std::string equilibration_of(std::string const& file) {
     return path.string();
 }
 
+/// Name of the scene that the import writes.
+std::string scene_file(foreign::Files const& files, ImportRequest const& request) {
+    return request.output.empty() ? name_of(files) + ".yaml" : request.output;
+}
+
+/// Folder of the start of a scene.
+std::string start_folder(std::string const& scene) {
+    return fs::path(scene).replace_extension().string() + "-start";
+}
+
+/// A folder that vanishes with its files unless it is kept or was there before.
+class NewFolder {
+  public:
+    explicit NewFolder(std::string path) : path_(std::move(path)) {
+        std::error_code ignored;
+        kept_ = fs::exists(fs::symlink_status(path_, ignored));
+    }
+    NewFolder(NewFolder const&) = delete;
+    NewFolder& operator=(NewFolder const&) = delete;
+    ~NewFolder() {
+        std::error_code ignored;
+        if (!kept_) fs::remove_all(path_, ignored);
+    }
+    void keep() { kept_ = true; }
+
+  private:
+    std::string path_;
+    bool kept_;
+};
+
 /// Writes the topology of a State. Throws InputError, which names the options and files of the
 /// import.
 foreign::WrittenStart start_of(foreign::Files const& files, foreign::SceneDraft draft) {
     OpenMmSpec spec;
     spec.system = files.system;
     add_changes({{}, draft.leave_out, draft.links}, spec);
-    fs::path const folder = fs::path(draft.file).replace_extension().string() + "-start";
+    std::string const folder = start_folder(draft.file);
     try {
-        return write_start(files, spec, folder.string());
+        return write_start(files, spec, folder);
     } catch (InputError const& error) {
         draft.file = draft.source = files.system;  // the name in these messages
         throw InputError(foreign::with_origins(error.what(), draft));
@@ -104,7 +142,7 @@ foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings cons
                              ImportRequest const& request) {
     foreign::SceneDraft draft;
     draft.title = name_of(files);
-    draft.file = request.output.empty() ? draft.title + ".yaml" : request.output;
+    draft.file = scene_file(files, request);
     if (draft.file == "-")
         throw InputError("the scene cannot go to standard output", "--output -", "name a file");
     require_writable("--output", draft.file);
@@ -210,6 +248,7 @@ Outcome import_folder(Communicator const& communicator, ImportRequest const& req
     on_first_rank(communicator, [&] {
         foreign::Files const files = foreign::find_files(request.source, request.topology);
         foreign::Settings const settings = settings_of(files);
+        NewFolder start(start_folder(scene_file(files, request)));
         std::vector<foreign::SceneDraft> const drafts = drafts_of(files, settings, request);
         std::vector<Written> scenes;
         for (foreign::SceneDraft const& draft : drafts) scenes.push_back(settled(draft));
@@ -224,6 +263,7 @@ Outcome import_folder(Communicator const& communicator, ImportRequest const& req
             write_text_file(scene.file, scene.text);
             written.push_back(scene.file);
         }
+        start.keep();
         outcome.text = text_of(files, drafts.back(), scenes, notes);
         outcome.json = {{"scenes", written},
                         {"tool", settings.tool.empty() ? Json() : Json(settings.tool)},

@@ -11,6 +11,7 @@
 
 #include "clock.hpp"
 #include "command/command_line.hpp"
+#include "console/long_task.hpp"
 #include "console/option_values.hpp"
 #include "console/process.hpp"
 #include "console/terminal.hpp"
@@ -65,7 +66,7 @@ int run_request(Communicator const& communicator, int argc, char** argv,
         if (speaks) say_error(error.what());
         return 1;
     } catch (std::bad_alloc const&) {
-        return fail(communicator, out_of_memory);
+        return fail(communicator, out_of_memory());
     } catch (std::exception const& error) {
         return fail(communicator, error.what());
     } catch (...) {
@@ -86,6 +87,7 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
 Scene Session::load(std::string const& file) const {
     double const start = seconds_now();
     std::optional<Scene> scene;
+    LongTask const task(communicator_.rank() == 0 && !is_quiet(), "reading " + file);
     // Files that one rank alone cannot read must not leave the others waiting.
     on_every_rank(communicator_, [&] { scene = load_scene(file, overrides_of(options_)); });
     spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, seconds_now() - start,

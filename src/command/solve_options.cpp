@@ -1,5 +1,6 @@
 // The options of `catena check` and `catena solve`.
 #include "command/shared_options.hpp"
+#include "scene/files.hpp"
 
 namespace catena::command {
 namespace {
@@ -20,7 +21,7 @@ class CheckCommand final : public Command {
     Request request(CommonOptions const& common) const override {
         auto request = scene_request<CheckRequest>(common, scene_, name());
         request.picture = picture_;
-        if (!picture_.empty() && !picture_.ends_with(".svg"))
+        if (!picture_.empty() && scene::ending_of(picture_) != ".svg")
             throw InputError("the picture is an SVG file", "--picture " + picture_,
                              "name a file that ends in .svg");
         return request;

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "error.hpp"
+#include "io/memory_limit.hpp"
 #include "io/printable.hpp"
 
 namespace catena::command {
@@ -30,6 +31,14 @@ class StandardError : public spdlog::sinks::base_sink<spdlog::details::null_mute
 
 }  // namespace
 
+char const* out_of_memory() {
+    return is_limited_by_ulimit()
+               ? "the computation does not fit into the memory that `ulimit -v` allows: raise the "
+                 "limit, run it on more ranks, or make fewer bodies"
+               : "the computation does not fit into memory: run it on more ranks, or make fewer "
+                 "bodies";
+}
+
 void print(std::string const& text) {
     errno = 0;
     bool const written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
@@ -44,7 +53,7 @@ void say_error(std::string const& line) {
     // failure.
     bool const memory = line.find("std::bad_alloc") != std::string::npos ||
                         line.find("std::bad_array_new_length") != std::string::npos;
-    std::string one = memory ? out_of_memory : printable(line);
+    std::string one = memory ? out_of_memory() : printable(line);
     std::replace(one.begin(), one.end(), '\n', ' ');
     std::fflush(stdout);
     std::fprintf(stderr, "catena: %s\n", one.c_str());

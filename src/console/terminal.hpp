@@ -6,9 +6,8 @@
 
 namespace catena::command {
 
-/// Message for every failure to allocate memory.
-constexpr char const* out_of_memory =
-    "the computation does not fit into memory: run it on more ranks, or make fewer bodies";
+/// Message for every failure to allocate memory. It names `ulimit -v` where that is the limit.
+char const* out_of_memory();
 
 /// Writes to standard output without changes. Ignores a closed pipe (`catena check SCENE | head
 /// -1`); throws ComputationError for any other failure.

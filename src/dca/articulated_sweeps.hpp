@@ -7,8 +7,7 @@
 
 namespace catena::dca {
 
-/// Leaf of articulated handles: one body with its inboard joint. `sliding`: some joint is prismatic
-/// or helical.
+/// Leaf of articulated handles: one body with its inboard joint. `sliding`: some joint translates.
 template <bool sliding>
 class ArticulatedLeaf {
   public:
@@ -42,7 +41,7 @@ class ArticulatedLeaf {
             b.turning.set_column(3 + i, e.column(i));
             b.shifting.set_column(3 + i, cross(b.state.r1, e.column(i)));
         }
-        if constexpr (sliding) mix(group_.screw.load(k), b);
+        if constexpr (sliding) mix(as_screw(group_.screw.load(k)), b);
         double const mass = group_.mass.load(k)[0];
         Matrix<double, 3, K> const turned = full(as_symmetric(group_.inertia.load(k))) * b.turning;
         for (int j = 0; j < K; ++j)
@@ -112,12 +111,13 @@ class ArticulatedLeaf {
         }
         return r;
     }
-    /// Combines directions 2 and 5 as turn_to_screw() does.
-    CATENA_HD static void mix(Vec3 const& screw, Held& b) {
+    /// Combines directions 2 and 5 and orders all directions as turn_to_screw() does.
+    CATENA_HD static void mix(Screw<double> const& screw, Held& b) {
         auto const each = [&](Matrix<double, 3, K>& m) {
             Vec3 const linear = m.column(2), angular = m.column(5);
-            m.set_column(2, screw[0] * linear - screw[1] * angular);
-            m.set_column(5, screw[1] * linear + screw[0] * angular);
+            m.set_column(2, screw.c * linear - screw.s * angular);
+            m.set_column(5, screw.s * linear + screw.c * angular);
+            put_in_order(screw.order, m);
         };
         each(b.turning), each(b.shifting);
     }

@@ -123,7 +123,7 @@ struct TurnedHandlePair {
 };
 
 /// Adds the compliance of the inboard joint to the body's handle (src/dca/README.md, "Joints"): Z +
-/// P B^-1 P^T. The three angular directions of full handles are the last ones.
+/// P B^-1 P^T. The directions that a joint leaves free are among the last three of full handles.
 template <int K, class Place>
 CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
                               SegmentMatrix<RealAt<Place>, K>& s) {
@@ -139,7 +139,7 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k,
 }
 
 /// Handles of bodies in joint coordinates: along the axes of the meeting frames, with forces in B.
-/// `sliding`: some joint is prismatic or helical.
+/// `sliding`: some joint translates.
 template <int K, bool sliding>
 class JointFrameHandles {
   public:
@@ -190,12 +190,9 @@ class JointFrameHandles {
         HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1),
                                                   make_handle<K, sliding>(state.r2, e2, e2)};
         if constexpr (sliding) {
-            auto const s1 = read(group_.screw, k);
-            turn_to_screw(Screw<Real>{s1[0], s1[1]}, state.r1, e1, e1, pair.h1);
-            if (!ends_chain(group_, k) || has_jointed_tip(group_, k)) {
-                auto const s2 = outboard_screw(group_, k);
-                turn_to_screw(Screw<Real>{s2[0], s2[1]}, state.r2, e2, e2, pair.h2);
-            }
+            turn_to_screw(as_screw(read(group_.screw, k)), state.r1, e1, e1, pair.h1);
+            if (!ends_chain(group_, k) || has_jointed_tip(group_, k))
+                turn_to_screw(as_screw(outboard_screw(group_, k)), state.r2, e2, e2, pair.h2);
         }
         return pair;
     }
@@ -302,8 +299,8 @@ class LinkFrames {
     ConstView<4> rotation_;
 };
 
-/// Leaf of rigid bodies. K = 1: links, 2: planar, 3: spherical, 4: universal, 5: revolute,
-/// prismatic and helical joints, 6: full handles.
+/// Leaf of rigid bodies. K = 1: links, 2: planar, 3: spherical, 4: universal, 5: revolute joints
+/// and those that translate, 6: full handles.
 template <int K_, class Frames_>
 class BodyLeaf {
   public:

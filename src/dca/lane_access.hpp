@@ -112,7 +112,7 @@ CATENA_HD bool comes_before_one(GroupView const& group, std::int64_t k) {
 CATENA_HD bool has_jointed_tip(GroupView const& group, std::int64_t k) {
     return group.has_jointed_tip(k);
 }
-CATENA_HD Vec3 outboard_screw(GroupView const& group, std::int64_t k) {
+CATENA_HD Vector<double, 4> outboard_screw(GroupView const& group, std::int64_t k) {
     return group.outboard_screw(k);
 }
 

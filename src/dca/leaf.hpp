@@ -7,6 +7,7 @@
 // chapter, eqs 2.1-2.4, 2.6-2.7).
 #pragma once
 
+#include "dca/joint_directions.hpp"
 #include "dca/segment.hpp"
 #include "math/rotation.hpp"
 
@@ -63,17 +64,8 @@ CATENA_HD GroundHandle<Real, K> make_ground_handle(Vector<Real, 3> const& r,
     return {make_handle<K>(r, angular, Matrix<Real, 3, 3>{}).torque, r, angular};
 }
 
-/// A joint that translates and rotates along its axis a: the free motion is (angular c a, linear s
-/// a) with c^2 + s^2 = 1. In the order of make_handle(), direction 2 is the restricted one,
-/// (angular -s a, linear c a), and direction 5 the free one.
-/// Revolute: c = 1, s = 0. Prismatic: c = 0, s = 1. Helical with pitch h: (1, h) / sqrt(1 + h^2).
-template <class Real>
-struct Screw {
-    Real c, s;
-};
-
-/// Combines directions 2 and 5 of a handle made for a revolute joint, a force and a torque along
-/// the same axis, into those of a screw.
+/// Turns the directions of a handle made for a revolute joint into those of a screw, which combines
+/// directions 2 and 5, and puts them into the joint's order.
 template <int K, class Real>
 CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r,
                              Matrix<Real, 3, 3> const& angular, Matrix<Real, 3, 3> const& linear,
@@ -87,6 +79,8 @@ CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r,
         h.torque.set_column(5, screw.s * arm + screw.c * axis);
         h.force.set_column(5, screw.s * along);
     }
+    put_in_order(screw.order, h.torque);
+    put_in_order(screw.order, h.force);
 }
 
 /// Returns the contribution of the torques to leaf_matrix().

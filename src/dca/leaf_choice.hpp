@@ -36,7 +36,7 @@ template <class Use>
 auto with_joint_leaf(ChainGroup const& group, Use const& use) {
     return with_number<2, 6>(group.directions, [&](auto directions) {
         constexpr int K = decltype(directions)::value;
-        if constexpr (K >= 5)  // Joints that slide restrict five directions.
+        if constexpr (K >= 5)  // Handles of joints that translate carry five directions or six.
             if (group.has_screws) return use(Of<BodyLeaf<K, JointFrameHandles<K, true>>>{});
         return use(Of<BodyLeaf<K, JointFrameHandles<K, false>>>{});
     });

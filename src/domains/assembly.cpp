@@ -118,17 +118,21 @@ class Assembler {
             for (std::size_t r = 1; r < of_chain.size(); ++r) {
                 Range const &a = of_chain[r - 1], &b = of_chain[r];
                 if (a.set != b.set) continue;
-                std::string const whole =
-                    fmt::format("\"{}{}-{}\"",
-                                numbers_.several_names() ? numbers_.chains[a.first][0] + ":" : "",
-                                numbers_.label(a.first), numbers_.label(b.last));
+                auto const range = [&](std::size_t first, std::size_t last) {
+                    return fmt::format(
+                        "\"{}{}-{}\"",
+                        numbers_.several_names() ? numbers_.chains[first][0] + ":" : "",
+                        numbers_.label(first), numbers_.label(last));
+                };
                 fail(*sets_[a.set].at,
                      fmt::format("{} would be a flexible loop between two parts of one rigid body, "
                                  "which a serial chain cannot hold",
                                  numbers_.span(a.last + 1, b.first - 1)),
                      fmt::format("write {} to make the loop rigid, too (with `domains` or `pae`: "
-                                 "`longest_loop: {}`), or leave a part out of the body",
-                                 whole, b.first - a.last - 1));
+                                 "`longest_loop: {}`), or make two bodies of the parts: rigid: "
+                                 "[{}, {}]",
+                                 range(a.first, b.last), b.first - a.last - 1,
+                                 range(a.first, a.last), range(b.first, b.last)));
             }
     }
 

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <memory>
 
+#include "error.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 
@@ -14,6 +17,13 @@ namespace {
 
 char const* const form =
     "write `NAME: [[first, last], ...]`, with residues counted from 1 along the chain";
+
+/// Parses the file. Throws InputError for one that names no protein.
+std::unique_ptr<Node> parsed(std::string const& text, std::string const& path) {
+    if (holds_no_keys(text))
+        throw InputError("the domain file names no protein", shown_path(path), form);
+    return parse_document(text, path);
+}
 
 /// The protein's entry in the file. Throws InputError if no name decides.
 Node const& protein_in(Node const& file, Node const& at, std::string const& wanted,
@@ -31,10 +41,17 @@ Node const& protein_in(Node const& file, Node const& at, std::string const& want
                      file.items.size() > 8 ? ", ..." : ""));
 }
 
+/// Number of a residue. Throws InputError for one below 1.
+std::int64_t residue_of(Node const& node) {
+    std::int64_t const residue = whole(node, std::numeric_limits<std::int64_t>::min());
+    if (residue < 1) fail(node, fmt::format("a domain has a residue {}", residue), form);
+    return residue;
+}
+
 std::array<std::int64_t, 2> segment_of(Node const& node) {
     if (node.kind != Node::Kind::list || node.items.size() != 2)
         fail(node, describe(node) + " is not a pair of residues", form);
-    std::array<std::int64_t, 2> const pair{whole(node.items[0], 1), whole(node.items[1], 1)};
+    std::array<std::int64_t, 2> const pair{residue_of(node.items[0]), residue_of(node.items[1])};
     if (pair[1] < pair[0])
         fail(node, fmt::format("the last residue, {}, precedes the first, {}", pair[1], pair[0]),
              form);
@@ -54,7 +71,7 @@ DomainSegments domain_of(Node const& node) {
 
 FileDomains read_domain_file(std::string const& path, Node const& at, std::string const& wanted,
                              std::string const& chain) {
-    auto const file = parse_document(read_text_file(path, at), path);
+    auto const file = parsed(read_text_file(path, at), path);
     Node const& protein = protein_in(*file, at, wanted, chain);
     FileDomains made{protein.key, {}};
     if (protein.kind != Node::Kind::list || protein.items.empty())

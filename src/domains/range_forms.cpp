@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <regex>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +16,8 @@
 namespace catena::scene {
 
 namespace {
+
+std::size_t constexpr longest_form = 40;  // characters of a range in another form
 
 /// Place after a residue number with a sign and an insertion code that begins at `at`; `at` if
 /// there is none.
@@ -58,6 +62,9 @@ std::vector<std::string> parts_of(std::string const& text, char const* marks) {
     return parts;
 }
 
+/// Chain of a range with its colon, "A:" of "A:1-72"; empty without one.
+std::string chain_in(std::string const& range) { return range.substr(0, range.rfind(':') + 1); }
+
 /// Ranges in quotes, joined by commas.
 std::string quoted(std::vector<std::string> const& ranges) {
     std::string text;
@@ -66,51 +73,168 @@ std::string quoted(std::vector<std::string> const& ranges) {
     return text;
 }
 
+/// Blanks and dashes of print with what a scene has in their place.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> printed = {
+    {{"\u2013", "-"},
+     {"\u2014", "-"},
+     {"\u2212", "-"},
+     {"\u2010", "-"},
+     {"\u2011", "-"},
+     {"\u00a0", ""},
+     {"\u2007", ""},
+     {"\u202f", ""},
+     {"\u2009", ""},
+     {"\u200b", ""}}};
+
+/// Replaces blanks and dashes of print. `dashes` and `spaces` receive their numbers.
+std::string plain(std::string text, int& dashes, int& spaces) {
+    for (auto const& [mark, other] : printed)
+        for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
+            text.replace(at, mark.size(), other);
+            ++(other.empty() ? spaces : dashes);
+        }
+    return text;
+}
+
+/// Ranges that a text holds: "A:1-30, 41-72" has "A:1-30" and "A:41-72", "1-72:77-148" has two.
+/// Empty for a text with anything else.
+std::vector<std::string> ranges_of(std::string const& text) {
+    int ignored = 0;
+    std::string const written = plain(text, ignored, ignored);
+    for (char const* const marks : {",;&+ \t", ",;&+"}) {
+        std::vector<std::string> parts = parts_of(written, marks), ranges;
+        std::string chain;
+        for (std::string const& part : parts) {
+            std::size_t const colon = part.rfind(':');
+            std::string const before = colon == std::string::npos ? "" : part.substr(0, colon);
+            if (is_range(before)) {  // two ranges with a colon between them
+                ranges.insert(ranges.end(), {before, chain_in(before) + part.substr(colon + 1)});
+            } else {
+                if (!chain_in(part).empty()) chain = chain_in(part);
+                ranges.push_back(chain_in(part).empty() ? chain + part : part);
+            }
+        }
+        if (!ranges.empty() && std::all_of(ranges.begin(), ranges.end(), is_range)) return ranges;
+    }
+    return {};
+}
+
+/// True for a scalar that is a residue's number, with or without an insertion code.
+bool is_number(Node const& node) {
+    std::string const text = without_blanks(node.text);
+    return node.kind == Node::Kind::scalar && !text.empty() && after_number(text, 0) == text.size();
+}
+
+/// True for a list of two numbers.
+bool is_pair(Node const& node) {
+    return node.kind == Node::Kind::list && node.items.size() == 2 &&
+           std::all_of(node.items.begin(), node.items.end(), is_number);
+}
+
+std::string span_of(Node const& pair) {
+    return without_blanks(pair.items[0].text) + "-" + without_blanks(pair.items[1].text);
+}
+
+/// Ranges that an entry of a map stands for: `A: 1-72`, `A: [1, 72]`, `1-72: 77-148`.
+std::vector<std::string> ranges_of_entry(Node const& entry) {
+    if (is_pair(entry)) return {entry.key + ":" + span_of(entry)};
+    if (entry.kind != Node::Kind::scalar) return {};
+    return ranges_of(entry.key + ":" + without_blanks(entry.text));
+}
+
+/// Ranges that a node holds in any form and depth; empty if it holds something else, too.
+std::vector<std::string> ranges_in(Node const& node) {
+    if (node.kind == Node::Kind::scalar) return ranges_of(node.text);
+    if (is_pair(node)) return {span_of(node)};
+    std::vector<std::string> all;
+    for (Node const& item : node.items) {
+        auto const more = node.kind == Node::Kind::map ? ranges_of_entry(item) : ranges_in(item);
+        if (more.empty()) return {};
+        all.insert(all.end(), more.begin(), more.end());
+    }
+    return all;
+}
+
+/// Advice with the forms of `rigid` that hold these ranges.
+std::string forms_of(std::vector<std::string> const& ranges) {
+    if (ranges.empty())
+        return "write a list of ranges, such as rigid: [\"1-95\"], or with chains rigid: "
+               "[\"A:1-95\"]";
+    return ranges.size() == 1
+               ? fmt::format("write rigid: [{}]", quoted(ranges))
+               : fmt::format("write rigid: [{}] for a body of each, rigid: [[{}]] for one body",
+                             quoted(ranges), quoted(ranges));
+}
+
 }  // namespace
 
 bool is_map_of_ranges(Node const& node) {
-    return node.kind == Node::Kind::map && !node.items.empty() &&
-           std::all_of(node.items.begin(), node.items.end(), [](Node const& item) {
-               return item.kind == Node::Kind::scalar && is_span(without_blanks(item.text));
-           });
+    return node.kind == Node::Kind::map && !node.items.empty() && !ranges_in(node).empty();
 }
 
 void refuse_map(Node const& node) {
-    if (!is_map_of_ranges(node))
+    std::vector<std::string> const ranges = ranges_in(node);
+    if (node.kind != Node::Kind::map || ranges.empty())
         fail(node, "a map is not a range of residues",
              "write ranges in quotes, such as \"A:1-95\"");
-    std::vector<std::string> ranges;
-    for (Node const& item : node.items)
-        ranges.push_back(item.key + ":" + without_blanks(item.text));
     Node const& first = node.items.front();
     fail(node,
          fmt::format("YAML makes a map of `{}: {}`, which is not a range of residues",
-                     shown(first.key), shown(first.text)),
-         fmt::format("write [{}], in quotes and without a blank", quoted(ranges)));
+                     shown(first.key),
+                     is_pair(first) ? "[" + first.items[0].text + ", " + first.items[1].text + "]"
+                                    : shown(first.text)),
+         ranges.size() == 1 || first.kind != Node::Kind::scalar || !is_range(first.key)
+             ? fmt::format("write [{}], in quotes and without a blank", quoted(ranges))
+             : forms_of(ranges));
 }
 
-void refuse_printed_dash(Node const& node) {
-    std::string hyphened = text(node);
-    bool is_printed = false;
-    for (std::string_view const dash : {"\u2013", "\u2014", "\u2212"})
-        for (auto at = hyphened.find(dash); at != std::string::npos; at = hyphened.find(dash)) {
-            hyphened.replace(at, dash.size(), "-");
-            is_printed = true;
-        }
-    if (is_printed)
-        fail(node, describe(node) + " has a dash that is no hyphen",
-             fmt::format("write \"{}\"", shown(hyphened)));
+void refuse_no_list(Node const& rigid) {
+    if (rigid.kind != Node::Kind::list)
+        fail(rigid, describe(rigid) + " is not a list of ranges", forms_of(ranges_in(rigid)));
+    bool const bare =
+        rigid.items.size() > 1 && std::all_of(rigid.items.begin(), rigid.items.end(), is_number);
+    if (!bare) return;
+    std::vector<std::string> ranges;
+    for (std::size_t k = 0; k + 1 < rigid.items.size(); k += 2)
+        ranges.push_back(without_blanks(rigid.items[k].text) + "-" +
+                         without_blanks(rigid.items[k + 1].text));
+    if (rigid.items.size() % 2 != 0) ranges.clear();
+    fail(rigid, "a list of numbers is not a list of ranges", forms_of(ranges));
+}
+
+void refuse_depth(Node const& node) {
+    std::vector<std::string> const ranges = ranges_in(node);
+    if (!ranges.empty()) fail(node, "ranges stand in too many brackets", forms_of(ranges));
+}
+
+void refuse_printed(Node const& node) {
+    int dashes = 0, spaces = 0;
+    std::string const written = plain(text(node), dashes, spaces);
+    if (dashes + spaces > 0)
+        fail(node,
+             describe(node) +
+                 (dashes > 0 ? " has a dash that is no hyphen" : " has a non-breaking space"),
+             fmt::format("write \"{}\"", shown(written)));
 }
 
 void refuse_several_ranges(Node const& node) {
-    std::string const written = text(node);
-    for (char const* const marks : {",;", ",; \t"}) {
-        std::vector<std::string> const parts = parts_of(written, marks);
-        if (parts.size() < 2 || !std::all_of(parts.begin(), parts.end(), is_range)) continue;
-        fail(node, fmt::format("{} holds {} ranges", describe(node), parts.size()),
+    std::vector<std::string> const ranges = ranges_of(text(node));
+    if (ranges.size() > 1)
+        fail(node, fmt::format("{} holds {} ranges", describe(node), ranges.size()),
              fmt::format("write each in quotes of its own: {}; [{}] makes one body of them",
-                         quoted(parts), quoted(parts)));
-    }
+                         quoted(ranges), quoted(ranges)));
+}
+
+std::string likely_range(std::string const& written) {
+    static std::regex const form(
+        R"((?:([A-Za-z]\w?)\s*:|([A-Za-z]))?\s*(-?\d+[A-Za-z]?)\s*(?:to|\.{1,3}|[-:~/_])\s*)"
+        R"((?:([A-Za-z]\w?)\s*:|([A-Za-z]))?\s*(-?\d+[A-Za-z]?))");
+    std::smatch parts;
+    if (written.size() > longest_form || !std::regex_match(written, parts, form)) return "";
+    std::string const chain = parts[1].str() + parts[2].str(),
+                      again = parts[4].str() + parts[5].str();
+    if (!again.empty() && again != chain) return "";
+    return (chain.empty() ? "" : chain + ":") + parts[3].str() + "-" + parts[6].str();
 }
 
 }  // namespace catena::scene

@@ -175,6 +175,10 @@ bool Numbering::is_list_of_ranges(Node const& node) {
 std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
     if (node.kind == Node::Kind::scalar) return ends_in(node);
     if (node.kind == Node::Kind::map) refuse_map(node);
+    bool const nests = std::any_of(node.items.begin(), node.items.end(), [](Node const& item) {
+        return item.kind == Node::Kind::list || item.text.find('-', 1) != std::string::npos;
+    });
+    if (nests) refuse_depth(node);
     if (node.kind != Node::Kind::list || node.items.size() != 2)
         fail(node, describe(node) + " is not a pair of residues", remedy());
     return {{{"", label(node.items[0])}, {"", label(node.items[1])}}};
@@ -184,7 +188,7 @@ std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
 std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
     if (without_blanks(node.text).empty())
         fail(node, "an empty text is no range of residues", remedy());
-    refuse_printed_dash(node);
+    refuse_printed(node);
     refuse_several_ranges(node);
     std::string const written = without_blanks(text(node));
     refuse_missing_colon(node, written);
@@ -197,6 +201,9 @@ std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
     std::array<ResidueName, 2> ends{{{chain, without_blanks(span.substr(0, dash))}, {chain, ""}}};
     if (dash != std::string::npos) ends[1].label = without_blanks(span.substr(dash + 1));
     bool const two = !ends[1].label.empty() && ends[1].label.find('-', 1) == std::string::npos;
+    if (std::string const likely = likely_range(written); !two && !likely.empty())
+        fail(node, describe(node) + " is not a range of residues",
+             fmt::format("did you mean \"{}\"?", shown(likely)));
     if (!two || colon == 0)
         fail(node, describe(node) + " is not a range of residues",
              numbers_.several_names()  ? remedy()
@@ -222,9 +229,11 @@ void Numbering::refuse_missing_colon(Node const& node, std::string const& writte
             after > name.size() || std::isdigit(static_cast<unsigned char>(name.back())) == 0;
         bool const numbered = std::isdigit(static_cast<unsigned char>(rest[0])) != 0 ||
                               (rest[0] == '-' && rest.find('-', 1) != std::string::npos);
-        if (parted && numbered)
-            fail(node, describe(node) + " has no colon after the chain",
-                 fmt::format("did you mean \"{}:{}\"?", shown(name), shown(rest)));
+        if (!parted || !numbered) continue;
+        std::string const likely = likely_range(written);
+        fail(node, describe(node) + " has no colon after the chain",
+             fmt::format("did you mean \"{}\"?",
+                         shown(likely.empty() ? name + ":" + rest : likely)));
     }
 }
 
@@ -280,7 +289,13 @@ std::string Numbering::other_codes(ResidueName const& end) const {
 /// Residue of a number that counts residues from 1.
 std::size_t Numbering::counted_residue(Node const& node, ResidueName const& end) const {
     if (!end.chain.empty())
-        fail(node, fmt::format("chain {} is no chain of a file", shown(end.chain)), remedy());
+        fail(node,
+             fmt::format("chain {} is named, and the residues of this entry are counted from 1",
+                         shown(end.chain)),
+             numbers_.begins.empty()
+                 ? "leave the chain out, or give the structure as `pdb`, whose chains and residue "
+                   "numbers count"
+                 : remedy());
     double value = 0;
     if (!is_whole(end.label, value))
         fail(node, fmt::format("`{}` is no residue", shown(end.label)), remedy());
@@ -297,6 +312,7 @@ std::size_t Numbering::counted_residue(Node const& node, ResidueName const& end)
 std::string Numbering::label(Node const& end) const {
     if (numbers_.labels.empty()) return std::to_string(whole(end, 1));
     double value = 0;
+    refuse_printed(end);
     std::string const written = text(end);
     return is_whole(written, value) ? std::to_string(static_cast<std::int64_t>(value)) : written;
 }

@@ -340,7 +340,8 @@ void note_insertions(Numbering const& by, RigidBodies& made) {
 }
 
 RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numbering const& by) {
-    if (list(rigid).items.empty())
+    refuse_no_list(rigid);
+    if (rigid.items.empty())
         fail(rigid, "the list of rigid domains is empty", "leave the key out or " + by.remedy());
     RigidBodies made;
     for (Node const& item : rigid.items) {
@@ -363,7 +364,9 @@ RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numberin
 
 RigidBodies read_rigid_bodies(Node const& rigid, RigidSource const& source) {
     Numbering const numbering(source.numbers);
-    if (is_map_of_ranges(rigid)) refuse_map(rigid);
+    bool const keyed =
+        rigid.kind == Node::Kind::map && (rigid.find("domains") || rigid.find("pae"));
+    if (!keyed && is_map_of_ranges(rigid)) refuse_map(rigid);
     RigidBodies made = rigid.kind == Node::Kind::map ? RigidMap(rigid, source).read()
                                                      : read_list(rigid, source.numbers, numbering);
     if (rigid.kind == Node::Kind::map)

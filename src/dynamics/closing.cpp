@@ -9,6 +9,14 @@
 #include "dynamics/stays_open.hpp"
 
 namespace catena {
+
+std::string closing_error(double error) {
+    if (!std::isfinite(error)) return "positions are no longer finite";
+    std::ostringstream text;
+    text << "error " << error;
+    return text.str();
+}
+
 namespace {
 
 // Number of consecutive sweeps that do not halve the error, after which a small error counts as
@@ -18,7 +26,7 @@ constexpr int in_vain_at_rounding = 5;
 [[noreturn]] void fail(int sweeps, double error, double tolerance) {
     std::ostringstream line;
     line << "the joints do not close to dynamics.constraint_tolerance = " << tolerance << " within "
-         << sweeps << " sweeps (error " << error
+         << sweeps << " sweeps (" << closing_error(error)
          << "): the step is too long for how fast bodies move here: choose a smaller "
             "dynamics.step, or look at the start and the forces";
     throw ClosingFailure(line.str());

@@ -29,6 +29,9 @@ struct Closing {
               std::function<void()> const& sweep) const;
 };
 
+/// Returns "error 3e-08" for messages, or that positions are no longer finite.
+std::string closing_error(double error);
+
 /// Interface of chains in absolute coordinates (AbsoluteDynamics) for ClosedSteps and
 /// ConstrainedIntegrator::step_closing().
 class ClosingDrifts {

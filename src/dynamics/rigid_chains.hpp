@@ -229,8 +229,14 @@ struct RigidChains {
         torque.store(k, transposed_times(axes(k), t));
         if (beads) beads.clear_forces(k);
     }
-    /// Updates the positions of the beads on body k.
-    CATENA_HD void put_beads(std::int64_t k) const { beads.put(k, position.load(k), axes(k)); }
+    /// Updates and returns the position of carried bead i, W.
+    CATENA_HD Vec3 put_bead(std::int64_t i) const {
+        return beads.put_bead(i, position.load(beads.body[i]), axes(beads.body[i]));
+    }
+    /// Adds OpenMM's force on carried bead i, from its arrays on the GPU.
+    CATENA_HD void add_bead_force(std::int64_t i, DeviceParticles const& particles) const {
+        beads.force.store(i, beads.force.load(i) + particles.force_on(i));
+    }
     /// Adds the wrench of the beads on body k to its force and torque.
     CATENA_HD void take_bead_forces(std::int64_t k) const {
         Mat3 const rotation = axes(k);

@@ -16,8 +16,9 @@
 namespace catena {
 
 /// State, arrays and operations of rigid chains; the per-body operations are in RigidChains.
+/// DeviceBeads serves OpenMM on the same GPU.
 template <class Space>
-class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
+class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     template <int D>
     using FieldOf = typename Space::template FieldOf<D>;
     template <int D>
@@ -122,9 +123,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
     View<3> bead_forces() override { return beads_.bead_forces(); }
     ConstView<3> bead_positions() override {
-        if (beads_.any())
-            space_.for_each(group_.size,
-                            [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.put_beads(k); });
+        space_.for_each(count(), [c = chains()] CATENA_LAMBDA(std::int64_t i) { c.put_bead(i); });
         return beads_.bead_positions();
     }
     void take_bead_forces() override {
@@ -134,6 +133,30 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
                 c.take_bead_forces(k);
             });
     }
+
+    // DeviceBeads: data exchange with OpenMM on the same GPU. On the host on_device() is null.
+    DeviceBeads* on_device() override { return stream() ? this : nullptr; }
+    std::int64_t count() const override { return group_.carried_beads(); }
+    void* stream() const override {
+        if constexpr (requires { space_.stream(); }) return space_.stream();
+        return nullptr;
+    }
+    void put_positions(DeviceParticles const& particles) override {
+        space_.for_each(count(), [c = chains(), particles] CATENA_LAMBDA(std::int64_t i) {
+            particles.put(i, c.put_bead(i));
+        });
+    }
+    void show(ShownBeads const& shown) override {
+        space_.for_each(count(), [c = chains(), shown] CATENA_LAMBDA(std::int64_t i) {
+            shown.show(i, c.put_bead(i));
+        });
+    }
+    void add_forces(DeviceParticles const& particles) override {
+        space_.for_each(count(), [c = chains(), particles] CATENA_LAMBDA(std::int64_t i) {
+            c.add_bead_force(i, particles);
+        });
+    }
+    ConstView<3> host_positions() override { return bead_positions(); }
 
     void kick(double h) override {
         project(h, velocity_.view(), omega_.view());

@@ -41,6 +41,10 @@ OpenMmState read_openmm_state(std::string const&, std::string const& where) {
     throw built_without("OpenMM", where, remedy);
 }
 
+std::optional<Screening> read_screening(std::string const&, std::string const& where) {
+    throw built_without("OpenMM", where, remedy);
+}
+
 std::unique_ptr<OpenMmIntegrator> make_openmm_integrator(OpenMmSpec const&, BeadSystem const& beads,
                                                          Communicator const&, OwnLinks,
                                                          OwnRun const&, std::vector<Vec3> const&) {

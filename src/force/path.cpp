@@ -31,8 +31,8 @@ PathChoice::PathChoice(std::string const& asked, bool may_compare, std::string c
     if (asked == "device" && !device_)
         throw InputError(
             fmt::format("positions and forces cannot stay on a GPU: {}", why_no_device), where,
-            "use auto, or chains of beads, --backend cuda and forces.openmm.platform: CUDA on a "
-            "machine with a GPU");
+            "use auto, or chains of beads and of rigid domains, --backend cuda and "
+            "forces.openmm.platform: CUDA on a machine with a GPU");
     if (asked != "auto" && asked != "device" && asked != "host" && asked != "inline")
         throw InputError(fmt::format("`{}` is not a path of OpenMM's forces", asked), where,
                          "use auto, device, host or inline");

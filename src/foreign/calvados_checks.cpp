@@ -12,6 +12,8 @@
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
+#include "structure/calvados2.hpp"
+#include "systems/import.hpp"
 #include "systems/pdb_topology.hpp"
 
 namespace catena::foreign {
@@ -21,6 +23,13 @@ namespace {
 using scene::Node;
 
 constexpr double most_box_difference = 1e-4;  // nm
+/// Relative difference of prefactors and Debye lengths; covers constants of other digits, and is
+/// 0.2 K or 0.2 % of the ionic strength.
+constexpr double most_screening_difference = 1e-3;
+/// Key with which a configuration of the package ends: its keys are in alphabetical order.
+constexpr char const* last_key = "wfreq";
+/// Number of keys in alphabetical order from which a file is taken for the package's own.
+constexpr std::ptrdiff_t least_keys = 5;
 constexpr char const* write_again = "write it again with the package's prepare.py";
 
 /// Name of a file without its folder, for messages.
@@ -43,6 +52,36 @@ void refuse_another_size(PackageFile const& config, SystemText const& system) {
                                     (*made)[0], (*made)[1], (*made)[2]),
                         "start the package's run.py again, which writes the System, or correct "
                         "`box`");
+}
+
+/// Throws InputError if the System's charges are not screened as the package screens them at the
+/// configuration's temperature and ionic strength.
+void refuse_another_water(PackageFile const& config, SystemText const& system) {
+    Node const *const temp = config.find("temp"), *const ionic = config.find("ionic");
+    if (temp == nullptr) return;
+    double const temperature = scene::number(*temp), salt = config.non_negative("ionic", 0);
+    std::string const remedy =
+        "start the package's run.py again, which writes the System, or "
+        "correct the value";
+    if (!(temperature > 0 && temperature <= hottest)) return;  // settings_of() refuses these
+    auto const made = read_screening(system.file(), scene::shown_path(system.file()));
+    if (!made) return;
+    calvados2::Yukawa const asked = calvados2::yukawa(temperature, salt);
+    if (std::abs(made->prefactor / asked.prefactor - 1) > most_screening_difference)
+        scene::fail(
+            *temp,
+            fmt::format("at {:.6g} K charges act with a prefactor of {:.6g} kJ nm/mol, "
+                        "those of {} with {:.6g}: it was written at another temperature",
+                        temperature, asked.prefactor, bare_name(system.file()), made->prefactor),
+            remedy);
+    if (ionic != nullptr &&
+        std::abs(made->kappa - asked.kappa) > most_screening_difference * made->kappa)
+        scene::fail(
+            *ionic,
+            fmt::format("{:.6g} mol/l at {:.6g} K screen charges with {:.4g}/nm, {} does "
+                        "with {:.4g}/nm: it was written with another ionic strength",
+                        salt, temperature, asked.kappa, bare_name(system.file()), made->kappa),
+            remedy);
 }
 
 /// A key of the configuration that makes a force of the System.
@@ -106,24 +145,30 @@ void add_component(Node const& component, PackageFile const& file, Node const* d
 
 }  // namespace
 
-void check_end(PackageFile const& config, Files& files) {
+void refuse_cut(PackageFile const& config) {
     std::string const& file = config.root().text;
-    std::string const line = open_line(read_text_file(file));
-    if (line.find_first_not_of(" \t") == std::string::npos) return;
-    bool const half = line.find(": ") == std::string::npos && !line.starts_with("- ");
-    if (half || !config.find("wfreq"))
+    std::string const line = open_line(read_text_file(file)), last = last_key;
+    if (line.find_first_not_of(" \t") != std::string::npos)
         throw InputError(
             fmt::format("the configuration ends within its last line, `{}`", scene::shown(line)),
             scene::shown_path(file),
-            std::string(write_again) + ", or end that line and add the keys that follow it");
-    files.notes.push_back(fmt::format("{} ends with `{}` without a line feed: if it was cut, {}.",
-                                      bare_name(file), scene::shown(line), write_again));
+            fmt::format("{}, or end that line with a line feed if it is whole", write_again));
+    std::vector<std::string> keys;
+    for (Node const& item : config.root().items) keys.push_back(item.key);
+    if (config.root().find(last) == nullptr && std::ssize(keys) >= least_keys &&
+        std::is_sorted(keys.begin(), keys.end()))
+        throw InputError(fmt::format("the configuration ends with `{}`, where the package's ends "
+                                     "with `{}`: it was cut",
+                                     scene::shown(keys.back()), last),
+                         scene::shown_path(file),
+                         fmt::format("{}, or add `{}`", write_again, last));
 }
 
 void check_configuration(PackageFile const& config, Files const& files, bool is_continued,
                          Settings& settings) {
     SystemText const system(files.system);
     refuse_another_size(config, system);
+    refuse_another_water(config, system);
     refuse_lost_forces(config, system, is_continued);
     note_unasked_force(config, system, settings);
     if (settings.steps > 0 && settings.every > settings.steps)

@@ -9,13 +9,14 @@
 
 namespace catena::foreign {
 
-/// Throws InputError for a configuration that was cut within its last line, whose keys the package
-/// writes in alphabetical order. Notes a last line without a line feed, which may be cut.
-void check_end(PackageFile const& config, Files& files);
+/// Throws InputError for a configuration that was cut: within its last line, or after a line, which
+/// the order of its keys tells. The package writes them in alphabetical order.
+void refuse_cut(PackageFile const& config);
 
-/// Throws InputError if the configuration's box is not the System's, or if it asks for a force that
-/// the System lacks. Notes frames that are never due. `is_continued` says that the start is not the
-/// package's first one; a continued run of the package leaves out forces of the equilibration.
+/// Throws InputError if the configuration's box, temperature or ionic strength is not the System's,
+/// or if it asks for a force that the System lacks. Notes frames that are never due. `is_continued`
+/// says that the start is not the package's first one; a continued run of the package leaves out
+/// forces of the equilibration.
 void check_configuration(PackageFile const& config, Files const& files, bool is_continued,
                          Settings& settings);
 

@@ -118,7 +118,7 @@ void find_calvados_files(Files& files) {
             "config.yaml is not read: it has no `sysname`, which the CALVADOS package writes.");
         return;
     }
-    check_end(*read, files);
+    refuse_cut(*read);
     files.config = config.string();
     if (certain) files.components = components.string();
 }
@@ -137,16 +137,18 @@ bool take_calvados_start(Files& files) {
     if (restart != "checkpoint" && restart != "pdb")
         throw InputError(fmt::format("`restart` is `{}`", scene::shown(restart)),
                          config.place("restart"), "write checkpoint, pdb or null");
+    bool const lost = restart == "pdb" && !is_file(given);
     if (restart == "pdb") starts.push_back(given);
-    if (starts.size() == 1 && !is_file(given))
-        files.notes.push_back(fmt::format("config.yaml starts from {}, which is not there.",
-                                          scene::shown_path(given.string())));
     for (char const* const name : {"checkpoint.pdb", "equilibration_final.pdb", "top.pdb"})
         starts.push_back(folder / name);
     for (fs::path const& start : starts) {
         if (!is_file(start)) continue;
         files.topology = start.string();
         std::string const name = scene::shown_path(start.filename().string());
+        if (lost)
+            files.notes.push_back(
+                fmt::format("config.yaml starts from {}, which is not there: the start is {}.",
+                            scene::shown_path(given.string()), name));
         if (start != starts.back())
             files.notes.push_back(
                 fmt::format("The start is {}, a frame of the package's run (name top.pdb after the "

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "error.hpp"
+#include "scene/files.hpp"
 #include "scene/node.hpp"
 
 namespace catena::foreign {
@@ -18,10 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// True for the endings of PDB and mmCIF files, compressed or not.
-bool is_topology(fs::path file) {
-    if (file.extension() == ".gz") file = file.stem();
-    return file.extension() == ".pdb" || file.extension() == ".cif" ||
-           file.extension() == ".mmcif" || file.extension() == ".ent";
+bool is_topology(fs::path const& file) {
+    std::string const ending = scene::ending_of(file.string(), true);
+    return ending == ".pdb" || ending == ".cif" || ending == ".mmcif" || ending == ".ent";
 }
 
 /// True for a file named KIND.xml, or with that word in its name, if its root element is none of
@@ -85,7 +85,7 @@ Contents contents_of(fs::path const& folder) {
     for (fs::path const& file : files) {
         contents.all.push_back(file.string());
         if (is_topology(file)) contents.topologies.push_back(file.string());
-        if (file.extension() == ".xml") add_xml(file, contents);
+        if (scene::ending_of(file.string()) == ".xml") add_xml(file, contents);
     }
     return contents;
 }

@@ -17,18 +17,9 @@ using scene::Node;
 
 constexpr double most_whole = 1e15;
 
-/// True for well-formed YAML that is empty, a list or a single value.
-bool is_no_map(std::string const& text) {
-    try {
-        return scene::parse_value(text, "").kind != Node::Kind::map;
-    } catch (InputError const&) {
-        return false;
-    }
-}
-
 /// Parses a file of keys and values. Throws InputError for other contents.
 std::unique_ptr<Node> parsed(std::string const& text, std::string const& file) {
-    if (is_no_map(text))
+    if (scene::holds_no_keys(text))
         throw InputError("the file holds no keys with values", scene::shown_path(file),
                          "write it again, or move it out of the folder");
     return scene::parse_document(text, file);

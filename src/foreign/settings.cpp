@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -22,8 +23,6 @@ namespace catena::foreign {
 
 namespace {
 
-/// Highest temperature that an import accepts, K. Replica exchange ends at about 1000 K.
-constexpr double hottest = 1e4;
 /// Friction from which a note is written, 1/ps. Water stops a residue within about 0.02 ps.
 constexpr double most_friction = 100;
 
@@ -68,6 +67,23 @@ std::string in_lower_case(std::string text) {
     return text;
 }
 
+/// Kinds of integrators of OpenMM and its plugins, without "Integrator".
+constexpr std::array<std::string_view, 14> kinds = {
+    "verlet",   "variableverlet", "langevin",      "langevinmiddle", "variablelangevin",
+    "brownian", "nosehoover",     "custom",        "compound",       "dpd",
+    "qtb",      "rpmd",           "drudelangevin", "drudenosehoover"};
+
+/// Throws InputError for an integrator of which it is not known what it does.
+void refuse_unknown(IntegratorTag const& tag, std::string const& kind) {
+    std::string lower = in_lower_case(kind);
+    lower.resize(lower.size() - std::string_view("integrator").size());
+    if (std::find(kinds.begin(), kinds.end(), lower) != kinds.end()) return;
+    throw InputError(fmt::format("`{}` is no integrator that is known", scene::shown(kind)),
+                     scene::shown_path(tag.file),
+                     "write the one of the run again, or move the file out of the folder and set "
+                     "the dynamics yourself");
+}
+
 /// Throws InputError if an attribute is missing that OpenMM writes for this kind of integrator.
 void refuse_incomplete(IntegratorTag const& tag, std::string const& kind) {
     std::string const lower = in_lower_case(kind);
@@ -87,6 +103,7 @@ Settings integrator_settings(std::string const& file) {
     IntegratorTag const tag{file, outline.attributes};
     if (outline.root != "Integrator" || !outline.type.ends_with("Integrator"))
         tag.refuse("the file holds no serialised Integrator");
+    refuse_unknown(tag, outline.type);
     refuse_incomplete(tag, outline.type);
     Settings settings;
     Found found{};

@@ -11,6 +11,9 @@
 
 namespace catena::foreign {
 
+/// Highest temperature that an import accepts, K. Replica exchange ends at about 1000 K.
+inline constexpr double hottest = 1e4;
+
 /// Settings of a run, with defaults for tools that leave none.
 struct Settings {
     /// Name of the tool in the scene and in messages; empty if it is not known.

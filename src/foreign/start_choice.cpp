@@ -9,6 +9,7 @@
 #include "error.hpp"
 #include "foreign/known_tools.hpp"
 #include "foreign/system_text.hpp"
+#include "scene/files.hpp"
 #include "scene/node.hpp"
 #include "systems/pdb_topology.hpp"
 
@@ -182,7 +183,7 @@ void take_named_start(std::string const& named, Contents const& contents, Files&
     if (!fs::is_regular_file(path, ignored))
         throw InputError("no such file", scene::shown_path(named),
                          "name a PDB or mmCIF file, or a serialised State");
-    if (path.extension() != ".xml") {
+    if (scene::ending_of(path.string()) != ".xml") {
         if (take_in_nanometres(read_candidate(path.string()), contents, files)) return;
         files.topology = path.string();
         refuse_unfit_topology(files, "give one atom per particle, in the System's order");

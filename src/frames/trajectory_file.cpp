@@ -154,11 +154,15 @@ TrajectoryFile::~TrajectoryFile() = default;
 void TrajectoryFile::open() {
     series_ = std::make_unique<Series>();
     series_->file = File(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    std::string const why = series_->file ? "" : cause();  // before the next call forgets it
+    if (why.find("truncated") != std::string::npos)
+        throw InputError("the trajectory was cut, its end is missing", name_,
+                         "copy it again from the run's folder, or run the scene again");
     if (!series_->file && H5Fis_hdf5(name_.c_str()) == 0)
         throw InputError("the file is no trajectory of Catena", name_,
                          "give the folder of a run, or the trajectory.h5md in it");
     if (!series_->file)
-        throw InputError("the trajectory cannot be opened, " + cause(), name_,
+        throw InputError("the trajectory cannot be opened, " + why, name_,
                          "name a run's folder, or wait until the run that writes it has ended");
     Place const root{series_->file.get(), name_, reading};
     if (attribute_of(root, "h5md/creator", "name") != "catena" || !has(root, "catena/chains") ||

@@ -45,6 +45,8 @@ class TrajectoryFile {
     std::vector<std::int64_t> const& steps() const { return steps_; }
     std::vector<double> const& times() const { return times_; }
     std::string const& name() const { return name_; }
+    /// True if members of complexes are chains of their own, named COMPLEX:MEMBER.
+    bool is_by_members() const { return !site_.empty(); }
     /// Reads a frame into `snapshot`, whose memory is reused. Throws InputError for positions that
     /// are not finite.
     void read(std::size_t frame, Snapshot& snapshot) const;

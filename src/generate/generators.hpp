@@ -22,6 +22,8 @@ enum class RandomJoint : std::uint8_t {
     weld,
     prismatic,
     helical,
+    cylindrical,
+    planar3,
     mixed
 };
 
@@ -50,7 +52,8 @@ struct RandomChain {
 /// torques in [-1, 1]. Every fourth body (at random) carries a wrench with components in [-1, 1].
 /// Axes are uniform; those of a universal joint are at least 30 degrees apart. planar: revolute
 /// joints whose axes are all parallel. Pitches are in [0.05, 0.3] of either sign. mixed: each joint
-/// is one of the six types at random. A free base has a random pose and velocity.
+/// is one of the six types from revolute to helical at random. A free base has a random pose and
+/// velocity.
 BodyArrays random_bodies(RandomChain const& chain);
 
 /// Random beads on links in uniform directions. Velocities satisfy the links: each link rotates

@@ -55,6 +55,10 @@ JointType type_of(RandomJoint joint, Draws& draws) {
             return PrismaticJoint::type;
         case RandomJoint::helical:
             return HelicalJoint::type;
+        case RandomJoint::cylindrical:
+            return CylindricalJoint::type;
+        case RandomJoint::planar3:
+            return Planar3Joint::type;
         case RandomJoint::link:
             return LinkJoint::type;
         case RandomJoint::mixed:
@@ -76,7 +80,7 @@ class RandomJoints {
   public:
     RandomJoints(BodyArrays& bodies, RandomJoint kind) : bodies_(bodies), kind_(kind) {
         bool const mixed = kind == RandomJoint::mixed;
-        axes_ = mixed || kind == RandomJoint::universal;
+        axes_ = mixed || kind == RandomJoint::universal || kind == RandomJoint::planar3;
         pitches_ = mixed || kind == RandomJoint::helical;
     }
 
@@ -85,7 +89,8 @@ class RandomJoints {
         Vec3 const axis = axis_of(draws, joint);
         bodies_.axis.push_back(axis);
         if (axes_)
-            bodies_.first_axis.push_back(has_two_axes(joint) ? across(draws, axis) : Vec3::zero());
+            bodies_.first_axis.push_back(has_two_axes(joint) ? first_axis(draws, joint, axis)
+                                                             : Vec3::zero());
         if (pitches_) bodies_.pitch.push_back(has_pitch(joint) ? pitch(draws) : 0);
         bodies_.q.push_back(position(draws, joint));
         bodies_.qd.push_back(components(draws, rates_of_joint(joint)));
@@ -102,6 +107,13 @@ class RandomJoints {
         Vec3 first = draws.on_sphere();
         while (norm(cross(first, axis)) < 0.5) first = draws.on_sphere();
         return first;
+    }
+    /// Draws the first axis of a joint with two.
+    static Vec3 first_axis(Draws& draws, JointType joint, Vec3 const& axis) {
+        Vec3 const first = across(draws, axis);
+        if (!glides(joint)) return first;
+        Vec3 const level = cross(axis, first);
+        return (1 / norm(level)) * level;
     }
     static double pitch(Draws& draws) {
         double const size = draws.between(0.05, 0.3);

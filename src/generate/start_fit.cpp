@@ -23,6 +23,10 @@ std::string_view constexpr moved_note =
 double constexpr rounding = 1e-9;
 /// Relative difference of distances below which pairs count as equally near.
 double constexpr as_near = 0.01;
+/// Relative difference from 10 or 1/10 of most distances, in links, up to which they are taken for
+/// those in another unit, and the least number of links that tells.
+double constexpr of_ten = 0.1;
+std::size_t constexpr least_ratios = 3;
 /// Distance in links below which beads that are not neighbours overlap.
 double constexpr overlap = 0.66;
 
@@ -152,6 +156,7 @@ void StartFit::make_whole(Chain const& chain, bool as_given, std::optional<Vec3>
 void StartFit::fit(Chain const& chain) {
     std::vector<double> const before = distances_of(chain);
     Change const worst = largest_change(chain, before);
+    refuse_unit(chain, before);
     refuse(chain, worst, before);
     project(chain, worst);
 }
@@ -183,6 +188,25 @@ StartFit::Change StartFit::largest_change(Chain const& chain,
         if (!(part <= worst.part)) worst = {part, before[k], length, k};
     }
     return worst;
+}
+
+void StartFit::refuse_unit(Chain const& chain, std::vector<double> const& before) const {
+    std::vector<double> ratios;
+    for (std::size_t k = first_link(chain.base); k < before.size(); ++k)
+        ratios.push_back(before[k] / chain.beads.length[k]);
+    if (scene_.si || ratios.size() < least_ratios) return;
+    auto const middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    bool const large = std::abs(*middle / 10 - 1) < of_ten,
+               small = std::abs(10 * *middle - 1) < of_ten;
+    if (large || small)
+        fail(from_,
+             fmt::format("neighbours in chain `{}` are {:.3g} times as far apart as their links "
+                         "are long: the positions seem to be in another unit",
+                         shown(chain.name), *middle),
+             fmt::format("multiply them by {}: PDB and mmCIF files hold angstrom, tables and "
+                         "OpenMM's States nm",
+                         large ? "0.1" : "10"));
 }
 
 void StartFit::refuse(Chain const& chain, Change const& worst,

@@ -97,6 +97,9 @@ class StartFit {
         std::size_t link = 0;
     };
     Change largest_change(Chain const& chain, std::vector<double> const& before) const;
+    /// Throws InputError for positions that are in another unit: most links are ten times too long
+    /// or too short, which `relax: true` does not mend.
+    void refuse_unit(Chain const& chain, std::vector<double> const& before) const;
     void refuse(Chain const& chain, Change const& worst, std::vector<double> const& before) const;
     std::string nearest_text(Chain const& chain) const;
     void project(Chain const& chain, Change const& worst);

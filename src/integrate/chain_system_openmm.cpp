@@ -65,9 +65,11 @@ void ChainSystem::make_openmm() {
     openmm_force_ = Field<3>(own);
     ChainsOnDevice chains{no_gpu_asked_for, -1};
     if (backend_ == Backend::cuda) {
-        bool const beads = std::all_of(bead_groups_.begin(), bead_groups_.end(),
-                                       [](ChainGroup const* group) { return group->beads; });
-        chains = {beads ? "" : "some beads are carried by rigid bodies", cuda::chosen_device()};
+        bool const absolute =
+            std::all_of(bead_groups_.begin(), bead_groups_.end(),
+                        [this](ChainGroup const* group) { return is_absolute(*group); });
+        chains = {absolute ? "" : "some beads are carried by bodies in joint coordinates",
+                  cuda::chosen_device()};
     }
     openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_, chains);
     make_current();

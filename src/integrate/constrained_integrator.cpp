@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "dynamics/closing.hpp"
 #include "error.hpp"
 
 namespace catena {
@@ -147,9 +148,9 @@ void ConstrainedIntegrator::choose_sweeps() {
         return;
     }
     std::ostringstream line;
-    line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance
-         << " within " << most_sweeps << " sweeps of a step of " << scheme_.step << " (error "
-         << last_error_ << "): "
+    line << "the joints do not close to " << early * scheme_.tolerance
+         << ", a hundredth of dynamics.constraint_tolerance, within " << most_sweeps
+         << " sweeps of a step of " << scheme_.step << " (" << closing_error(last_error_) << "): "
          << (last_error_ < 1e-13 ? "this is rounding error, use a tolerance of 1e-12 or more"
                                  : "choose a smaller dynamics.step");
     throw ComputationError(line.str());

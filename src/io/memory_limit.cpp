@@ -1,6 +1,7 @@
 // Reads the memory limits of the machine, of control groups (versions 1 and 2) and of the process.
 #include "io/memory_limit.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -63,5 +64,17 @@ std::int64_t memory_limit(std::string const& groups, std::string const& own) {
     std::int64_t const machine = std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGESIZE);
     return std::min({machine, limit_of_groups(groups, own), limit_of_process()});
 }
+
+std::string available_memory(std::string const& groups, std::string const& own) {
+    std::int64_t const least = memory_limit(groups, own);
+    char const* const cause = least == limit_of_process()             ? " by `ulimit -v`"
+                              : least == limit_of_groups(groups, own) ? " by the control group of "
+                                                                        "this container or job"
+                                                                      : "";
+    return fmt::format("{:.3g} GB are {}{}", 1e-9 * static_cast<double>(least),
+                       *cause == '\0' ? "available" : "allowed", cause);
+}
+
+bool is_limited_by_ulimit() { return limit_of_process() != none; }
 
 }  // namespace catena

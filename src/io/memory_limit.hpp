@@ -12,4 +12,12 @@ namespace catena {
 std::int64_t memory_limit(std::string const& groups = "/sys/fs/cgroup",
                           std::string const& own = "/proc/self/cgroup");
 
+/// Returns the limit and its cause for messages: "2 GB are allowed by `ulimit -v`", "16 GB are
+/// available".
+std::string available_memory(std::string const& groups = "/sys/fs/cgroup",
+                             std::string const& own = "/proc/self/cgroup");
+
+/// True if RLIMIT_AS (`ulimit -v`) limits this process.
+bool is_limited_by_ulimit();
+
 }  // namespace catena

@@ -5,9 +5,11 @@
 #include <string_view>
 #include <type_traits>
 
+#include "joints/cylindrical.hpp"
 #include "joints/free.hpp"
 #include "joints/helical.hpp"
 #include "joints/link.hpp"
+#include "joints/planar3.hpp"
 #include "joints/prismatic.hpp"
 #include "joints/revolute.hpp"
 #include "joints/spherical.hpp"
@@ -21,12 +23,15 @@ template <class... Types>
 struct TypeList {};
 
 /// All joint models, in the order in which messages name them and `mixed` random chains draw them.
-using JointModels = TypeList<FreeJoint, LinkJoint, RevoluteJoint, UniversalJoint, SphericalJoint,
-                             PrismaticJoint, HelicalJoint, WeldJoint>;
+using JointModels =
+    TypeList<FreeJoint, LinkJoint, RevoluteJoint, UniversalJoint, SphericalJoint, PrismaticJoint,
+             HelicalJoint, CylindricalJoint, Planar3Joint, WeldJoint>;
 /// Motions of joints with axes; the last one is that of all types that the others do not take.
-using AxisMotions = TypeList<UniversalMotion, RigidMotion, ScrewMotion>;
+using AxisMotions =
+    TypeList<UniversalMotion, RigidMotion, CylindricalMotion, PlanarMotion, ScrewMotion>;
 /// Motions of all joints.
-using JointMotions = TypeList<QuaternionMotion, UniversalMotion, RigidMotion, ScrewMotion>;
+using JointMotions = TypeList<QuaternionMotion, UniversalMotion, RigidMotion, CylindricalMotion,
+                              PlanarMotion, ScrewMotion>;
 
 namespace joints {
 
@@ -64,6 +69,16 @@ void for_each(Visitor const& visitor, TypeList<Models...>) {
     (visitor(Models{}), ...);
 }
 
+/// Calls visitor(model) for every model whose order of directions is its own, on host and device.
+template <class Visitor, class... Models>
+CATENA_HD constexpr void for_each_ordered(Visitor const& visitor, TypeList<Models...>) {
+    static_assert(((Models::order == usual_order || direction_at(Models::order, 5) == 5) && ...));
+    auto const visit_ordered = [&](auto model) {
+        if constexpr (decltype(model)::order != usual_order) visitor(model);
+    };
+    (visit_ordered(Models{}), ...);
+}
+
 }  // namespace joints
 
 /// Returns visitor(model) for the model of a type; all models give the same type of result.
@@ -94,7 +109,7 @@ CATENA_HD constexpr bool has_quaternion(JointType type) {
     return joints::any_has(
         type, [](auto model) { return decltype(model)::quaternion; }, JointModels{});
 }
-/// True if the outboard body moves along the joint's axis.
+/// True if the joint translates the outboard body.
 CATENA_HD constexpr bool slides(JointType type) {
     return joints::any_has(type, [](auto model) { return decltype(model)::slides; }, JointModels{});
 }
@@ -118,10 +133,40 @@ CATENA_HD constexpr bool is_rigid(JointType type) {
 CATENA_HD constexpr bool pivots(JointType type) {
     return joints::any_has(type, [](auto model) { return decltype(model)::pivots; }, JointModels{});
 }
-/// True if the coordinates are lengths.
-CATENA_HD constexpr bool has_lengths(JointType type) {
+/// True if the joint translates along its first two axes.
+CATENA_HD constexpr bool glides(JointType type) {
+    return joints::any_has(type, [](auto model) { return decltype(model)::glides; }, JointModels{});
+}
+/// True if handles in this order belong to a joint that glides.
+CATENA_HD constexpr bool glides_in(int order) {
+    bool found = false;
+    joints::for_each_ordered(
+        [&](auto model) {
+            found = found || (decltype(model)::glides && decltype(model)::order == order);
+        },
+        JointModels{});
+    return found;
+}
+/// True if the joint rotates about two axes, of which each is fixed in one body.
+CATENA_HD constexpr bool turns_twice(JointType type) {
     return joints::any_has(
-        type, [](auto model) { return decltype(model)::lengths; }, JointModels{});
+        type, [](auto model) { return decltype(model)::turns_twice; }, JointModels{});
+}
+/// True if the joint's last axis is fixed in both bodies.
+CATENA_HD constexpr bool keeps_axis(JointType type) {
+    return joints::any_has(
+        type, [](auto model) { return decltype(model)::axes > 0 && !decltype(model)::turns_twice; },
+        JointModels{});
+}
+/// True if coordinate i is a length.
+CATENA_HD constexpr bool is_length(JointType type, int i) {
+    return joints::any_has(
+        type, [i](auto model) { return (decltype(model)::lengths >> i & 1) != 0; }, JointModels{});
+}
+/// True if the joint has two coordinates.
+CATENA_HD constexpr bool has_two_coordinates(JointType type) {
+    return joints::any_has(
+        type, [](auto model) { return decltype(model)::numbers == 2; }, JointModels{});
 }
 /// True if a scene gives the joint one axis.
 CATENA_HD constexpr bool has_one_axis(JointType type) {
@@ -139,6 +184,17 @@ CATENA_HD constexpr bool has_two_axes(JointType type) {
 /// True if the joint slides by a pitch as it rotates.
 constexpr bool has_pitch(JointType type) {
     return with_joint(type, [](auto model) { return decltype(model)::pitched; });
+}
+/// True if some coordinates are lengths and others are angles.
+constexpr bool mixes_units(JointType type) {
+    return with_joint(type, [](auto model) {
+        constexpr int lengths = decltype(model)::lengths;
+        return lengths != 0 && lengths != (1 << decltype(model)::numbers) - 1;
+    });
+}
+/// Order of the directions of the joint's handles.
+constexpr int order_of(JointType type) {
+    return with_joint(type, [](auto model) { return decltype(model)::order; });
 }
 /// True if the solvers in absolute coordinates support the joint.
 constexpr bool is_absolute(JointType type) {

@@ -14,7 +14,8 @@ namespace catena {
 
 /// Constants of a joint, as BodyArrays and TipJoint define them. A type ignores what it has not.
 struct JointShape {
-    /// Unit axis (universal: the second axis, B), and the first axis of a universal joint, J.
+    /// Unit axis (universal: the second axis, B; planar3: the normal). First axis in J (universal:
+    /// of rotation; planar3: of translation, perpendicular to `axis`).
     Vec3 axis, first_axis;
     /// Translation per radian of a helical joint.
     double pitch = 0;
@@ -35,9 +36,25 @@ struct JointOpening {
 /// s rate q; c^2 + s^2 = 1 (ChainGroup::screw).
 inline constexpr Vec3 pure_rotation{{1, 0, 1}};
 
+/// Order of the directions of a joint's handles. Numbers 0-2 stand for forces along the joint's
+/// axes, 3-5 for torques about them; a screw combines 2 and 5 (dca/joint_directions.hpp). The
+/// directions that the joint restricts come first; the others are among the last three.
+inline constexpr int usual_order = 0;  // 0 1 2 3 4 5
+/// Returns the order with these directions at its places.
+constexpr int in_order(std::array<int, 6> const& directions) {
+    int order = 0;
+    for (int i = 0; i < 6; ++i) order |= directions[static_cast<std::size_t>(i)] << 3 * i;
+    return order;
+}
+/// Returns the direction at a place of an order.
+CATENA_HD constexpr int direction_at(int order, int place) {
+    return order == usual_order ? place : order >> 3 * place & 7;
+}
+
 /// Effect of a joint on the normal of a plane in which the bodies before it move. breaks: the
 /// bodies after it leave the plane. starts: no joint before it, so any plane may follow. carries:
-/// the normal is fixed in both bodies. turns: the bodies stay in the plane if the axis is normal.
+/// the normal is fixed in both bodies. turns: the bodies stay in the plane if the axis is normal to
+/// it.
 enum class PlaneRole : std::uint8_t { breaks, starts, carries, turns };
 
 /// True if two vectors are parallel up to rounding.
@@ -60,10 +77,19 @@ struct JointDefaults {
     static constexpr int numbers = 1, rates = 1;
     /// Number of axes that a scene gives.
     static constexpr int axes = 0;
-    /// True if q is a unit quaternion, and if the coordinates are lengths.
-    static constexpr bool quaternion = false, lengths = false;
-    /// True if the joint slides along its axis, and if it does so by a pitch as it rotates.
+    /// True if q is a unit quaternion.
+    static constexpr bool quaternion = false;
+    /// Bit i is set if coordinate i is a length.
+    static constexpr int lengths = 0;
+    /// Order of the directions of the joint's handles; direction 5 stays last.
+    static constexpr int order = usual_order;
+    /// True if the joint translates, and if it does so by a pitch as it rotates.
     static constexpr bool slides = false, pitched = false;
+    /// True if the joint translates along its first two axes, across the last one.
+    static constexpr bool glides = false;
+    /// True if the joint rotates about two axes, the first one fixed in the inboard body, the
+    /// second one in the outboard body.
+    static constexpr bool turns_twice = false;
     /// True for the joint that attaches body 1 of a free base to nothing.
     static constexpr bool floats = false;
     /// True for a rod of fixed length between two points.

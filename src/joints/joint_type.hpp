@@ -14,7 +14,9 @@ enum class JointType : std::uint8_t {
     universal,
     weld,
     prismatic,
-    helical
+    helical,
+    cylindrical,
+    planar3
 };
 
 }  // namespace catena

@@ -27,6 +27,11 @@ struct MotionDefaults {
                                                       typename Joint::Rotation const& frame) {
         return frame;
     }
+    /// Translation of the outboard side along the joint's coordinates, J.
+    template <class Joint>
+    static CATENA_HD typename Joint::Vector3 shift(Joint const&) {
+        return Joint::Vector3::zero();
+    }
     /// Adds the relative angular acceleration that rates produce in axes that move in both bodies.
     template <class Joint>
     static CATENA_HD typename Joint::Vector3 with_drift(Joint const&,

@@ -11,7 +11,8 @@ struct PrismaticJoint : JointDefaults {
     static constexpr JointType type = JointType::prismatic;
     static constexpr char const* name = "prismatic";
     static constexpr int code = 6, axes = 1;
-    static constexpr bool slides = true, lengths = true, mixed = true;
+    static constexpr int lengths = 0b1;
+    static constexpr bool slides = true, mixed = true;
 
     static Vec3 screw(double) { return {{0, 1, 1}}; }
     /// X(q) of B in J.

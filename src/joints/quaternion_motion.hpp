@@ -24,7 +24,8 @@ struct QuaternionMotion : MotionDefaults {
         return true;
     }
     /// Known load on the outboard body along the joint's axes: torque, and force along the last
-    /// axis. `along` has the moments along the coordinates; `turn` is the rotation matrix of B.
+    /// axis. If the joint glides, the first two components are forces. `along` has the moments
+    /// along the coordinates; `turn` is the rotation matrix of B.
     template <class Joint, class Turn>
     static CATENA_HD Vector<typename Joint::Real, 4> load(Joint const& j, Turn const& turn,
                                                           typename Joint::Vector3 const& along) {
@@ -33,8 +34,8 @@ struct QuaternionMotion : MotionDefaults {
         auto const t = transposed_times(j.axes(), turn() * along);
         return {{t[0], t[1], t[2], Real(0)}};
     }
-    /// Sets the columns of P, motion along the joint's axes per unit rate of each coordinate.
-    /// Returns the number of coordinates.
+    /// Sets the columns of P, motion along the last three directions of the joint's handles per
+    /// unit rate of each coordinate. Returns the number of coordinates.
     template <class Joint, class Turn>
     static CATENA_HD int free_motions(Joint const& j, Turn const& turn, Mat3& motions) {
         motions = transposed_times(j.axes(), turn());

@@ -16,8 +16,14 @@ struct ScrewMotion : MotionDefaults {
     }
     template <class Joint>
     static CATENA_HD JointRate<typename Joint::Real> rate(Joint const& j) {
-        auto const qd = j.rates(), s = j.screw(), along = j.axis();
+        auto const qd = j.rates(), along = j.axis();
+        auto const s = j.screw();
         return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
+    }
+    template <class Joint>
+    static CATENA_HD typename Joint::Vector3 shift(Joint const& j) {
+        auto const s = j.screw();
+        return (s[1] * s[2] * j.coordinate(0)) * j.axis();
     }
     template <class Joint, class Motion>
     static CATENA_HD bool sets_omega(Joint const& j, Motion& m) {
@@ -41,13 +47,15 @@ struct ScrewMotion : MotionDefaults {
     static CATENA_HD typename Joint::Vector3 with_prescribed(Joint const& j, Vec3 const& qdd,
                                                              typename Joint::Vector3 const& angular,
                                                              typename Joint::Vector3& linear) {
-        auto const s = j.screw(), axis = j.axes().column(2);
+        auto const axis = j.axes().column(2);
+        auto const s = j.screw();
         linear = plus_scaled(linear, s[1] * s[2] * qdd[0], axis);
         return plus_scaled(angular, s[0] * s[2] * qdd[0], axis);
     }
     /// Second derivatives of the coordinates. `relative_alpha` is the outboard minus the inboard
-    /// angular acceleration along the joint's axes. `relative_slide` is that of the meeting points
-    /// along the last axis. `drift` computes the velocity-dependent angular acceleration, M.
+    /// angular acceleration along the joint's axes; if the joint glides, its first two components
+    /// are the acceleration of the meeting points. `relative_slide` is that of the meeting points
+    /// along the last axis. `drift` computes the velocity-dependent relative acceleration, M.
     template <class Joint, class Drift>
     static CATENA_HD typename Joint::Vector3 acceleration(
         Joint const& j, typename Joint::Vector3 const& relative_alpha,

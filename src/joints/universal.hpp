@@ -13,7 +13,7 @@ struct UniversalJoint : JointDefaults {
     static constexpr JointType type = JointType::universal;
     static constexpr char const* name = "universal";
     static constexpr int code = 4, freedom = 2, restricted = 4, numbers = 2, rates = 2, axes = 2;
-    static constexpr bool mixed = true;
+    static constexpr bool turns_twice = true, mixed = true;
 
     /// X(q) of B in J.
     static JointDisplacement displacement(JointShape const& shape, std::array<double, 4> const& q) {

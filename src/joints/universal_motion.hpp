@@ -59,7 +59,7 @@ struct UniversalMotion : MotionDefaults {
         Joint const& j, typename Joint::Vector3 const& relative_alpha, typename Joint::Real const&,
         Drift const& drift) {
         auto const axes = j.axes();
-        auto const relative = relative_alpha - transposed_times(axes, drift());
+        auto const relative = relative_alpha - transposed_times(axes, drift().angular);
         // First axis, (0, y, z) in the joint's axes, where the second axis is (0, 0, 1).
         auto const first = transposed_times(axes, j.first_axis());
         auto const u1 = relative[1] / first[1];

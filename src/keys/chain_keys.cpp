@@ -104,7 +104,8 @@ constexpr Key tip_keys[] = {
 };
 
 constexpr std::string_view any_but_free =
-    "`revolute`, `planar`, `universal`, `spherical`, `prismatic`, `helical`, `weld`, `link`";
+    "`revolute`, `planar`, `universal`, `spherical`, `prismatic`, `helical`, `cylindrical`, "
+    "`planar3`, `weld`, `link`";
 constexpr Key tip_type{"type",
                        any_but_free,
                        "required",
@@ -113,15 +114,15 @@ constexpr Key tip_type{"type",
                        "type: spherical"};
 constexpr Key tip_axis{"axis",
                        "3 numbers, not all 0",
-                       "required by `revolute`, `planar`, `prismatic`, `helical`",
+                       "required by `revolute`, `planar`, `prismatic`, `helical`, `cylindrical`",
                        "",
                        "The joint's axis has this direction.",
                        "axis: [0, 0, 1]"};
 constexpr Key tip_axes{"axes",
                        "2 axes",
-                       "required by `universal`",
+                       "required by `universal`, `planar3`",
                        "",
-                       "The joint has these two axes, which are not parallel.",
+                       "The joint has these two axes, as a joint between bodies.",
                        "axes: [[1, 0, 0], [0, 1, 0]]"};
 constexpr Key tip_pitch{"pitch",
                         "number, not 0",

@@ -54,7 +54,7 @@ constexpr Key random_keys[] = {
     bodies,
     {"joint",
      "`link`, `planar`, `revolute`, `universal`, `spherical`, `weld`, `prismatic`, `helical`, "
-     "`mixed`",
+     "`cylindrical`, `planar3`, `mixed`",
      "required", "", "All joints have this type; `mixed` draws each from `revolute` to `helical`.",
      "joint: revolute"},
     {"rigid", "number, 0 to 1", "0", "",

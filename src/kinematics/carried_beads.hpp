@@ -3,7 +3,9 @@
 // in nm and forces in kJ/mol/nm, unless the scene has `units: si`.
 #pragma once
 
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "chain/chain_group.hpp"
 #include "neighbours/device_beads.hpp"
@@ -22,14 +24,20 @@ using Wrench = WrenchOf<double>;
 struct CarriedBeadsView {
     /// Body k carries beads [offset[k], offset[k + 1]). Null if no body of the group carries any.
     std::int64_t const* offset = nullptr;
-    Vec3 const* place = nullptr;  // Offset from the centre of mass, B.
-    View<3> position, force;      // Indexed by carried bead, W.
+    std::int64_t const* body = nullptr;  // Body of each carried bead.
+    Vec3 const* place = nullptr;         // Offset from the centre of mass, B.
+    View<3> position, force;             // Indexed by carried bead, W.
 
     CATENA_HD explicit operator bool() const { return offset != nullptr; }
+    /// Stores and returns the position of bead i of a body.
+    CATENA_HD Vec3 put_bead(std::int64_t i, Vec3 const& centre, Mat3 const& axes) const {
+        Vec3 const x = centre + axes * place[i];
+        position.store(i, x);
+        return x;
+    }
     /// Stores the positions of the beads of body k.
     CATENA_HD void put(std::int64_t k, Vec3 const& centre, Mat3 const& axes) const {
-        for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i)
-            position.store(i, centre + axes * place[i]);
+        for (std::int64_t i = offset[k]; i < offset[k + 1]; ++i) put_bead(i, centre, axes);
     }
     /// Sets the forces on the beads of body k to zero.
     CATENA_HD void clear_forces(std::int64_t k) const {
@@ -47,6 +55,17 @@ struct CarriedBeadsView {
     }
 };
 
+/// Body of each of the group's carried beads.
+inline std::vector<std::int64_t> bodies_of_beads(ChainGroup const& group) {
+    std::vector<std::int64_t> bodies;
+    bodies.reserve(static_cast<std::size_t>(group.carried_beads()));
+    for (std::size_t k = 0; k + 1 < group.bead_offset.size(); ++k)
+        bodies.insert(bodies.end(),
+                      static_cast<std::size_t>(group.bead_offset[k + 1] - group.bead_offset[k]),
+                      static_cast<std::int64_t>(k));
+    return bodies;
+}
+
 /// Arrays of a group's carried beads in a Space, with host copies for force fields that run on the
 /// host.
 template <class Space>
@@ -58,6 +77,7 @@ class CarriedBeadsIn {
           in_scene_(group.carried_in_scene),
           space_(space),
           offset_(group.bead_offset),
+          body_(bodies_of_beads(group)),
           place_(group.bead_place),
           position_(group.carried_beads()),
           force_(group.carried_beads()) {}
@@ -67,7 +87,7 @@ class CarriedBeadsIn {
     /// True if any rank's part of the group has carried beads.
     bool in_scene() const { return in_scene_; }
     CarriedBeadsView view() {
-        return {in_scene_ ? offset_.data() : nullptr, place_.data(), position_.view(),
+        return {in_scene_ ? offset_.data() : nullptr, body_.data(), place_.data(), position_.view(),
                 force_.view()};
     }
     /// Forces by carried bead, W, in the Space.
@@ -87,7 +107,7 @@ class CarriedBeadsIn {
   private:
     bool any_, in_scene_, forces_are_out_ = false;
     Space space_;
-    typename Space::template List<std::int64_t> offset_;
+    typename Space::template List<std::int64_t> offset_, body_;
     typename Space::template List<Vec3> place_;
     typename Space::template FieldOf<3> position_, force_;
     typename Space::template Mirror<3> position_mirror_, force_mirror_;

@@ -19,7 +19,7 @@ JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
         state.base_velocity.set(static_cast<std::int64_t>(p), b.free_velocity);
     }
     for (LocalDrive const& d : group.drives) {
-        bool const two = has_two_axes(group.joint[d.body]);
+        bool const two = has_two_coordinates(group.joint[d.body]);
         state.q.set(d.body, {{scene::value_at(d.first, 0), two ? scene::value_at(d.second, 0) : 0.0,
                               0, 0}});
         state.qd.set(d.body,

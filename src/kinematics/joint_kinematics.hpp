@@ -258,7 +258,8 @@ class JointKinematics {
     typename Space::template Fixed<3> r1_;
     typename Space::template Fixed<6> axes1_;
     typename Space::template Fixed<4> joint_rotation_;
-    typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
+    typename Space::template Fixed<3> joint_translation_, first_axis_;
+    typename Space::template Fixed<4> screw_;
     std::vector<dca::Run> no_runs_;
     /// tree_ holds this rank's units; top_ holds the tree above the units of chains that ranks
     /// share.

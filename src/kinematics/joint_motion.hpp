@@ -115,7 +115,8 @@ struct JointsView {
     ConstView<3> r1;
     ConstView<6> axes1;
     ConstView<4> joint_rotation;
-    ConstView<3> joint_translation, first_axis, screw;
+    ConstView<3> joint_translation, first_axis;
+    ConstView<4> screw;
     std::int64_t const* piece = nullptr;  // First bodies (local) of the pieces.
     std::int64_t pieces = 0;
     LocalDrive const* drive = nullptr;
@@ -150,18 +151,26 @@ struct JointsView {
     CATENA_HD Vec3At<Place> axis(Place k) const {
         return {{read(axes1, k, 3), read(axes1, k, 4), read(axes1, k, 5)}};
     }
-    /// {c, s, rate} of ChainGroup::screw: a coordinate q rotates the joint by c rate q about its
-    /// axis and slides it by s rate q.
+    /// {c, s, rate, order} of ChainGroup::screw: a coordinate q rotates the joint by c rate q about
+    /// its axis and slides it by s rate q.
     template <class Place>
-    CATENA_HD Vec3At<Place> screw_of(Place k) const {
+    CATENA_HD Vector<RealAt<Place>, 4> screw_of(Place k) const {
         using Real = RealAt<Place>;
-        return has_screws ? read(screw, k) : Vec3At<Place>{{Real(1), Real(0), Real(1)}};
+        return has_screws ? read(screw, k)
+                          : Vector<Real, 4>{{Real(1), Real(0), Real(1), Real(usual_order)}};
     }
-    /// c and s of screw_of().
+    /// Directions of the joint's handles.
     template <class Place>
     CATENA_HD Screw<RealAt<Place>> direction_of_screw(Place k) const {
-        auto const s = screw_of(k);
-        return {s[0], s[1]};
+        return dca::as_screw(screw_of(k));
+    }
+    /// True if joint k translates along its first two axes; k may be the halo's joint.
+    CATENA_HD bool glides(std::int64_t k) const {
+        return has_screws && glides_in(static_cast<int>(screw.at(k, 3)));
+    }
+    template <dca::SeveralBodies Place>
+    CATENA_HD bool glides(Place const& several) const {
+        return catena::glides(type(several));
     }
     /// True if the coordinates of joint k are a unit quaternion.
     template <class Place>
@@ -208,16 +217,17 @@ struct JointsView {
         return with_motion(type(k), [&](auto motion) { return motion.meeting(joint_k, frame); });
     }
     /// Meeting point of joint k from the inboard body's origin, in the inboard body's axes. In a
-    /// prismatic or helical joint it slides along the axis.
+    /// joint that translates it moves with the outboard body.
     template <class Place>
     CATENA_HD Vec3At<Place> meeting_point(StateView const& state, Place k) const {
         Vec3At<Place> const point = read(joint_translation, k);
         if (!slides(k)) return point;
-        auto const s = screw_of(k);
+        JointAt<Place> const joint_k{*this, state, k};
         Mat3At<Place> const frame = to_matrix(as_quaternion(read(joint_rotation, k)));
-        return point + frame * ((s[1] * s[2] * read(state.q, k, 0)) * axis(k));
+        return point + frame * with_axis_motion(type(k),
+                                                [&](auto motion) { return motion.shift(joint_k); });
     }
-    /// True if joint k slides along its axis.
+    /// True if joint k translates.
     template <class Place>
     CATENA_HD bool slides(Place k) const {
         return has_screws && catena::slides(type(k));
@@ -276,7 +286,7 @@ struct JointsView {
     CATENA_HD void follow_course(StateView const& state, std::int64_t k, double time) const {
         LocalDrive const* const d = drives > 0 ? drive_of(k) : nullptr;
         if (!d) return;
-        bool const two = has_two_axes(joint[k]);
+        bool const two = has_two_coordinates(joint[k]);
         state.q.store(k, Vector<double, 4>{{scene::value_at(d->first, time),
                                             two ? scene::value_at(d->second, time) : 0.0, 0, 0}});
         state.qd.store(k, Vec3{{scene::rate_at(d->first, time),
@@ -298,7 +308,7 @@ struct JointAt {
     CATENA_HD Mat3At<Place> axes() const { return joints.axes(k); }
     CATENA_HD Vector3 axis() const { return joints.axis(k); }
     CATENA_HD Vector3 first_axis() const { return read(joints.first_axis, k); }
-    CATENA_HD Vector3 screw() const { return joints.screw_of(k); }
+    CATENA_HD Vector<Real, 4> screw() const { return joints.screw_of(k); }
     CATENA_HD bool has_screws() const { return joints.has_screws; }
     CATENA_HD Real coordinate(int i) const { return read(state.q, k, i); }
     CATENA_HD Rotation quaternion() const { return as_quaternion(read(state.q, k)); }

@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "io/output_file.hpp"
+#include "scene/files.hpp"
 
 namespace catena {
 namespace {
@@ -23,7 +24,7 @@ enum class Format { csv, hdf5, json };
 
 /// Format that the file's ending names.
 Format format_of(std::string const& file) {
-    std::string const ending = fs::path(file).extension().string();
+    std::string const ending = scene::ending_of(file);
     if (ending == ".csv") return Format::csv;
     if (ending == ".h5" || ending == ".hdf5") return Format::hdf5;
     if (ending == ".json") return Format::json;

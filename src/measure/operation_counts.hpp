@@ -49,6 +49,10 @@ class Counted {
     }
     friend Counted sqrt(Counted a) { return ++done().square_roots, Counted(std::sqrt(a.value_)); }
     friend bool operator<(Counted a, Counted b) { return a.value_ < b.value_; }
+    friend bool any_above(Counted a, double bound) { return std::abs(a.value_) > bound; }
+    friend Counted where_less(Counted a, Counted b, Counted yes, Counted no) {
+        return a < b ? yes : no;
+    }
 
   private:
     double value_ = 0;

@@ -104,7 +104,10 @@ double largest_difference(Scene const& scene, Solution const& found,
                  i < found.acceleration_offset[body + 1]; ++i) {
                 bool const linear =
                     accelerations_of(chain, k) == 6 && i >= found.acceleration_offset[body] + 3;
-                bool const slides = chain.bodies.size() > 0 && has_lengths(chain.bodies.joint[k]);
+                bool const slides =
+                    chain.bodies.size() > 0 &&
+                    is_length(chain.bodies.joint[k],
+                              static_cast<int>(i - found.acceleration_offset[body]));
                 int const kind =
                     chain.is_beads() || (chain.is_linked() && accelerations_of(chain, k) == 3)
                         ? bead

@@ -58,27 +58,30 @@ class Pushes {
     double sum_ = 0;
 };
 
-/// Adds a joint's torque on its outboard body and the opposite torque on its inboard body. A
-/// prismatic joint's force acts with its arms on both.
+/// Adds a joint's torque on its outboard body and the opposite torque on its inboard body. A force
+/// acts with its arms on both.
 void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
     Vec3 const& torque = b.torque[k];
-    double size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
-    if (has_two_axes(b.joint[k]))
+    double size = 0, pushing = 0, shift = 0;
+    for (int i = 0; i < 3; ++i) {
+        bool const length = is_length(b.joint[k], i);
+        (length ? pushing : size) += std::abs(torque[i]);
+        if (length) shift += std::abs(b.q[k][static_cast<std::size_t>(i)]);
+    }
+    if (turns_twice(b.joint[k]))
         size /= norm(cross(b.first_axis[k],
                            b.axis[k]));  // axes that are not perpendicular require larger torques
     Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
     if (pivots(b.joint[k])) {
         pushes[k].torque(torque[0] * b.axis[k]);
         if (inboard) inboard->torque(torque[0] * (b.rotation[k] * b.axis[k]));
-    } else if (has_lengths(b.joint[k])) {
-        pushes[k].force(size), pushes[k].torque(size * norm(b.com[k]));
-        if (inboard)
-            inboard->force(size), inboard->torque(size * (norm(b.translation[k] - b.com[k - 1]) +
-                                                          std::abs(b.q[k][0])));
-    } else {
-        pushes[k].torque(size);
-        if (inboard) inboard->torque(size);
+        return;
     }
+    pushes[k].torque(size), pushes[k].force(pushing);
+    pushes[k].torque(pushing * norm(b.com[k]));
+    if (!inboard) return;
+    inboard->torque(size), inboard->force(pushing);
+    inboard->torque(pushing * (norm(b.translation[k] - b.com[k - 1]) + shift));
 }
 
 /// Upper bound of f M^-1 f: the value for bodies that no joint holds. `gravity`: acceleration, 0 if

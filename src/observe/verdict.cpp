@@ -145,7 +145,26 @@ std::string EnergyWatch::span(double from, double to) const {
     return fmt::format("{:.5g} to {:.5g} {}", from, to, scene_.si ? "J" : "kJ/mol");
 }
 
+std::optional<RunCheck> EnergyWatch::lost_energy() const {
+    for (std::size_t i = 0; series_.has_potential() && i < series_.size(); ++i) {
+        if (std::isfinite(series_.total(i))) continue;
+        std::int64_t const step = series_.first_step(i);
+        return RunCheck{
+            "energy",
+            false,
+            series_.total(i),
+            worthless_drift,
+            step,
+            fmt::format("the energy is not a finite number at step {}: a force is beyond its "
+                        "range, such as a torn FENE bond: look at the start, or choose a smaller "
+                        "dynamics.step",
+                        step)};
+    }
+    return std::nullopt;
+}
+
 std::optional<RunCheck> EnergyWatch::energy() const {
+    if (auto const lost = lost_energy()) return lost;
     std::size_t const n = series_.size(), from = std::max<std::size_t>(1, n / 4);
     if (!conserves_energy(scene_) || !series_.has_potential() || n < 2) return std::nullopt;
     std::vector<double> at, later;

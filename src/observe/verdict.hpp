@@ -57,7 +57,8 @@ class EnergyWatch {
     void begins_midway() { begins_midway_ = true; }
     bool is_midway() const { return begins_midway_; }
     /// Checks a scene that conserves its energy: drift over the last three quarters of the frames
-    /// relative to kinetic energy, and a jump before. Empty if the check does not apply.
+    /// relative to kinetic energy, and a jump before. In all scenes an energy that is not finite
+    /// fails. Empty if the check does not apply.
     std::optional<RunCheck> energy() const;
     /// Checks the temperature under a thermostat over the second half of the frames. Kinetic energy
     /// released by potential energy is subtracted under gravity. Torques and wrenches raise the
@@ -69,6 +70,8 @@ class EnergyWatch {
     static bool conserves_energy(Scene const&);
 
   private:
+    /// Failed check of an energy that is not finite; empty if all are.
+    std::optional<RunCheck> lost_energy() const;
     /// Kinetic energy over the second half of the frames, divided by the thermostat's.
     struct Warmth {
         std::vector<double> ratio;       // per entry of the series

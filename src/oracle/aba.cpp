@@ -41,7 +41,7 @@ struct Articulated {
     // the inboard body) + bias_behind.
     Inertia<S> behind;
     SpatialForce<S> bias_behind;
-    std::array<Coordinate<S>, 2> coordinate;
+    std::array<Coordinate<S>, 3> coordinate;
 };
 
 /// Throws ComputationError for body k.

@@ -44,13 +44,13 @@ PrescribedMotionAt<S> at(PrescribedMotion const& c, double time) {
 /// one.
 template <class S>
 struct JointState {
-    std::array<S, 2> q;
+    std::array<S, 3> q;
     V3<S> rates, accelerations = V3<S>::zero();
 };
 /// Returns the state of joint k, and sets `driven` of its link.
 template <class S>
 JointState<S> state_of(BodyArrays const& b, std::size_t k, double time, Link<S>& link) {
-    JointState<S> state{{S(b.q[k][0]), S(b.q[k][1])}, lift<S>(b.qd[k])};
+    JointState<S> state{{S(b.q[k][0]), S(b.q[k][1]), S(b.q[k][2])}, lift<S>(b.qd[k])};
     auto const by_body = [](DrivenJoint const& d, std::size_t body) {
         return static_cast<std::size_t>(d.body) < body;
     };
@@ -101,8 +101,9 @@ void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<
     BodyArrays const& b = chain.bodies;
     bool const base = b.joint[k] == JointType::free;
     JointState<S> const state = state_of(b, k, loads.time, link);
-    bool const ball = base || b.joint[k] == JointType::spherical;
-    if (base != (k == 0 && chain.base == Base::free) || (ball && link.driven) ||
+    bool const several =
+        base || b.joint[k] == JointType::spherical || b.joint[k] == JointType::planar3;
+    if (base != (k == 0 && chain.base == Base::free) || (several && link.driven) ||
         (b.joint[k] == JointType::weld && link.driven))
         throw ComputationError(
             "a free joint beyond body 1, or a driven joint of a type that cannot be driven "
@@ -168,12 +169,18 @@ void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& l
     }
 }
 
-/// Returns (P^T P)^-1 x, with P the directions of a joint.
+/// True if the directions of a joint are those of a rotation about every axis.
+template <class S>
+bool rotates_about_all(Link<S> const& link) {
+    return link.type == JointType::spherical || link.type == JointType::free;
+}
+/// Returns (P^T P)^-1 x, with P the directions of a joint. Those of cylindrical and planar3 joints
+/// are orthonormal.
 template <class S>
 V3<S> over_gram(Link<S> const& link, V3<S> x) {
     Motion<S> const &p = link.free[0], &p2 = link.free[1];
     if (link.dof == 1) x[0] = x[0] / (dot(p.angular, p.angular) + dot(p.linear, p.linear));
-    if (link.dof != 2) return x;
+    if (link.type != JointType::universal) return x;
     V3<S> const normal =
         // The directions are rotations: Cramer's rule with determinant |a1 x a2|^2.
         cross(p.angular, p2.angular);
@@ -182,32 +189,66 @@ V3<S> over_gram(Link<S> const& link, V3<S> x) {
     return {{(c * x[0] - b * x[1]) / det, (a * x[1] - b * x[0]) / det, S(0)}};
 }
 
+/// Returns unit vectors perpendicular to all of the given ones, which are linearly independent.
+template <class S>
+std::vector<V3<S>> across_all(std::vector<V3<S>> const& vectors) {
+    if (vectors.empty()) return {unit_direction<S>(0), unit_direction<S>(1), unit_direction<S>(2)};
+    if (vectors.size() == 1) {
+        auto const two = across(unit(vectors[0]));
+        return {two.begin(), two.end()};
+    }
+    if (vectors.size() == 2) return {unit(cross(vectors[0], vectors[1]))};
+    return {};
+}
+
 }  // namespace
+
+template <class S>
+void set_inboard_directions(JointShape<S> const& j, Link<S>& link) {
+    auto const in_body = [&](V3<S> const& v) {
+        return transposed_times(link.rotation, j.rotation * v);
+    };
+    if (link.type == JointType::universal) link.free[0].angular = in_body(j.first_axis);
+    if (link.type != JointType::planar3) return;
+    V3<S> const normal = unit(j.axis), y = unit(cross(normal, j.first_axis));
+    link.free[0].linear = in_body(cross(y, normal));
+    link.free[1].linear = in_body(y);
+}
 
 template <class S>
 void place(JointShape<S> const& j, std::string const& where, Link<S>& link) {
     link.type = j.type;
     link.rotation = j.rotation;
     link.translation = j.translation;
-    V3<S> const axis = link.type == JointType::spherical || link.type == JointType::weld ||
-                               link.type == JointType::free
-                           ? V3<S>::zero()
-                           : unit(j.axis);
-    auto const turn = [&] { link.rotation = link.rotation * turn_about(axis, j.q[0]); };
+    V3<S> const axis =
+        link.type == JointType::weld || rotates_about_all(link) ? V3<S>::zero() : unit(j.axis);
+    auto const turn = [&](S by) { link.rotation = link.rotation * turn_about(axis, by); };
     auto const shift = [&](S by) {
         link.translation = link.translation + j.rotation * (by * axis);
     };
     link.dof = 1;
     if (link.type == JointType::revolute) {
-        turn();
+        turn(j.q[0]);
         link.free[0].angular = axis;
     } else if (link.type == JointType::prismatic) {
         shift(j.q[0]);
         link.free[0].linear = axis;
     } else if (link.type == JointType::helical) {
-        turn();
+        turn(j.q[0]);
         shift(j.pitch * j.q[0]);
         link.free[0] = {axis, j.pitch * axis};
+    } else if (link.type == JointType::cylindrical) {
+        turn(j.q[0]);
+        shift(j.q[1]);
+        link.free[0].angular = link.free[1].linear = axis;
+        link.dof = 2;
+    } else if (link.type == JointType::planar3) {
+        V3<S> const y = unit(cross(axis, j.first_axis)), x = cross(y, axis);
+        turn(j.q[2]);
+        link.translation = link.translation + j.rotation * (j.q[0] * x + j.q[1] * y);
+        set_inboard_directions(j, link);
+        link.free[2].angular = axis;
+        link.dof = 3;
     } else if (link.type == JointType::universal) {
         V3<S> const first = unit(j.first_axis);
         M3<S> const second = turn_about(axis, j.q[1]);
@@ -215,7 +256,7 @@ void place(JointShape<S> const& j, std::string const& where, Link<S>& link) {
         link.free[0].angular = transposed_times(second, first);
         link.free[1].angular = axis;
         link.dof = 2;
-    } else if (link.type == JointType::spherical || link.type == JointType::free) {
+    } else if (rotates_about_all(link)) {
         link.rotation = j.rotation * matrix(unit<S>(j.quaternion));
         for (int i = 0; i < 3; ++i)
             link.free[static_cast<std::size_t>(i)].angular = unit_direction<S>(i);
@@ -230,7 +271,7 @@ void place(JointShape<S> const& j, std::string const& where, Link<S>& link) {
 
 template <class S>
 Motion<S> along(Link<S> const& link, V3<S> const& coordinates) {
-    if (link.dof == 3) return {coordinates, V3<S>::zero()};
+    if (rotates_about_all(link)) return {coordinates, V3<S>::zero()};
     Motion<S> m;
     for (int i = 0; i < link.dof; ++i) {
         Motion<S> const& p = link.free[static_cast<std::size_t>(i)];
@@ -241,7 +282,7 @@ Motion<S> along(Link<S> const& link, V3<S> const& coordinates) {
 
 template <class S>
 V3<S> efforts(Link<S> const& link, SpatialForce<S> const& wrench) {
-    if (link.dof == 3) return wrench.torque;
+    if (rotates_about_all(link)) return wrench.torque;
     V3<S> x = V3<S>::zero();
     for (int i = 0; i < link.dof; ++i) x[i] = power(link.free[static_cast<std::size_t>(i)], wrench);
     return x;
@@ -262,26 +303,17 @@ template <class S>
 std::vector<Motion<S>> restricted(Link<S> const& link) {
     std::vector<Motion<S>> d;
     V3<S> const none = V3<S>::zero();
-    bool const turns =
-        !link.driven && link.type != JointType::weld && link.type != JointType::prismatic;
-    bool const shifts =
-        !link.driven && (link.type == JointType::prismatic || link.type == JointType::helical);
-    // Constrained rotations: all of them, those across the axis, or the one normal to both axes.
-    if (!turns)
-        for (int i = 0; i < 3; ++i) d.push_back({unit_direction<S>(i), none});
-    else if (link.dof == 1)
-        for (V3<S> const& e : across(link.free[0].angular)) d.push_back({e, none});
-    else if (link.dof == 2)
-        d.push_back({unit(cross(link.free[0].angular, link.free[1].angular)), none});
-    // Constrained translations: all of them, or those across the axis.
-    if (!shifts) {
-        for (int i = 0; i < 3; ++i) d.push_back({none, unit_direction<S>(i)});
-        return d;
+    std::vector<V3<S>> turning, shifting;
+    for (int i = 0; i < link.unknown(); ++i) {
+        Motion<S> const& p = link.free[static_cast<std::size_t>(i)];
+        if (norm(p.angular) > S(0)) turning.push_back(p.angular);
+        if (norm(p.linear) > S(0)) shifting.push_back(p.linear);
     }
-    V3<S> const axis = unit(turns ? link.free[0].angular : link.free[0].linear);
-    for (V3<S> const& e : across(axis)) d.push_back({none, e});
-    if (turns)
-        d.push_back({-link.free[0].linear, axis});  // helical: translation coupled to the rotation
+    bool const screw = link.unknown() == 1 && !turning.empty() && !shifting.empty();
+    for (V3<S> const& e : across_all(turning)) d.push_back({e, none});
+    for (V3<S> const& e : across_all(screw ? turning : shifting)) d.push_back({none, e});
+    if (screw)  // translation coupled to the rotation
+        d.push_back({-link.free[0].linear, unit(link.free[0].angular)});
     return d;
 }
 
@@ -321,6 +353,7 @@ std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links) {
 
 // NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                         \
+    template void set_inboard_directions<S>(JointShape<S> const&, Link<S>&);     \
     template void place<S>(JointShape<S> const&, std::string const&, Link<S>&);  \
     template Motion<S> along<S>(Link<S> const&, V3<S> const&);                   \
     template V3<S> coordinates<S>(Link<S> const&, Motion<S> const&);             \

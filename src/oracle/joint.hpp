@@ -68,17 +68,20 @@ struct Link {
 template <class S>
 struct JointShape {
     JointType type;
-    V3<S> axis, first_axis;  // need not have unit length
+    V3<S> axis, first_axis;  // need not have unit length; planar3: nor be perpendicular
     S pitch;
     M3<S> rotation;
     V3<S> translation;
-    std::array<S, 2> q;
+    std::array<S, 3> q;
     std::array<double, 4> quaternion;  // spherical and free joints
 };
 /// Sets type, rotation, translation and directions of `link`. Throws ComputationError with `where`
 /// if the joint is a link.
 template <class S>
 void place(JointShape<S> const& shape, std::string const& where, Link<S>& link);
+/// Sets the directions of `link` that are fixed in the joint frame from the link's rotation.
+template <class S>
+void set_inboard_directions(JointShape<S> const& shape, Link<S>& link);
 
 /// Returns the sum of the joint's directions times their coordinates.
 template <class S>

@@ -16,13 +16,15 @@ S ratio(S error, S size) {
 }
 
 /// Residual along the coordinates of one joint: required minus given efforts, over the largest term
-/// of its balance. A sliding coordinate uses the force balance, a helical one both balances.
+/// of its balances: of forces if it translates, of moments if it rotates.
 template <class S>
 S joint_residual(Link<S> const& link, V3<S> const& needed, InverseBody<S> const& body) {
     S size = norm(link.effort);
-    if (norm(link.free[0].angular) > S(0)) size = std::max(size, body.torque.largest);
-    if (norm(link.free[0].linear) > S(0))
-        size = std::max(size, S(norm(link.free[0].linear) * body.force.largest));
+    for (int i = 0; i < link.dof; ++i) {
+        Motion<S> const& p = link.free[static_cast<std::size_t>(i)];
+        if (norm(p.angular) > S(0)) size = std::max(size, body.torque.largest);
+        if (norm(p.linear) > S(0)) size = std::max(size, S(norm(p.linear) * body.force.largest));
+    }
     return ratio(norm(needed - link.effort), size);
 }
 

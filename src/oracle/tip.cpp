@@ -118,7 +118,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
                               S(j.pitch),
                               orthonormal<S>(j.rotation),
                               lift<S>(j.translation),
-                              {S(j.q[0]), S(j.q[1])},
+                              {S(j.q[0]), S(j.q[1]), S(j.q[2])},
                               j.q};
     place(shape, "tip", g);
     Attitude<S> const &last = attitude.back(), &first = attitude.front();
@@ -126,9 +126,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
     if (j.ring) {
         g.rotation = transposed_times(last.orientation, first.orientation);
         g.translation = transposed_times(last.orientation, first.origin - last.origin);
-        // This is the first axis in G, where it is not constant.
-        if (has_two_axes(g.type))
-            g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
+        set_inboard_directions(shape, g);
     }
     // The velocity of G relative to the last body, in G's axes, gives the joint rates.
     M3<S> const axes = last.orientation * g.rotation;  // axes of G in W
@@ -146,7 +144,7 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
         j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
     if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
     V3<S> drift = V3<S>::zero();
-    if (has_two_axes(g.type))
+    if (turns_twice(g.type))
         drift = S(rates[0] * rates[1]) * cross(g.free[0].angular, g.free[1].angular);
     tip.closure = {cross(omega, axes * moving.angular) + axes * drift,
                    S(2) * cross(omega, axes * moving.linear)};

@@ -40,8 +40,8 @@ RandomJoint joint_of(ChainSpec const& chain) {
         case HandleKind::revolute:
             return sliding ? RandomJoint::prismatic : RandomJoint::revolute;
         default:
-            return sliding || any_joint(chain, has_two_axes) ? RandomJoint::mixed
-                                                             : RandomJoint::weld;
+            return sliding || any_joint(chain, turns_twice) ? RandomJoint::mixed
+                                                            : RandomJoint::weld;
     }
 }
 

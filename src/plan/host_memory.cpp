@@ -34,30 +34,50 @@ std::optional<double> number_in(std::string const& path, std::string const& key 
     return std::nullopt;
 }
 
+/// Names of a control group's files in one version of control groups.
+struct GroupFiles {
+    char const *most, *used, *cached;
+};
+constexpr GroupFiles version_1{"/memory.limit_in_bytes", "/memory.usage_in_bytes",
+                               "total_inactive_file"},
+    version_2{"/memory.max", "/memory.current", "inactive_file"};
+
 /// Returns what the control group in `folder` allows beyond what it uses. Cached files count as
 /// free.
-std::optional<double> free_in_group(std::string const& folder) {
-    auto const most = number_in(folder + "/memory.max");
-    if (!most) return std::nullopt;
-    double const used = number_in(folder + "/memory.current").value_or(0),
-                 cached = number_in(folder + "/memory.stat", "inactive_file").value_or(0);
+double free_in_group(std::string const& folder, GroupFiles const& files) {
+    auto const most = number_in(folder + files.most);
+    if (!most) return std::numeric_limits<double>::infinity();
+    double const used = number_in(folder + files.used).value_or(0),
+                 cached = number_in(folder + "/memory.stat", files.cached).value_or(0);
     return std::max(0.0, *most - used + cached);
 }
 
-/// Returns what the control group of this process and those around it allow (version 2 of control
-/// groups).
-double free_in_groups(std::string const& root) {
+/// Returns what the control group and those around it allow. `path`: "/job/step" or "/".
+double least_of(std::string const& mounted, std::string path, GroupFiles const& files) {
     double least = std::numeric_limits<double>::infinity();
+    while (true) {
+        least = std::min(least, free_in_group(mounted + path, files));
+        if (path.empty()) return least;
+        path.resize(path.rfind('/'));
+    }
+}
+
+/// Returns what the control groups of this process allow. Their file has lines
+/// "number:controllers:path"; version 2 has "0::path". A container may see its own group as the
+/// mounted one.
+double free_in_groups(std::string const& root) {
+    std::string const mounted = root + "sys/fs/cgroup";
+    double least =
+        std::min(least_of(mounted, "", version_2), least_of(mounted + "/memory", "", version_1));
     std::ifstream file(root + "proc/self/cgroup");
     for (std::string line; std::getline(file, line);) {
-        if (line.rfind("0::/", 0) != 0) continue;
-        std::string path = line.substr(3);
-        while (true) {
-            if (auto const found = free_in_group(root + "sys/fs/cgroup" + path))
-                least = std::min(least, *found);
-            if (path.empty()) break;
-            path.resize(path.rfind('/'));
-        }
+        std::size_t const first = line.find(':'), second = line.find(':', first + 1);
+        if (second == std::string::npos || line.compare(second + 1, 1, "/") != 0) continue;
+        std::string const controllers = "," + line.substr(first + 1, second - first - 1) + ",",
+                          path = line.substr(second + 1);
+        if (controllers == ",,") least = std::min(least, least_of(mounted, path, version_2));
+        if (controllers.find(",memory,") != std::string::npos)
+            least = std::min(least, least_of(mounted + "/memory", path, version_1));
     }
     return least;
 }
@@ -90,6 +110,11 @@ std::optional<double> free_host_memory(std::string const& root) {
 }
 
 std::string HostMemory::note() const {
+    if (by_ulimit)
+        return fmt::format(
+            "a run needs at least {} of memory in a process, `ulimit -v` leaves {}: raise it, or "
+            "take more ranks or fewer chains",
+            bytes_text(needed), bytes_text(free));
     return fmt::format(
         "a run needs at least {} of memory on a host, {} are free: the system may "
         "kill it without a message; take more hosts or fewer chains",
@@ -105,7 +130,8 @@ std::optional<HostMemory> lacking_memory(Scene const& scene, Communicator const&
                  of_rank = memory.state + memory.solver + forces;
     HostMemory own{0, 1};
     if (auto const free = free_host_memory(); free && !may_use_gpu(scene.solver.backend))
-        own = worse({of_rank * communicator.ranks_on_host(), *free}, {of_rank, free_in_limit()});
+        own = worse({of_rank * communicator.ranks_on_host(), *free},
+                    {of_rank, free_in_limit(), true});
     HostMemory worst = own;
     for (HostMemory const& each : all_gathered(communicator, own)) worst = worse(worst, each);
     if (worst.needed <= worst.free) return std::nullopt;

@@ -10,14 +10,16 @@
 namespace catena::command {
 
 /// Returns the bytes that all processes of this host together may still take: those that the kernel
-/// calls available, or fewer if a control group allows less (version 2 of control groups). Returns
-/// nothing if the system does not say. `root` is the folder that holds proc and sys.
+/// calls available, or fewer if a control group of version 1 or 2 allows less. Returns nothing if
+/// the system does not say. `root` is the folder that holds proc and sys.
 std::optional<double> free_host_memory(std::string const& root = "/");
 
 /// Memory of a host or of a process, in bytes.
 struct HostMemory {
     /// Least that a run needs, OpenMM's forces included, and what is free.
     double needed = 0, free = 0;
+    /// True if `ulimit -v` sets what is free.
+    bool by_ulimit = false;
     /// Returns the remark on it, with what to do.
     std::string note() const;
 };

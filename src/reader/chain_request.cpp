@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 
 #include "generate/conformation.hpp"
 #include "generate/random.hpp"
@@ -23,11 +22,8 @@ namespace catena::scene {
 namespace {
 
 /// True for the extensions of structure files, compressed or not.
-bool is_structure(std::string path) {
-    std::transform(path.begin(), path.end(), path.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (path.ends_with(".gz")) path.resize(path.size() - 3);
-    std::string const kind = std::filesystem::path(path).extension().string();
+bool is_structure(std::string const& path) {
+    std::string const kind = ending_of(path, true);
     return kind == ".pdb" || kind == ".ent" || kind == ".cif" || kind == ".mmcif";
 }
 

@@ -345,9 +345,9 @@ class ChainReader {
         auto const present = static_cast<double>(memory_limit());
         if (bytes > present)
             fail(request_.node,
-                 fmt::format(
-                     "the chain{} about {:.3g} GB of memory, and only {:.3g} GB are available",
-                     before > 0 ? "s up to this one need" : " needs", bytes * 1e-9, present * 1e-9),
+                 fmt::format("the chain{} about {:.3g} GB of memory, and only {}",
+                             before > 0 ? "s up to this one need" : " needs", bytes * 1e-9,
+                             available_memory()),
                  "make fewer bodies or copies");
         return bytes;
     }

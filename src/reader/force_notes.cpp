@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <string>
 #include <vector>
 
+#include "structure/calvados2.hpp"
 #include "structure/residue_names.hpp"
 #include "systems/charges.hpp"
 
@@ -27,9 +30,17 @@ double constexpr celsius_zero = 273.15;
 /// Relative difference below which temperatures count as equal.
 double constexpr same_temperature = 1e-9;
 
-/// Longest plausible step of residues with friction, and longest one that was shown to sample
-/// them correctly (`catena bench sampling`), ps.
-double constexpr longest_usual_step = 0.2, longest_shown_step = 0.06;
+/// Shortest and longest plausible step of residues with friction, and longest one that was shown to
+/// sample them correctly (`catena bench sampling`), ps.
+double constexpr shortest_usual_step = 0.001, longest_usual_step = 0.2, longest_shown_step = 0.06;
+/// Mass of the lightest residue in amu and length of a link in nm for which that step was shown.
+double constexpr shown_mass = 57.05, shown_link = 0.38;
+/// Relative difference of masses and lengths that leaves the step as it is.
+double constexpr similar = 0.1;
+
+/// Permittivities that are taken for water's, and the largest difference in K between the run's
+/// temperature and that of water with the System's permittivity that needs no note.
+double constexpr least_water = 40, most_water = 100, noted_difference = 10;
 
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
     return chain.is_beads() ? chain.beads.residue : chain.carried().residue;
@@ -50,6 +61,41 @@ bool has_amino_acids(Scene const& scene) {
     });
 }
 
+/// True if the run has a temperature that was given or is held.
+bool is_warm(DynamicsSpec const& run) {
+    return run.given && run.temperature > 0 &&
+           (is_langevin(run.integrator) || run.temperature != DynamicsSpec{}.temperature);
+}
+
+/// Temperature in K at which water has this permittivity.
+double water_of(double permittivity) {
+    double low = coldest_usual, high = calvados2::warmest_water;
+    for (int i = 0; i < 60; ++i) {
+        double const middle = std::midpoint(low, high);
+        (calvados2::yukawa(middle, 0).permittivity > permittivity ? low : high) = middle;
+    }
+    return low;
+}
+
+/// The bead on a link whose time scale, which grows as sqrt(mass) times length, is the shortest.
+struct FastestBead {
+    double mass = 0, length = 0;
+    /// Time scale relative to that of the residues whose steps were shown.
+    double scale = std::numeric_limits<double>::infinity();
+};
+
+FastestBead fastest_bead(Scene const& scene) {
+    FastestBead fastest;
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 1; k < chain.beads.size(); ++k) {
+            double const mass = std::min(chain.beads.mass[k - 1], chain.beads.mass[k]),
+                         length = chain.beads.length[k],
+                         scale = std::sqrt(mass / shown_mass) * length / shown_link;
+            if (scale < fastest.scale) fastest = {mass, length, scale};
+        }
+    return fastest;
+}
+
 }  // namespace
 
 void note_box_that_no_force_knows(Scene& scene, bool system_is_periodic) {
@@ -63,10 +109,8 @@ void note_forces(Scene& scene) {
     if (!scene.forces.openmm) return;
     OpenMmSpec const& openmm = *scene.forces.openmm;
     DynamicsSpec const& run = scene.dynamics;
-    bool const warm =
-        run.given && run.temperature > 0 &&
-        (is_langevin(run.integrator) || run.temperature != DynamicsSpec{}.temperature);
-    if (warm && std::abs(openmm.temperature - run.temperature) > same_temperature * run.temperature)
+    if (is_warm(run) &&
+        std::abs(openmm.temperature - run.temperature) > same_temperature * run.temperature)
         scene.note(fmt::format(
             "forces.openmm.temperature is {:.6g} K and dynamics.temperature {:.6g} K: {} at {:.6g} "
             "K.",
@@ -80,23 +124,72 @@ void note_forces(Scene& scene) {
             "did you mean {:.6g} (for {:.6g} "
             "mmol/l)?",
             openmm.ionic_strength, openmm.ionic_strength / 1000, openmm.ionic_strength));
-    if (!run.given || scene.si || is_implicit(run.integrator)) return;
-    if (run.step > longest_usual_step)
-        scene.note(
-            fmt::format("dynamics.step is {0:.6g} ps, that is {1:.6g} fs: steps of such chains are "
-                        "0.01 to 0.06 ps. Did you mean {2:.6g}?",
-                        run.step, 1000 * run.step, run.step / 1000));
-    else if (run.step > longest_shown_step && !openmm.builder.empty())
-        scene.note(
-            fmt::format("dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to "
-                        "sample chains of beads correctly, longer ones were not.",
-                        1000 * run.step, 1000 * longest_shown_step));
+}
+
+namespace {
+
+/// Sentence on a step of chains like those whose steps were shown; empty if it needs none.
+std::string step_of_residues(double step) {
+    if (step > longest_usual_step)
+        return fmt::format(
+            "dynamics.step is {:.6g} ps, that is {:.6g} fs: steps of such chains are "
+            "0.01 to 0.06 ps.{}",
+            step, 1000 * step,
+            step / 1000 < shortest_usual_step ? ""
+                                              : fmt::format(" Did you mean {:.6g}?", step / 1000));
+    if (step <= longest_shown_step) return "";
+    return fmt::format(
+        "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to sample chains of beads "
+        "correctly, longer ones were not.",
+        1000 * step, 1000 * longest_shown_step);
+}
+
+/// The same for a System's beads of other masses and distances.
+std::string step_of_others(double step, FastestBead const& fastest) {
+    double const shown = longest_shown_step * fastest.scale;
+    if (step <= shown) return "";
+    return fmt::format(
+        "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown for residues, which are "
+        "{:.2g} fs for the System's beads of {:.4g} amu on links of {:.4g} nm.",
+        1000 * step, 1000 * longest_shown_step, 1000 * shown, fastest.mass, fastest.length);
+}
+
+}  // namespace
+
+void note_step(Scene& scene) {
+    DynamicsSpec const& run = scene.dynamics;
+    if (!scene.forces.openmm || !run.given || scene.si || is_implicit(run.integrator)) return;
+    FastestBead const fastest = fastest_bead(scene);
+    bool const alike = !scene.forces.openmm->builder.empty() || std::isinf(fastest.scale) ||
+                       std::abs(fastest.scale - 1) < similar ||
+                       (fastest.scale > 1 && has_amino_acids(scene));
+    std::string const note = alike ? step_of_residues(run.step) : step_of_others(run.step, fastest);
+    if (!note.empty()) scene.note(note);
+}
+
+void note_screening(Scene& scene, std::optional<Screening> const& screening) {
+    if (!screening) return;
+    calvados2::Yukawa const usual = calvados2::yukawa(DynamicsSpec{}.temperature, 0);
+    double const permittivity = usual.permittivity * usual.prefactor / screening->prefactor,
+                 temperature = scene.forces.openmm->temperature;
+    if (!(permittivity >= least_water && permittivity <= most_water)) return;
+    double const water = water_of(permittivity);
+    if (is_warm(scene.dynamics) && std::abs(water - temperature) > noted_difference)
+        scene.note(fmt::format(
+            "the System's charges act as in water at {:.4g} K (permittivity {:.4g}), the run is at "
+            "{:.6g} K: serialise the System for that temperature, unless this is meant.",
+            water, permittivity, temperature));
+    if (temperature < coldest_water || temperature > hottest_water)
+        scene.note(fmt::format("water {} at {:.6g} K, and the System's charges act as in water.",
+                               temperature < coldest_water ? "is frozen" : "boils", temperature));
 }
 
 void note_water(Scene& scene) {
     if (!scene.forces.openmm) return;
     double const temperature = scene.forces.openmm->temperature;
-    bool const cold = temperature<coldest_water, hot = temperature> hottest_water,
+    // Beyond the warmest water the builder refuses, which no note needs to precede.
+    bool const cold = temperature<coldest_water, hot = temperature> hottest_water &&
+                      temperature <= calvados2::warmest_water,
                charged =
                    !scene.forces.openmm->builder.empty() && (cold || hot) && has_charges(scene);
     if (temperature < coldest_usual && (charged || has_amino_acids(scene)))

@@ -2,7 +2,10 @@
 // is unusual about them.
 #pragma once
 
+#include <optional>
+
 #include "scene/scene.hpp"
+#include "systems/import.hpp"
 
 namespace catena::scene {
 
@@ -11,9 +14,16 @@ namespace catena::scene {
 void note_water(Scene&);
 
 /// Notes a temperature of the force field that differs from the run's, and implausible ionic
-/// strength, pH or step. Water outside the range of measured permittivity is noted, too.
+/// strength or pH. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
+/// Notes a step that is implausible, or beyond those that were shown to sample chains correctly. A
+/// System's beads are judged by their masses and the lengths of their links. Precondition: the
+/// chains have been read.
+void note_step(Scene&);
+/// Notes charges of a System that act as in water of another temperature than the run's, and water
+/// that is frozen or boils. Precondition: all sections except the chains have been read.
+void note_screening(Scene&, std::optional<Screening> const&);
 /// Notes residues between which no forces act, if the scene is to be run: they would move as an
 /// ideal chain. Precondition: all sections have been read.
 void note_missing_forces(Scene&);

@@ -42,6 +42,8 @@ RandomJoint random_joint(Node const& node) {
                                       {"weld", RandomJoint::weld},
                                       {"prismatic", RandomJoint::prismatic},
                                       {"helical", RandomJoint::helical},
+                                      {"cylindrical", RandomJoint::cylindrical},
+                                      {"planar3", RandomJoint::planar3},
                                       {"mixed", RandomJoint::mixed}});
 }
 

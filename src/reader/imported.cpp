@@ -5,16 +5,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "generate/conformation.hpp"
 #include "generate/start_fit.hpp"
 #include "reader/force_notes.hpp"
 #include "scene/fields.hpp"
+#include "structure/residue_names.hpp"
 #include "systems/import.hpp"
 
 namespace catena::scene {
 
 namespace {
+
+double constexpr same_mass = 1e-3;  // relative; covers masses of few digits
 
 /// Makes a draft of an imported chain and fits its positions to the lengths of its links.
 Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fit) {
@@ -39,6 +44,24 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
     return draft;
 }
 
+/// Notes amino acids whose masses in the System differ from each other: atoms and particles may
+/// have different orders. Ends of chains, which have the masses of termini, are left out.
+void note_mixed_masses(ImportedSystem const& imported, Node const& topology, Scene& scene) {
+    std::map<std::string, double> mass;
+    std::int64_t particle = 0;
+    for (ImportedChain const& chain : imported.chains)
+        for (std::size_t k = 0; k < chain.mass.size(); ++k, ++particle) {
+            std::string const& residue = chain.residue[k];
+            if (k == 0 || k + 1 == chain.mass.size() || !is_amino_acid(residue)) continue;
+            double const known = mass.emplace(residue, chain.mass[k]).first->second;
+            if (std::abs(known - chain.mass[k]) <= same_mass * known) continue;
+            return scene.note(fmt::format(
+                "{} has the masses {:.6g} and {:.6g} amu in the System (the latter is particle {}, "
+                "from 0): does `{}` have its atoms in the order of the particles?",
+                residue, known, chain.mass[k], particle, shown_path(topology.text)));
+        }
+}
+
 }  // namespace
 
 std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
@@ -53,6 +76,8 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     for (std::string const& note : imported.notes) scene.note(note);
     if (!scene.box && imported.periodic) scene.box = imported.box;
     note_box_that_no_force_knows(scene, imported.periodic);
+    note_mixed_masses(imported, *openmm.find("topology"), scene);
+    note_screening(scene, imported.screening);
     std::vector<Draft> drafts;
     // Frames of a run with soft springs stretch them as far as their thermal motion does.
     StartFit fit(scene, *openmm.find("topology"),

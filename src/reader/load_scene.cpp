@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "io/memory_limit.hpp"
 #include "io/printable.hpp"
 #include "keys/maps.hpp"
 #include "place/concentration.hpp"
@@ -184,11 +185,14 @@ Scene parse_scene(std::string const& text, std::string const& name,
     made.chains.reserve(drafts.size());
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
     scene::note_missing_forces(made);
+    scene::note_step(made);
     scene::note_water(made);
     made.hash = scene::fingerprint(made);
     return made;
 } catch (std::bad_alloc const&) {
-    throw InputError("the scene does not fit into memory", name, "make fewer bodies or copies");
+    throw InputError("the scene does not fit into memory", name,
+                     is_limited_by_ulimit() ? "raise `ulimit -v`, or make fewer bodies or copies"
+                                            : "make fewer bodies or copies");
 }
 
 }  // namespace catena

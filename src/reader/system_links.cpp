@@ -75,6 +75,7 @@ void WrittenSystem::judge(std::vector<Draft> const& drafts, Scene& scene) const 
         }
     for (std::string const& note : links.notes()) scene.note(note);
     note_box_that_no_force_knows(scene, links_.periodic);
+    note_screening(scene, links_.screening);
 }
 
 }  // namespace catena::scene

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -50,6 +52,22 @@ double cell_number(std::string const& cell, std::string const& path, int line) {
 }
 
 }  // namespace
+
+std::string ending_of(std::string const& path, bool packed) {
+    std::string lower = path;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (packed && lower.ends_with(".gz")) lower.resize(lower.size() - 3);
+    return std::filesystem::path(lower).extension().string();
+}
+
+bool holds_no_keys(std::string const& text) {
+    try {
+        return parse_value(text, "").kind != Node::Kind::map;
+    } catch (InputError const&) {
+        return false;
+    }
+}
 
 std::string read_text_file(std::string const& path, Node const& at) {
     std::error_code unseen;

@@ -13,6 +13,13 @@ namespace catena::scene {
 /// key in the message.
 std::string read_text_file(std::string const& path, Node const& at);
 
+/// True for well-formed YAML that is empty, a list or a single value.
+bool holds_no_keys(std::string const& text);
+
+/// Returns the ending of a file's name in lower case, with its dot; with `packed` that before
+/// ".gz".
+std::string ending_of(std::string const& path, bool packed = false);
+
 /// Returns `path` relative to the folder of `scene_file`.
 std::string resolved(std::string const& path, std::string const& scene_file);
 

@@ -65,11 +65,17 @@ bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& firs
     return axes.any();
 }
 
+/// True if some joint translates, the tip's included.
+bool any_slides(ChainSpec const& chain) {
+    return std::any_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), slides) ||
+           (chain.tip == Tip::jointed && slides(chain.tip_joint.type));
+}
+
 /// True for a chain of revolute joints from the ground on that rotates about one axis, in one
 /// plane. The tolerance is rounding, because planar handles omit all motion out of the plane.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
-    return chain.base == Base::fixed && parallel_within(rounding, chain, odd);
+    return chain.base == Base::fixed && !any_slides(chain) && parallel_within(rounding, chain, odd);
 }
 
 /// Number of a plane's three directions that the tip's joint restricts. `normal` is in J of the
@@ -142,7 +148,8 @@ HandleKind handle_kind(ChainSpec const& chain) {
     for (JointType const joint : bodies.joint) least = std::min(least, coordinates_of(joint));
     if (chain.tip == Tip::jointed) least = std::min(least, coordinates_of(chain.tip_joint.type));
     if (!bodies.driven.empty() || least == 0) return HandleKind::full;
-    if (least == 1) return is_planar(chain) ? HandleKind::planar : HandleKind::revolute;
+    if (least == 1 || any_slides(chain))
+        return is_planar(chain) ? HandleKind::planar : HandleKind::revolute;
     return least == 2 ? HandleKind::universal : HandleKind::spherical;
 }
 

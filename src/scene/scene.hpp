@@ -31,9 +31,9 @@ enum class StartVelocities { given, zero, thermal };
 struct PrescribedMotion {
     double offset = 0, rate = 0, amplitude = 0, frequency = 0, phase = 0;
 };
-/// Joint with prescribed motion. Revolute, prismatic and helical joints use the first course,
-/// universal joints both. The courses replace the joint's q and qd at all times. Torque, stiffness
-/// and damping of the joint are ignored.
+/// Joint with prescribed motion. Joints with one coordinate use the first course, universal and
+/// cylindrical joints both. The courses replace the joint's q and qd at all times. Torque,
+/// stiffness and damping of the joint are ignored.
 struct DrivenJoint {
     /// Index of the body outboard of the joint, from 0; ascending in a list.
     std::int64_t body = 0;
@@ -56,12 +56,14 @@ struct CarriedBeads {
 };
 
 /// Rigid bodies of one chain in joint coordinates. Entry k describes body k + 1 and its inboard
-/// joint. A body's origin is its inboard joint; for prismatic and helical joints it is the point at
-/// the joint frame's origin at q = 0. X(q), the joint's own motion, relates B to J. Revolute:
+/// joint. A body's origin is its inboard joint; for joints that translate it is the point at the
+/// joint frame's origin at q = 0. X(q), the joint's own motion, relates B to J. Revolute:
 /// rotation by q about `axis`. Prismatic: translation by q along `axis`. Helical: rotation by q and
-/// translation by pitch q. Universal: rotation by q[0] about `first_axis`, then by q[1] about
-/// `axis`. Weld: identity. Arrays from `first_axis` on may be empty, which means zero. An empty
-/// `first_axis` means no universal joint, an empty `pitch` no helical joint.
+/// translation by pitch q. Cylindrical: rotation by q[0], translation by q[1]. Planar3: translation
+/// by q[0] along `first_axis` and by q[1] along `axis` x `first_axis`, both in J, and rotation by
+/// q[2] about `axis`. Universal: rotation by q[0] about `first_axis`, then by q[1] about `axis`.
+/// Weld: identity. Arrays from `first_axis` on may be empty, which means zero. An empty
+/// `first_axis` means no joint with two axes, an empty `pitch` no helical joint.
 struct BodyArrays {
     std::vector<double> mass;
     /// Centre of mass from the origin, B.
@@ -76,9 +78,8 @@ struct BodyArrays {
     std::vector<Mat3> rotation;
     /// Origin of J from the inboard body's origin, in the inboard body's axes.
     std::vector<Vec3> translation;
-    /// Joint positions. Sliding and revolute joints: {angle or displacement, 0, 0, 0}. Universal:
-    /// {angle 1, angle 2, 0, 0}. Spherical and free: unit quaternion w x y z of B in J (free: in
-    /// W). Weld: zeros.
+    /// Joint positions: one number per coordinate, then zeros. Spherical and free: unit quaternion
+    /// w x y z of B in J (free: in W). Weld: zeros.
     std::vector<std::array<double, 4>> q;
     /// Joint rates. Spherical and free: angular velocity relative to the inboard body, B.
     std::vector<Vec3> qd;
@@ -86,12 +87,13 @@ struct BodyArrays {
     Vec3 free_position = Vec3::zero();
     /// Velocity of body 1's origin for a free base, W.
     Vec3 free_velocity = Vec3::zero();
-    /// First axis of a universal joint, J; not parallel to `axis`.
+    /// First axis of a universal joint, J; not parallel to `axis`. Planar3: direction of q[0], J,
+    /// perpendicular to the normal `axis`.
     std::vector<Vec3> first_axis;
     /// Translation per radian of a helical joint.
     std::vector<double> pitch;
-    /// Joint torque (prismatic: force) on body k + 1 along each coordinate. Spherical: components
-    /// in B.
+    /// Joint torque (force if the coordinate is a length) on body k + 1 along each coordinate.
+    /// Spherical: components in B.
     std::vector<Vec3> torque;
     /// Spring constant per coordinate. Spherical: acts on the components of the rotation vector
     /// from `rest`.

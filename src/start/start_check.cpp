@@ -141,15 +141,22 @@ std::string overlap_text(std::string const& pair, double distance) {
 bool StartForces::is_absurd() const {
     double const kt = Scene().boltzmann() * temperature;
     // `!(<=)` treats values that are not finite as absurd.
-    if (!(largest_force <= ::catena::largest_force * kt)) return true;
+    if (!std::isfinite(energy) || !(largest_force <= ::catena::largest_force * kt)) return true;
     return !(energy <= most_energy * thermal) && largest_force > thermal_force * kt;
 }
 
+bool StartForces::is_undefined() const {
+    double const kt = Scene().boltzmann() * temperature;
+    return !std::isfinite(energy) && largest_force <= ::catena::largest_force * kt;
+}
+
 std::string StartForces::energy_text() const {
-    return fmt::format(
-        "{:.6g} kJ/mol ({:.3g} times the kinetic energy at {:.6g} K), largest force {:.3g} "
-        "kJ/mol/nm on {}",
-        energy, energy / thermal, temperature, largest_force, force_at);
+    std::string const found =
+        std::isfinite(energy)
+            ? fmt::format("{:.6g} kJ/mol ({:.3g} times the kinetic energy at {:.6g} K)", energy,
+                          energy / thermal, temperature)
+            : std::string(std::isnan(energy) ? "not a number" : "infinite");
+    return fmt::format("{}, largest force {:.3g} kJ/mol/nm on {}", found, largest_force, force_at);
 }
 
 std::string StartForces::text() const {
@@ -200,7 +207,10 @@ void refuse_absurd(Scene const& scene, StartForces const& start, std::string con
                     : "the start positions are far from any thermal state: ";
     what += "potential energy " + (overlap ? start.energy_text() : start.text());
     throw InputError(what, scene.file,
-                     relaxation.empty() ? other_positions : "give other positions");
+                     start.is_undefined() ? "a force is beyond its range, such as a torn FENE "
+                                            "bond: give other positions, in the right unit"
+                     : relaxation.empty() ? other_positions
+                                          : "give other positions");
 }
 
 void refuse_coinciding(Scene const& scene, Communicator const& communicator) {

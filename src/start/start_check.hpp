@@ -26,6 +26,9 @@ struct StartForces {
     /// thermal motion. Also true for a force too large for any step, and for values that are not
     /// finite.
     bool is_absurd() const;
+    /// True if the energy is not finite though no force is too large for a step: positions are
+    /// beyond the range of a force, and no relaxation brings them back.
+    bool is_undefined() const;
     /// Text of one line with energy and largest force.
     std::string energy_text() const;
     /// Text of energy_text() and the nearest beads.

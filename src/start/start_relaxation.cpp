@@ -91,6 +91,7 @@ class Relaxation {
         std::vector<Vec3> const given = at_;
         StartRelaxation found;
         found.from = found.to = look();
+        refuse_undefined(found.from.energy);
         for (int knocks = 0;; ++knocks) {
             descend(found);
             found.to = look();
@@ -108,6 +109,15 @@ class Relaxation {
         SingleRankForces::EnergyAndForces found = all_.at(at_);
         forces_ = std::move(found.forces);
         return start_forces_of(scene_, all_.beads(), at_, forces_, found.energy);
+    }
+
+    /// Throws InputError for positions that no descent improves, because only the energy is not
+    /// finite.
+    void refuse_undefined(double energy) {
+        if (std::isfinite(energy) || !all_.are_finite()) return;
+        StartForces const found =
+            start_forces_of(scene_, all_.beads(), at_, all_.forces(at_), energy);
+        if (found.is_undefined()) refuse_absurd(scene_, found);
     }
 
     void descend(StartRelaxation& found) {

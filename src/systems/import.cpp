@@ -17,6 +17,7 @@ namespace catena {
 namespace {
 
 constexpr double digits_of_cell = 2e-3;  // nm, of a PDB file's cell
+constexpr double same_edge = 1e-6;       // nm; covers edges written in decimals
 
 /// Imports one chain that begins with particle `first`, and adds its links to `links`.
 ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system,
@@ -66,6 +67,45 @@ std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joining
                                : fmt::format("{} chains are closed", rings))};
 }
 
+/// Notes the chains that bonds stiff enough for a link join to the chain before, in one sentence.
+std::vector<std::string> note_joined(std::vector<PdbChain> const& chains, Joinings const& joinings,
+                                     double temperature) {
+    int first = 0, joined = 0;
+    std::string where;
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+        Joining const bond = c > 0 ? joinings.to_previous(first) : Joining{};
+        if (bond.holds() && bond.spread(temperature) <= StiffLinks::softest && joined++ == 0)
+            where =
+                fmt::format("particles {} and {}, from 0, of chains {} and {}", first - 1, first,
+                            scene::shown(chains[c - 1].name), scene::shown(chains[c].name));
+        first += static_cast<int>(chains[c].size());
+    }
+    if (joined == 0) return {};
+    return {fmt::format(
+        "{} of the topology ({}{}) and {}; bonds within a chain become rigid links. If they are "
+        "one chain, remove the TER between them, or give both one letter.",
+        joined == 1 ? "1 stiff bond joins two chains"
+                    : fmt::format("{} stiff bonds join chains", joined),
+        joined == 1 ? "" : "the first ", where, joined == 1 ? "stays a spring" : "stay springs")};
+}
+
+/// Throws InputError for a box that is not rectangular.
+void refuse_triclinic(OpenMM::System const& system, std::string const& where) {
+    if (!system.usesPeriodicBoundaryConditions()) return;
+    OpenMM::Vec3 edge[3];
+    system.getDefaultPeriodicBoxVectors(edge[0], edge[1], edge[2]);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (i != j && std::abs(edge[i][j]) > same_edge)
+                throw InputError(
+                    fmt::format("the System's box is not rectangular: its vector {} is ({:.6g}, "
+                                "{:.6g}, {:.6g}) nm",
+                                "abc"[i], edge[i][0], edge[i][1], edge[i][2]),
+                    where,
+                    "Catena has rectangular boxes only: set one by "
+                    "system.setDefaultPeriodicBoxVectors and serialise the System again");
+}
+
 /// True if a bond of the chain that begins with particle `first` stays a force.
 bool has_cut(PdbChain const& chain, int first, Joinings const& joinings) {
     for (int p = first + 1; p < first + static_cast<int>(chain.size()); ++p)
@@ -109,6 +149,8 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     std::string const where = openmm_key(scene_file, "system");
     SystemLinks links;
     auto const system = read_scene_system(spec, scene_file, links.notes);
+    refuse_triclinic(*system, where);
+    links.screening = screening_of(*system);
     links.periodic = system->usesPeriodicBoundaryConditions();
     Joinings const joinings(*system, changes_of(spec).links, where);
     links.to_previous.resize(static_cast<std::size_t>(system->getNumParticles()));
@@ -117,9 +159,14 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     return links;
 }
 
+std::optional<Screening> read_screening(std::string const& file, std::string const& where) {
+    return screening_of(*read_openmm_system(file, where));
+}
+
 BondedChains chains_by_bonds(OpenMmSpec const& spec, std::string const& name) {
     std::vector<std::string> ignored;
     auto const system = read_scene_system(spec, name, ignored);
+    refuse_triclinic(*system, openmm_key(name, "system"));
     Joinings const joinings(*system, changes_of(spec).links, openmm_key(name, "system"));
     BondedChains chains;
     for (int p = 0; p < system->getNumParticles(); ++p) {
@@ -156,6 +203,7 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     std::string const where = openmm_key(scene_file, "system");
     ImportedSystem imported;
     auto const system = read_scene_system(spec, scene_file, imported.notes);
+    refuse_triclinic(*system, where);
     std::optional<Vec3> cell;
     auto whole = read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"),
                                    &imported.notes, &cell);
@@ -181,9 +229,11 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
         imported.chains.push_back(import_chain(chain, first, *system, joinings, links, where));
         first += static_cast<int>(chain.size());
     }
-    for (auto const& notes : {links.notes(), note_rings(chains, joinings, spec.temperature)})
+    for (auto const& notes : {links.notes(), note_rings(chains, joinings, spec.temperature),
+                              note_joined(chains, joinings, spec.temperature)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.largest_spread = links.largest_spread();
+    imported.screening = screening_of(*system);
     return imported;
 }
 

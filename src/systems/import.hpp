@@ -24,6 +24,12 @@ struct ImportedChain {
     std::vector<double> length;
 };
 
+/// Screened Coulomb energy between unit charges: prefactor exp(-kappa r) / r.
+struct Screening {
+    double prefactor;  // kJ nm/mol
+    double kappa;      // 1/nm, inverse Debye length
+};
+
 /// All chains of a System with its box.
 struct ImportedSystem {
     /// Chains of the topology, in its order.
@@ -37,6 +43,8 @@ struct ImportedSystem {
     /// Largest thermal spread of the soft springs that links replace, relative to their length; 0
     /// if there are none.
     double largest_spread = 0;
+    /// Screening of the System's charges, if that is recognised.
+    std::optional<Screening> screening;
 };
 
 /// The links of a System between consecutive particles, for chains that the scene writes itself.
@@ -47,6 +55,8 @@ struct SystemLinks {
     std::vector<Joining> to_previous;
     /// Sentences on what was left out.
     std::vector<std::string> notes;
+    /// Screening of the System's charges, if that is recognised.
+    std::optional<Screening> screening;
 };
 
 /// Imports the chains of the topology; particles and atoms have the same order. Neighbours in a
@@ -81,6 +91,11 @@ struct OpenMmState {
 /// Reads a serialised State. Throws InputError for another file and for a State without positions;
 /// `where` is the place in messages. A build without OpenMM throws "built without OpenMM".
 OpenMmState read_openmm_state(std::string const& file, std::string const& where);
+
+/// Returns the screening of the charges of a serialised System, if that is recognised. Throws
+/// InputError for a file that cannot be read; `where` is the place in messages. A build without
+/// OpenMM throws "built without OpenMM".
+std::optional<Screening> read_screening(std::string const& file, std::string const& where);
 
 /// Names a key in messages: "scene.yaml: forces.openmm.system".
 inline std::string openmm_key(std::string const& scene_file, std::string const& key) {

@@ -4,6 +4,7 @@
 #include <OpenMM.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,10 +46,20 @@ inline constexpr int force_groups_of_openmm = 32;
 /// Class name of the force, e.g. "CustomNonbondedForce".
 std::string kind_of(OpenMM::Force const&);
 
-/// Names of the given forces of a System, all different. Characters with a meaning in tables, pages
-/// or terminals are replaced. Names given by the user are kept. Otherwise yukawa and ashbaugh-hatch
-/// are recognised by the expression, and other forces have their class name.
+/// Name of a force in tables and messages: the user's, else yukawa or ashbaugh-hatch where the
+/// expression is recognised, else its kind. Characters with a meaning in tables, pages or terminals
+/// are replaced.
+std::string shown_name(OpenMM::Force const&);
+
+/// Names of the given forces of a System: those of shown_name(), numbered where they are equal.
 std::vector<std::string> term_names(OpenMM::System const&, std::vector<int> const& forces);
+
+/// Returns the particles' charges if the force has any: those of a NonbondedForce, or a parameter
+/// named q, Q or charge.
+std::vector<double> charges_of(OpenMM::Force const&);
+/// Returns the screening of the first CustomNonbondedForce whose energy between two charges is
+/// exp(-kappa r)/r times a prefactor; nothing if the System has none or no particle is charged.
+std::optional<Screening> screening_of(OpenMM::System const&);
 
 /// Reads the whole serialised System in `file`. `where` is the scene file and key in messages.
 /// Throws InputError with one line; for a System that this OpenMM cannot read it names both
@@ -59,7 +70,7 @@ std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file,
 /// Reads the serialised Force in `file`. Throws InputError like read_openmm_system().
 std::unique_ptr<OpenMM::Force> read_openmm_force(std::string const& file, std::string const& where);
 
-/// True if the name is the force's own or that of its kind.
+/// True if the name is the force's own, the one that `check` shows, or that of its kind.
 bool is_named(OpenMM::Force const&, std::string const& name);
 /// Links in the place of custom bonds: names or kinds of forces with lengths, nm
 /// (ForceChanges::links).

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <set>
 
 #include "error.hpp"
 #include "scene/force_changes.hpp"
@@ -54,49 +57,77 @@ void refuse_particles(OpenMM::System const& system, std::string const& where) {
             throw InputError(fmt::format("particle {} (from 0) is a virtual site", p), where,
                              "leave virtual sites out: every particle is a bead with a mass");
         double const mass = system.getParticleMass(p);
-        if (!(mass > 0))
+        if (mass == 0)
             throw InputError(fmt::format("particle {} (from 0) has no mass", p), where,
                              "give it one: every particle is a bead that moves");
-        if (!std::isfinite(mass))
+        if (!(mass > 0 && std::isfinite(mass)))
             throw InputError(fmt::format("particle {} (from 0) has mass {}", p, mass), where,
-                             "give it one in amu");
+                             "give it one above 0, in amu");
     }
 }
 
-/// Names of the System's forces for messages: their own names or kinds.
+/// Name of a force for messages: "yukawa (CustomNonbondedForce)", or its kind alone.
+std::string label_of(OpenMM::Force const& force) {
+    std::string const name = shown_name(force), kind = kind_of(force);
+    return name == kind ? kind : fmt::format("{} ({})", name, kind);
+}
+
+/// Names of the System's forces for messages.
 std::string names_of(OpenMM::System const& system, bool custom_bonds_only) {
     std::vector<std::string> names;
     for (int i = 0; i < system.getNumForces(); ++i) {
         OpenMM::Force const& force = system.getForce(i);
         if (custom_bonds_only && dynamic_cast<OpenMM::CustomBondForce const*>(&force) == nullptr)
             continue;
-        std::string const name =
-            scene::shown(force.getName().empty() ? kind_of(force) : force.getName());
+        std::string const name = custom_bonds_only ? shown_name(force) : label_of(force);
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Removes the forces with one of these names and returns a sentence on each.
+/// Indices of the forces that an entry of `leave_out` names. `terms` are the names that `check`
+/// shows.
+std::vector<int> forces_named(OpenMM::System const& system, std::vector<std::string> const& terms,
+                              std::string const& name) {
+    std::vector<int> found;
+    for (int i = 0; i < system.getNumForces(); ++i)
+        if (is_named(system.getForce(i), name) || terms[static_cast<std::size_t>(i)] == name)
+            found.push_back(i);
+    return found;
+}
+
+/// Sentence on the forces that one entry of `leave_out` removes.
+std::string note_on(OpenMM::System const& system, std::vector<int> const& forces,
+                    std::string const& name) {
+    if (forces.size() == 1)
+        return fmt::format("The System's {} is left out by `leave_out`.",
+                           label_of(system.getForce(forces[0])));
+    std::vector<std::string> labels;
+    for (int const i : forces) labels.push_back(label_of(system.getForce(i)));
+    return fmt::format("{} forces of the System are left out by `leave_out: [{}]`: {}.",
+                       forces.size(), scene::shown(name), fmt::join(labels, ", "));
+}
+
+/// Removes the forces with one of these names and returns a sentence on each name.
 std::vector<std::string> leave_named_out(OpenMM::System& system,
                                          std::vector<std::string> const& names,
                                          std::string const& scene_file) {
+    std::vector<int> all(static_cast<std::size_t>(names.empty() ? 0 : system.getNumForces()));
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<std::string> const terms = term_names(system, all);
     std::vector<std::string> notes;
+    std::set<int, std::greater<>> removed;  // removals shift later indices
     for (std::string const& name : names) {
-        std::size_t const before = notes.size();
-        for (int i = system.getNumForces() - 1; i >= 0; --i) {
-            OpenMM::Force const& force = system.getForce(i);
-            if (!is_named(force, name)) continue;
-            notes.push_back(
-                fmt::format("The System's {} is left out by `leave_out`.", kind_of(force)));
-            system.removeForce(i);
-        }
-        if (notes.size() == before)
+        std::vector<int> const found = forces_named(system, terms, name);
+        if (found.empty())
             throw InputError(
                 fmt::format("the System has no force `{}`", scene::shown(name)),
                 openmm_key(scene_file, "leave_out"),
                 fmt::format("name a force or a kind of force: {}", names_of(system, false)));
+        notes.push_back(note_on(system, found, name));
+        removed.insert(found.begin(), found.end());
     }
+    for (int const i : removed) system.removeForce(i);
     return notes;
 }
 
@@ -121,7 +152,7 @@ void refuse_unknown_links(OpenMM::System const& system, NamedLinks const& links,
 }  // namespace
 
 bool is_named(OpenMM::Force const& force, std::string const& name) {
-    return force.getName() == name || kind_of(force) == name;
+    return force.getName() == name || kind_of(force) == name || shown_name(force) == name;
 }
 
 double named_length(NamedLinks const& links, OpenMM::Force const& force) {

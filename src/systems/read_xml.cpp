@@ -38,11 +38,9 @@ std::string read_text(std::string const& file, std::string const& where, char co
     double const needed = bytes_a_character * static_cast<double>(size);
     auto const present = static_cast<double>(memory_limit());
     if (needed > present)
-        throw InputError(
-            fmt::format(
-                "reading {} needs about {:.3g} GB of memory, and only {:.3g} GB are available",
-                scene::shown_path(file), needed * 1e-9, present * 1e-9),
-            where, "use a machine with more memory");
+        throw InputError(fmt::format("reading {} needs about {:.3g} GB of memory, and only {}",
+                                     scene::shown_path(file), needed * 1e-9, available_memory()),
+                         where, "use a machine with more memory, or raise that limit");
     std::string text(static_cast<std::size_t>(size), '\0');
     in.seekg(0);
     in.read(text.data(), size);

@@ -365,7 +365,7 @@ std::unique_ptr<System> system_of(Subset const& subset, System const& whole) {
 std::unique_ptr<System> system_of(Subset const& subset, System const& whole,
                                   std::vector<int> const& forces) {
     auto system = std::make_unique<System>();
-    Vec3 a, b, c;
+    OpenMM::Vec3 a, b, c;
     whole.getDefaultPeriodicBoxVectors(a, b, c);
     system->setDefaultPeriodicBoxVectors(a, b, c);
     for (int p : subset.particles) system->addParticle(whole.getParticleMass(p));

@@ -199,29 +199,6 @@ std::vector<std::string> name_terms(System& system) {
     return names;
 }
 
-/// Returns the particles' charges if the force has any: those of a NonbondedForce, or a parameter
-/// named q, Q or charge.
-std::vector<double> charges_of(OpenMM::Force const& force) {
-    std::vector<double> charges, parameters;
-    if (auto const* nonbonded = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
-        for (int p = 0; p < nonbonded->getNumParticles(); ++p) {
-            double charge, sigma, epsilon;
-            nonbonded->getParticleParameters(p, charge, sigma, epsilon);
-            charges.push_back(charge);
-        }
-    auto const* custom = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force);
-    for (int i = 0;
-         custom != nullptr && charges.empty() && i < custom->getNumPerParticleParameters(); ++i) {
-        std::string const& name = custom->getPerParticleParameterName(i);
-        if (name != "q" && name != "Q" && name != "charge") continue;
-        for (int p = 0; p < custom->getNumParticles(); ++p) {
-            custom->getParticleParameters(p, parameters);
-            charges.push_back(parameters[static_cast<std::size_t>(i)]);
-        }
-    }
-    return charges;
-}
-
 /// Notes the chains' net charges by the first force with charges; no note if no particle is
 /// charged.
 std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const& beads) {

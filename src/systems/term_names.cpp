@@ -48,8 +48,9 @@ bool is_ashbaugh_hatch(std::string const& energy) {
            has(energy, "step(") && has(energy, "(1-l");
 }
 
-/// Returns the name given by the user, else the name of the expression, else the kind of the force.
-std::string own_name(OpenMM::Force const& force) {
+}  // namespace
+
+std::string shown_name(OpenMM::Force const& force) {
     std::string const kind = kind_of(force), given = harmless(force.getName());
     if (!given.empty() && given != kind) return given;
     auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force);
@@ -60,14 +61,12 @@ std::string own_name(OpenMM::Force const& force) {
     return is_screened(energy) ? "yukawa" : kind;
 }
 
-}  // namespace
-
 std::vector<std::string> term_names(OpenMM::System const& system, std::vector<int> const& forces) {
     std::vector<std::string> names;
     std::vector<std::string> taken{"potential", "kinetic", "total", "gravity",
                                    "springs",   "fixman"};  // columns that the run itself writes
     for (int const i : forces) {
-        std::string const name = own_name(system.getForce(i));
+        std::string const name = shown_name(system.getForce(i));
         std::string unique = name;
         for (int n = 2; std::find(taken.begin(), taken.end(), unique) != taken.end(); ++n)
             unique = name + ' ' + std::to_string(n);

@@ -1,4 +1,5 @@
 // `catena analyse` and `catena convert` from outside.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -110,7 +111,8 @@ TEST_F(Trajectories, OtherFilesAreNoTrajectories) {
                    "the trajectory.h5md in it");
     write("cut", {0, 10, 20});
     std::filesystem::resize_file(folder_ / "cut/trajectory.h5md", 3000);
-    expect_refused(in_folder({"analyse", "cut"}), 2, "(cut/trajectory.h5md)");
+    expect_refused(in_folder({"analyse", "cut"}), 2,
+                   "the trajectory was cut, its end is missing (cut/trajectory.h5md)");
     write("other", {0, 10});
     std::filesystem::copy_file(folder_ / "other/topology.pdb", folder_ / "kept.pdb");
     write_run(folder_ / "other", topology_of({5}), {0});
@@ -228,9 +230,41 @@ TEST_F(Trajectories, MembersOfAComplexAreChainsIfAskedFor) {
         EXPECT_EQ(whole.out.find(name), std::string::npos) << name;
     Ended const members = in_folder({"analyse", "run", "--members"});
     expect_good(members);
-    EXPECT_NE(members.out.find("2 x H+L of 6 sites"), std::string::npos) << members.out;
+    EXPECT_NE(members.out.find("2 x H+L:H and L of 6 sites"), std::string::npos) << members.out;
     EXPECT_NE(members.out.find("end_to_end_distance"), std::string::npos);
     EXPECT_EQ(members.out.find("--members takes"), std::string::npos);
+}
+
+/// A ring of sites that moves as one.
+TEST_F(Trajectories, AChainWhoseSizeDoesNotVaryIsNoted) {
+    std::filesystem::create_directories(folder_ / "rigid");
+    auto const trajectory =
+        make_trajectory(folder_ / "rigid/trajectory.h5md", topology_of({12}), false, false, {});
+    for (std::int64_t const step : {0, 1, 2}) {
+        Frame frame;
+        frame.step = step;
+        for (int k = 0; k < 12; ++k)
+            frame.positions.push_back(
+                {{std::cos(0.6 * k) + static_cast<double>(step), std::sin(0.6 * k), 0.1 * k}});
+        trajectory->write(frame);
+    }
+    trajectory->close();
+    Ended const e = in_folder({"analyse", "rigid"});
+    expect_good(e);
+    EXPECT_NE(e.out.find("% only, as in a folded chain or a short run: its scaling exponent and "
+                         "persistence length do not describe a flexible chain"),
+              std::string::npos)
+        << e.out;
+    write("flexible", {0, 10, 20, 30, 40});
+    EXPECT_EQ(in_folder({"analyse", "flexible"}).out.find("folded chain"), std::string::npos);
+}
+
+TEST_F(Trajectories, EndingsMayBeInCapitals) {
+    write("run", {0, 10});
+    expect_good(in_folder({"convert", "run", "RUN.XTC"}));
+    expect_good(in_folder({"convert", "run", "RUN.DCD"}));
+    EXPECT_TRUE(is_there("RUN.XTC"));
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "RUN.DCD"), 92U + 172 + 12 + 2 * 3 * 104);
 }
 
 TEST_F(Trajectories, ARestartedRunLosesNoFrame) {

@@ -5,6 +5,8 @@ The radius of gyration, the potential energy and the kinetic temperature of each
 if the bias of the radius is below 1 % and that of the temperature below 1 %, and shown if that holds with two standard errors more (as in
 `catena bench sampling`). Runs whose verdict is INVALID are not usable."""
 import argparse
+import concurrent.futures
+import itertools
 import json
 import os
 import subprocess
@@ -65,10 +67,12 @@ def main():
     parser.add_argument("--temperature", type=float, default=300, help="of the scene, K (default: 300)")
     parser.add_argument("--friction", type=float, default=0.01, help="1/ps (default: 0.01)")
     parser.add_argument("--backend", default="", help="of Catena (default: auto)")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs at a time; speeds are then those of runs beside each other (default: 1)")
     parser.add_argument("--output", default="domain-steps", help="folder of the runs")
     parser.add_argument("--json", help="file for the rows")
     asked = parser.parse_args()
-    rows = [run(asked, step) for step in sorted(float(word) for word in asked.steps.split(","))]
+    with concurrent.futures.ProcessPoolExecutor(max_workers=asked.jobs) as pool:
+        rows = list(pool.map(run, itertools.repeat(asked), sorted(float(word) for word in asked.steps.split(","))))
     print("| step | radius of gyration (nm) | bias | temperature (K) | bias | ns/day of a copy | verdict | usable |\n| --- | --- | --- | --- | --- | --- | --- | --- |")
     for row in rows:
         found = row["biases_percent"] = biases(row, rows[0], asked.temperature)
@@ -80,7 +84,7 @@ def main():
               f"{'shown' if row['shown'] else 'yes' if row['usable'] else 'no'} |")
     if asked.json:
         with open(asked.json, "w", encoding="utf-8") as file:
-            json.dump({"bench": "steps of rigid domains", "scene": os.path.relpath(asked.scene, ROOT), "copies": asked.copies, "box_nm": asked.box,
+            json.dump({"bench": "steps of rigid domains", "scene": os.path.relpath(asked.scene, ROOT), "command": " ".join(["python3", "tests/bench/domain_steps.py", *sys.argv[1:]]), "runs_at_a_time": asked.jobs, "copies": asked.copies, "box_nm": asked.box,
                        "friction": asked.friction, "discard_ps": asked.discard, "results": rows, "valid": any(row["usable"] for row in rows)}, file, indent=1)
 
 

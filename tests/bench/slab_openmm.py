@@ -6,9 +6,9 @@ with LangevinMiddleIntegrator from the same start, and analyses both trajectorie
 seeds, each with a start of its own. A slab relaxes in tens of nanoseconds: blocks of one run underestimate the error of its profile, so that errors
 are those of the mean difference between the pairs of runs. VALID: energies of all starts agree to 1e-4, and the mean over the bins of the squared mean
 difference over its squared error is no larger than for all but 1 % of the ways to exchange the two programs within pairs.
-Needs OpenMM; the comparison needs h5py, numpy and matplotlib. --only splits the work between machines."""
+Needs OpenMM; the comparison needs h5py, numpy and matplotlib. --only splits the work between machines, --jobs runs seeds beside each other."""
 import argparse
-import array
+import concurrent.futures
 import csv
 import itertools
 import json
@@ -129,7 +129,10 @@ def run_openmm(asked, seed):
     system = make_system(openmm, beads)
     integrator = openmm.LangevinMiddleIntegrator(TEMPERATURE, FRICTION, STEP)
     integrator.setRandomNumberSeed(seed)
-    context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(asked.platform))
+    # Processes that compile kernels beside each other must not share OpenMM's folders for them.
+    os.environ["OPENMM_CACHE_DIR"] = os.path.abspath(folder)
+    properties = {"TempDirectory": os.path.abspath(folder)} if asked.platform == "CUDA" else {}
+    context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName(asked.platform), properties)
     context.setPositions([openmm.Vec3(*at) for _, _, at in beads])
     energy = context.getState(getEnergy=True, groups={1, 2}).getPotentialEnergy()._value
     context.setVelocitiesToTemperature(TEMPERATURE, seed)
@@ -139,7 +142,7 @@ def run_openmm(asked, seed):
             if step:
                 integrator.step(asked.every)
             state = context.getState(getPositions=True)
-            array.array("f", [x for at in state.getPositions()._value for x in at]).tofile(to)
+            state.getPositions(asNumpy=True)._value.astype("float32").tofile(to)
             frames.append(step)
             if len(frames) % 50 == 0:
                 print(f"OpenMM, step {step} of {asked.steps}, {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
@@ -230,16 +233,25 @@ def chance(differences):
     return sum(value >= real * (1 - 1e-12) for value in found) / len(ways)
 
 
-def compare(asked):
-    """Analyses all runs, writes the comparison, and returns whether it is VALID."""
-    pairs = [compare_pair(asked, seed) for seed in asked.seeds]
+def run_pair(asked, seed):
+    """Carries out what is asked for of a seed; returns the comparison of its two runs, if that is."""
+    os.makedirs(folder_of(asked, seed), exist_ok=True)
+    if asked.only in (None, "catena"):
+        run_catena(asked, seed)
+    if asked.only in (None, "openmm"):
+        run_openmm(asked, seed)
+    return compare_pair(asked, seed) if asked.only in (None, "compare") else None
+
+
+def compare(asked, pairs):
+    """Compares the pairs of runs, writes the comparison, and returns whether it is VALID."""
     bins = [paired(pairs, lambda run, k=k: run["profile"][k]) for k in range(len(pairs[0]["z"]))]
     compared = [k for k, each in enumerate(bins) if each["catena"][0] + each["openmm"][0] > LEAST]
     differences = [[pair["catena"]["profile"][k] - pair["openmm"]["profile"][k] for k in compared] for pair in pairs]
     square, likely = mean_square(differences), chance(differences)
     apart = max(pair["energies_apart"] for pair in pairs)
     numbers = {name: paired(pairs, lambda run, name=name: run["quantities"][name]) for name in QUANTITIES}
-    found = {"bench": "slab beside OpenMM", "scene": "inputs/hnrnpa1-slab.yaml", "steps": asked.steps, "step_ps": STEP, "frames_every": asked.every,
+    found = {"bench": "slab beside OpenMM", "scene": "inputs/hnrnpa1-slab.yaml", "steps": asked.steps, "step_ps": STEP, "pairs_at_a_time": asked.jobs, "frames_every": asked.every,
              "command": " ".join(["python3", "tests/bench/slab_openmm.py", *sys.argv[1:]]), "pairs": pairs, "profiles": bins, "quantities": numbers,
              "bins_compared": len(compared), "mean_square": square, "chance": likely,
              "valid": bool(all(pair["catena"]["valid"] for pair in pairs) and apart < 1e-4 and likely > 0.01)}
@@ -266,6 +278,7 @@ def main():
     parser.add_argument("--backend", default="", help="of Catena (default: auto)")
     parser.add_argument("--platform", default="CUDA", help="of OpenMM (default: CUDA)")
     parser.add_argument("--output", default="slab-beside-openmm", help="folder of both runs")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="pairs at a time; speeds are then those of runs beside each other (default: 1)")
     parser.add_argument("--only", choices=("catena", "openmm", "compare"), help="only one of the three parts")
     parser.add_argument("--json", help="file for the comparison")
     parser.add_argument("--picture", help="file for the profiles")
@@ -274,14 +287,10 @@ def main():
         parser.error("--seeds is 8 to 12: fewer pairs cannot show a difference at 1 %, more have too many ways to be exchanged")
     asked.steps -= asked.steps % asked.every
     asked.seeds = range(1, asked.seeds + 1)
-    for seed in asked.seeds:
-        os.makedirs(folder_of(asked, seed), exist_ok=True)
-        if asked.only in (None, "catena"):
-            run_catena(asked, seed)
-        if asked.only in (None, "openmm"):
-            run_openmm(asked, seed)
+    with concurrent.futures.ProcessPoolExecutor(max_workers=asked.jobs) as pool:
+        pairs = list(pool.map(run_pair, itertools.repeat(asked), asked.seeds))
     if asked.only in (None, "compare"):
-        sys.exit(0 if compare(asked) else 1)
+        sys.exit(0 if compare(asked, pairs) else 1)
 
 
 if __name__ == "__main__":

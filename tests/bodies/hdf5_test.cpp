@@ -80,6 +80,28 @@ TEST_F(Hdf5Bodies, are_those_of_the_list) {
     EXPECT_EQ(from_file.chains[0].velocities, StartVelocities::given);
 }
 
+TEST_F(Hdf5Bodies, cylindrical_and_planar3_are_those_of_the_list) {
+    type_numbers_ = {9, 8, 2};
+    data_.erase("pitch");
+    data_["q"] = {{3, 4}, {0.1, 0.2, 0.3, 7, 0.3, 0.4, 7, 7, 0.6, 0, 0.8, 0}};
+    data_["wrench"].second.assign(18, 0);
+    Scene const from_file = parse_scene(write(), "s.yaml");
+    Scene const from_list = parse_scene(
+        "chains: [{base: fixed, bodies: ["
+        "{mass: 1, inertia: [1, 2, 2.5], joint: {type: planar3, axes: [[1, 0, 0], [0, 2, 0]], q: "
+        "[0.1, 0.2, 0.3], qd: [1, 2, 7], stiffness: [1, 2, 7]}},"
+        "{mass: 2, com: [0.5, 0, 0], inertia: [[1, 0.1, 0], [0.1, 1, 0], [0, 0, 1]], wrench: {}, "
+        "joint: {type: cylindrical, axis: [0, 0, 3], translation: [1, 0, 0], q: [0.3, 0.4], qd: "
+        "[3, 7], stiffness: [3, 7]}},"
+        "{mass: 3, com: [0, 0, 1], inertia: [1, 1, 1], joint: {type: spherical, translation: [0, "
+        "1, 0], q: [0.6, 0, 0.8, 0], qd: [4, 5, 6], stiffness: [4, 5, 6]}}]}]",
+        "s.yaml");
+    EXPECT_EQ(from_file.hash, from_list.hash);
+    data_["first_axis"].second[1] = 0.1;
+    EXPECT_EQ(refusal(), "the two axes are not perpendicular" + at("first_axis", 1) +
+                             "give a direction in the plane, then its normal");
+}
+
 TEST_F(Hdf5Bodies, types_by_number_and_defaults) {
     type_numbers_ = {0, 3, 5};
     base_ = "free";
@@ -211,11 +233,12 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
     types_[1] = "free";
     EXPECT_EQ(refusal(), "a free joint inside a chain" + at("joint_type", 2) +
                              "use it for body 1 of a chain with `base: free`");
-    type_numbers_ = {4, 7, 8};
+    type_numbers_ = {4, 7, 10};
     EXPECT_EQ(
         refusal(),
-        "8 is not a joint type" + at("joint_type", 3) +
-            "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 prismatic, 7 helical");
+        "10 is not a joint type" + at("joint_type", 3) +
+            "use 0 free, 2 spherical, 3 revolute, 4 universal, 5 weld, 6 prismatic, 7 helical, 8 "
+            "cylindrical, 9 planar3");
     type_numbers_ = {0, 7, 2};
     EXPECT_EQ(refusal(), "a free joint on a fixed base" + at("joint_type", 1) +
                              "write `base: free`, or give joint 1 another type");

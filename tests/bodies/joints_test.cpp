@@ -53,6 +53,40 @@ TEST(Joints, every_type) {
     EXPECT_TRUE(b.driven.empty() && b.drag.empty() && b.carried.offset.empty());
 }
 
+TEST(Joints, cylindrical_and_planar3) {
+    BodyArrays const b =
+        chain_of(list_of({"{type: cylindrical, axis: [0, 0, 2], q: [0.1, 0.2], qd: [1, 2], torque: "
+                          "[3, 4], stiffness: [5, 6], damping: [7, 8], rest: [0.3, 0.4]}",
+                          "{type: planar3, axes: [[2, 0, 0], [0, 0, 3]], q: [0.1, 0.2, 0.3], qd: "
+                          "[1, 2, 3], torque: [4, 5, 6], stiffness: [7, 8, 9], rest: [0.4, 0.5, "
+                          "0.6]}",
+                          "{type: cylindrical, axis: [1, 0, 0], motion: [{rate: 1}, {offset: 0.5, "
+                          "rate: 2}]}"}))
+            .bodies;
+    EXPECT_EQ(b.joint, (std::vector<JointType>{JointType::cylindrical, JointType::planar3,
+                                               JointType::cylindrical}));
+    EXPECT_EQ(b.axis[0][2], 1);
+    EXPECT_EQ(b.q[0], (std::array<double, 4>{0.1, 0.2, 0, 0}));
+    EXPECT_EQ(b.rest[0], (std::array<double, 4>{0.3, 0.4, 0, 0}));
+    EXPECT_TRUE(b.stiffness[0][1] == 6 && b.damping[0][1] == 8 && b.torque[0][1] == 4);
+    EXPECT_TRUE(b.first_axis[1][0] == 1 && b.axis[1][2] == 1);
+    EXPECT_EQ(b.q[1], (std::array<double, 4>{0.1, 0.2, 0.3, 0}));
+    EXPECT_EQ(b.rest[1], (std::array<double, 4>{0.4, 0.5, 0.6, 0}));
+    EXPECT_TRUE(b.qd[1][2] == 3 && b.torque[1][2] == 6 && b.stiffness[1][2] == 9);
+    ASSERT_EQ(b.driven.size(), 1u);
+    EXPECT_EQ(b.driven[0].course[1].rate, 2);
+    EXPECT_TRUE(b.q[2][1] == 0.5 && b.qd[2][0] == 1 && b.qd[2][1] == 2);
+}
+
+/// The direction of the first translation is made perpendicular to the normal to rounding.
+TEST(Joints, planes_are_level_to_rounding) {
+    BodyArrays const b =
+        chain_of(list_of({"{type: planar3, axes: [[1, 2, 2.0000003], [2, 1, -2]]}"})).bodies;
+    EXPECT_LE(std::abs(dot(b.first_axis[0], b.axis[0])), 4e-16);
+    EXPECT_NEAR(norm(b.first_axis[0]), 1, 4e-16);
+    EXPECT_NEAR(b.first_axis[0][0], 1.0 / 3, 1e-6);
+}
+
 TEST(Joints, arrays_of_what_there_is_not_stay_empty) {
     BodyArrays const b =
         chain_of(list_of({"{type: spherical}", "{type: revolute, axis: [0, 0, 1]}"})).bodies;
@@ -139,6 +173,21 @@ TEST(Joints, handle_kinds_and_degrees_of_freedom) {
         {{ball, cross}, "", universal, 5},
         {{ball, cross, "{type: prismatic, axis: [1, 0, 0]}"}, "", revolute, 6},
         {{"{type: helical, axis: [1, 0, 0], pitch: 1}"}, "", revolute, 1},
+        {{ball, "{type: cylindrical, axis: [1, 0, 0]}"}, "", revolute, 5},
+        {{ball, "{type: planar3, axes: [[1, 0, 0], [0, 0, 1]]}"}, "", revolute, 6},
+        {{"{type: planar3, axes: [[1, 0, 0], [0, 0, 1]]}", z, z}, "", revolute, 5},
+        {{"{type: planar3, axes: [[1, 0, 0], [0, 0, 1]]}", z, z},
+         "tip: {joint: {type: revolute, axis: [0, 0, 1]}}",
+         revolute,
+         3},
+        {{z, z, "{type: weld, translation: [1, 0, 0]}"},
+         "tip: {joint: {type: planar3, axes: [[1, 0, 0], [0, 0, 1]]}}",
+         full,
+         2},
+        {{z, z},
+         "tip: {joint: {type: cylindrical, axis: [0, 0, 1], translation: [1, 0, 0]}}",
+         revolute,
+         0},
         {{ball, "{type: weld}"}, "", full, 3},
         {{ball, "{type: revolute, axis: [1, 0, 0], motion: {rate: 1}}"}, "", full, 3},
         {{ball, "{type: spherical, translation: [0, 1, 0]}"},

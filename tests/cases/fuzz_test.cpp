@@ -113,6 +113,8 @@ TEST(Memory, IsJudgedForAllChainsTogether) {
         {"sh", "-c", "ulimit -v 2000000; exec \"$0\" check s.yaml", program()}, folder.path());
     expect_refused(e, 2, "chains[1]");
     EXPECT_NE(e.err.find("the chains up to this one need about"), std::string::npos) << e.err;
+    EXPECT_NE(e.err.find("and only 2.05 GB are allowed by `ulimit -v`"), std::string::npos)
+        << e.err;
 }
 
 }  // namespace

@@ -252,6 +252,15 @@ TEST(Slips, FrozenWaterAndCelsiusAreNoted) {
     EXPECT_FALSE(holds(at("370"), "boils"));
 }
 
+/// Beyond the warmest water the refusal is the only line.
+TEST(Slips, WaterThatIsTooHotIsRefusedInOneLine) {
+    TemporaryFolder const folder;
+    expect_refused(catena({"run", case_file("22-slips-of-the-pen/temperatures.yaml"), "--set",
+                           "dynamics.temperature=1000", "--set", "forces.openmm.temperature=1000",
+                           "--output", folder / "o"}),
+                   2, "the permittivity of water, which scales the electrostatics, is not known");
+}
+
 /// Nothing depends on water where nothing is charged.
 TEST(Slips, UnchargedBeadsMayBeCold) {
     Ended const e = catena({"check", input("polymer-melt.yaml"), "--set", "chains[0].sequence=XX",

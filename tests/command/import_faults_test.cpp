@@ -1,5 +1,6 @@
 // `catena import`: files of a folder that contradict each other or themselves are refused or noted,
 // with the file, the key and the number that do not fit.
+#include "structure/calvados2.hpp"
 #include "tests/command/package_folder.hpp"
 #include "tests/command/tool_folder.hpp"
 
@@ -77,6 +78,152 @@ TEST_F(ToolFolder, RefusalsNameTheImportedFileAndNoScene) {
     write_state("state.xml");
     expect_refused(import({"--leave-out", "Walls"}), 2, "(--leave-out)");
     expect_refused(import({"--links", "Walls=1"}), 2, "(--links)");
+}
+
+TEST_F(ToolFolder, AnIntegratorThatIsNotKnownIsRefused) {
+    write_pdb("start.pdb", beads, 10);
+    write("integrator.xml",
+          "<?xml version=\"1.0\" ?>\n<Integrator friction=\".5\" stepSize=\".01\" "
+          "temperature=\"300\" type=\"FooIntegrator\" version=\"1\"/>\n");
+    expect_refused(import(), 2,
+                   "`FooIntegrator` is no integrator that is known (mine/integrator.xml)");
+    serialize(OpenMM::NoseHooverIntegrator(300, 1, 0.001), "Integrator", "integrator.xml");
+    expect_noted("what else that integrator does is not taken over");
+}
+
+/// A folder of twelve beads whose System a test changes.
+class ChangedSystem : public ToolFolder {
+  protected:
+    OpenMM::System system;
+    void SetUp() override {
+        ToolFolder::SetUp();
+        auto* bonds = new OpenMM::HarmonicBondForce;
+        for (int p = 0; p < beads; ++p) {
+            system.addParticle(100);
+            if (p > 0) bonds->addBond(p - 1, p, 0.38, 8033);
+        }
+        system.addForce(bonds);
+        save();
+        write_pdb("start.pdb", beads, 3.8);
+    }
+    void save() const { serialize(system, "System", "system.xml"); }
+    /// Charges that act as in water of that temperature, at 0.15 mol/l.
+    void add_yukawa(double temperature) {
+        calvados2::Yukawa const y = calvados2::yukawa(temperature, 0.15);
+        auto* force = new OpenMM::CustomNonbondedForce("A*charge1*charge2*exp(-r/D)/r");
+        force->addGlobalParameter("A", y.prefactor);
+        force->addGlobalParameter("D", 1 / y.kappa);
+        force->addPerParticleParameter("charge");
+        for (int p = 0; p < beads; ++p) force->addParticle({p % 2 == 0 ? 1.0 : 0.0});
+        for (int p = 1; p < beads; ++p) force->addExclusion(p - 1, p);
+        system.addForce(force);
+        save();
+    }
+    void save_integrator(double temperature, double step) const {
+        serialize(OpenMM::LangevinMiddleIntegrator(temperature, 0.5, step), "Integrator",
+                  "integrator.xml");
+    }
+    void expect_no_note(std::string const& part) const {
+        Ended const e = import();
+        EXPECT_EQ(e.status, 0) << e.err;
+        EXPECT_EQ(e.out.find(part), std::string::npos) << e.out;
+    }
+};
+
+TEST_F(ChangedSystem, LongStepsAreNotedAsThoseOfBuiltModels) {
+    save_integrator(300, 0.06);
+    expect_no_note("dynamics.step is");
+    save_integrator(300, 0.1);
+    expect_noted("dynamics.step is 100 fs: steps up to 60 fs were shown");
+    save_integrator(300, 0.3);
+    expect_noted("dynamics.step is 0.3 ps, that is 300 fs: steps of such chains are 0.01 to 0.06");
+    for (int p = 0; p < beads; ++p) system.setParticleMass(p, 1);
+    save();
+    save_integrator(300, 0.02);
+    expect_noted(
+        "steps up to 60 fs were shown for residues, which are 7.9 fs for the System's beads of 1 "
+        "amu on links of 0.38 nm.");
+}
+
+TEST_F(ChangedSystem, WaterOfAnotherTemperatureIsNoted) {
+    add_yukawa(293);
+    save_integrator(298, 0.01);
+    expect_no_note("water");
+    save_integrator(340, 0.01);
+    expect_noted(
+        "the System's charges act as in water at 293 K (permittivity 80.31), the run is at 340 K");
+    save_integrator(400, 0.01);
+    expect_noted("water boils at 400 K, and the System's charges act as in water.");
+}
+
+TEST_F(ChangedSystem, AChainThatTheTopologyCutsIsNoted) {
+    std::string text = text_in("mine/start.pdb");
+    std::size_t const at = text.find("ATOM      7");
+    write("start.pdb", text.substr(0, at) + "TER\n" + text.substr(at));
+    expect_noted(
+        "1 stiff bond joins two chains of the topology (particles 5 and 6, from 0, of chains A and "
+        "A-2) and stays a spring");
+}
+
+TEST_F(ChangedSystem, PositionsInAnotherUnitAreSaid) {
+    write_pdb("start.pdb", beads, 38);
+    expect_refused(import(), 2,
+                   "neighbours in chain `A` are 10 times as far apart as their links are long: the "
+                   "positions seem to be in another unit (mine/start.pdb");
+    expect_refused(import(), 2, "multiply them by 0.1: PDB and mmCIF files hold angstrom");
+    write_pdb("start.pdb", beads, 0.38);
+    expect_refused(import(), 2, "are 0.1 times as far apart as their links are long");
+}
+
+TEST_F(ChangedSystem, AStateInAnotherUnitIsSaidAndLeavesNoFolder) {
+    fs::remove(file("start.pdb"));
+    OpenMM::VerletIntegrator integrator(0.001);
+    OpenMM::Context context(system, integrator, OpenMM::Platform::getPlatformByName("Reference"));
+    std::vector<OpenMM::Vec3> positions;
+    for (int p = 0; p < beads; ++p) positions.emplace_back(3.8 * p, 0, 0);
+    context.setPositions(positions);
+    serialize(context.getState(OpenMM::State::Positions), "State", "state.xml");
+    expect_refused(import(), 2, "multiply them by 0.1");
+    EXPECT_FALSE(fs::exists(here / "mine-start"));
+    fs::create_directories(here / "mine-start");  // of an earlier import
+    expect_refused(import(), 2, "multiply them by 0.1");
+    EXPECT_TRUE(fs::exists(here / "mine-start"));
+}
+
+TEST_F(ChangedSystem, ATriclinicBoxIsNamed) {
+    system.setDefaultPeriodicBoxVectors({9, 0, 0}, {0, 9, 0}, {3, 0, 9});
+    auto* pairs = new OpenMM::CustomNonbondedForce("(0.4/r)^12");
+    pairs->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffPeriodic);
+    for (int p = 0; p < beads; ++p) pairs->addParticle();
+    system.addForce(pairs);
+    save();
+    expect_refused(import(), 2,
+                   "the System's box is not rectangular: its vector c is (3, 0, 9) nm "
+                   "(mine/system.xml)");
+}
+
+TEST_F(ChangedSystem, AMassBelowZeroIsNamed) {
+    system.setParticleMass(3, -5);
+    save();
+    expect_refused(import(), 2, "particle 3 (from 0) has mass -5 (mine/system.xml)");
+}
+
+/// Glycine and alanine in turn, in the order of the particles and backwards.
+TEST_F(ChangedSystem, AtomsInAnotherOrderThanTheParticlesAreNoted) {
+    std::string text = text_in("mine/start.pdb");
+    for (int p = 0; p < beads; ++p) {
+        system.setParticleMass(p, p < beads / 2 ? 57.05 : 71.08);
+        std::size_t const at = text.find(fmt::format("ATOM  {:5d}", p + 1));
+        text.replace(at + 17, 3, p < beads / 2 ? "GLY" : "ALA");
+    }
+    save();
+    write("start.pdb", text);
+    expect_no_note("in the order of the particles");
+    text.replace(text.find("GLY A   3"), 3, "ALA");
+    write("start.pdb", text);
+    expect_noted(
+        "ALA has the masses 57.05 and 71.08 amu in the System (the latter is particle 6, from 0): "
+        "does `mine/start.pdb` have its atoms in the order of the particles?");
 }
 
 TEST_F(ToolFolder, AConfigurationOfAnotherProgramIsNotedAndLeftOut) {
@@ -176,7 +323,52 @@ TEST_F(DamagedPackage, AConfigurationThatWasCutIsRefused) {
     expect_refused(import(), 2,
                    "the configuration ends within its last line, `temp: 293` (idr/config.yaml)");
     write(folder + "/config.yaml", whole.substr(0, whole.find("000\nslab_eq")));
-    expect_note("config.yaml ends with `wfreq: 7` without a line feed: if it was cut, ");
+    expect_refused(import(), 2,
+                   "the configuration ends within its last line, `wfreq: 7` (idr/config.yaml): "
+                   "write it again with the package's prepare.py, or end that line");
+    for (std::string const last : {"temp", "topol"}) {
+        std::size_t const end = whole.find('\n', whole.find("\n" + last + ":") + 1) + 1;
+        write(folder + "/config.yaml", whole.substr(0, end));
+        expect_refused(import(), 2,
+                       "the configuration ends with `" + last +
+                           "`, where the package's ends with `wfreq`: it was cut "
+                           "(idr/config.yaml)");
+    }
+}
+
+TEST_F(DamagedPackage, AnotherTemperatureOrSaltThanTheSystemsIsRefused) {
+    replace("temp: 293.15", "temp: 350");
+    expect_refused(import(), 2,
+                   "at 350 K charges act with a prefactor of 2.2555 kJ nm/mol, those of idr.xml "
+                   "with 1.73001: it was written at another temperature (idr/config.yaml: temp, "
+                   "line 13)");
+    replace("temp: 350", "temp: 293.15");
+    replace("friction_coeff: 0.02\n", "friction_coeff: 0.02\nionic: 0.15\n");
+    EXPECT_EQ(import().status, 0) << import().err;
+    replace("ionic: 0.15", "ionic: 0.5");
+    expect_refused(import(), 2, "0.5 mol/l at 293.15 K screen charges with 2.318/nm");
+    expect_refused(import(), 2, "idr.xml does with 1.27/nm: it was written with another ionic");
+}
+
+TEST_F(DamagedPackage, ForcesAreLeftOutByTheNamesThatCheckShows) {
+    auto const with = [&](std::string const& names) {
+        return catena({"import", "idr", "--overwrite", "--leave-out", names}, here.path());
+    };
+    Ended const one = with("yukawa");
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_NE(one.out.find("The System's yukawa (CustomNonbondedForce) is left out"),
+              std::string::npos)
+        << one.out;
+    Ended const both = with("CustomNonbondedForce");
+    EXPECT_EQ(both.status, 0) << both.err;
+    EXPECT_NE(both.out.find("2 forces of the System are left out by `leave_out: "
+                            "[CustomNonbondedForce]`: yukawa (CustomNonbondedForce), "
+                            "ashbaugh-hatch (CustomNonbondedForce)."),
+              std::string::npos)
+        << both.out;
+    expect_refused(with("Yukawa"), 2,
+                   "name a force or a kind of force: yukawa (CustomNonbondedForce), ashbaugh-hatch "
+                   "(CustomNonbondedForce), HarmonicBondForce");
 }
 
 TEST_F(DamagedPackage, ComponentsThatWereCutAreRefused) {
@@ -220,7 +412,7 @@ TEST_F(DamagedPackage, AFrameOfAnotherSystemIsRefusedByItsName) {
     replace("restart: checkpoint", "restart: pdb");
     replace("frestart: restart.chk", "frestart: frame.pdb");
     fs::remove(folder + "/checkpoint.pdb");
-    expect_note("config.yaml starts from idr/frame.pdb, which is not there.");
+    expect_note("config.yaml starts from idr/frame.pdb, which is not there: the start is top.pdb.");
 }
 
 }  // namespace

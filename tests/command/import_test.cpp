@@ -289,6 +289,15 @@ TEST_F(OwnScript, PositionsThatNoTopologyHoldsAreRefused) {
     expect_refused(import(), 2, "the position of particle 4 does not fit into a PDB file");
 }
 
+/// Forces on torn FENE bonds are small, and their energy is not a number.
+TEST_F(OwnScript, AStateWhoseBondsAreTornIsRefused) {
+    for (OpenMM::Vec3& x : positions) x *= 10;
+    system.setDefaultPeriodicBoxVectors({900, 0, 0}, {0, 900, 0}, {0, 0, 900});
+    write_files(false);
+    expect_refused(import(), 2, "potential energy not a number, largest force");
+    expect_refused(import(), 2, "a force is beyond its range, such as a torn FENE bond");
+}
+
 TEST_F(OwnScript, NamedBondsBecomeLinks) {
     write_files(false);
     Ended const e = import({"--links", "CustomBondForce=0.97"});

@@ -129,7 +129,14 @@ std::vector<Kind> const kinds{
     {"prismatic", {.joints = RandomJoints::prismatic}, JointType::spherical},
     {"helical", {.joints = RandomJoints::helical}, JointType::prismatic},
     {"mixed", {.joints = RandomJoints::any, .springs = true, .drag = true}, JointType::helical},
-    {"driven", {.joints = RandomJoints::any, .driven = 0.3}, JointType::spherical}};
+    {"driven", {.joints = RandomJoints::any, .driven = 0.3}, JointType::spherical},
+    {"cylindrical",
+     {.joints = RandomJoints::cylindrical, .springs = true, .driven = 0.2},
+     JointType::planar3},
+    {"planar3", {.joints = RandomJoints::planar3, .springs = true}, JointType::cylindrical},
+    {"all",
+     {.joints = RandomJoints::all, .springs = true, .drag = true, .driven = 0.2},
+     JointType::planar3}};
 
 ChainSpec chain_of(Kind const& kind, std::size_t bodies, Base base) {
     RandomChainOptions options = kind.options;

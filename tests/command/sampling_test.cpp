@@ -57,6 +57,17 @@ TEST(Sampling, AlphaSynucleinIsSampledByEveryMethod) {
     EXPECT_TRUE(json.at("hardware").contains("processor"));
 }
 
+TEST(Sampling, NotesOnTheSceneAreShown) {
+    TemporaryFolder const folder;
+    Ended const e = catena(sampling(
+        write_scene(folder),
+        {"--set", "dynamics.temperature=260", "--copies", "2", "--duration", "1", "--discard", "0",
+         "--equilibrate", "0", "--methods", "rigid", "--json", folder / "s.json"}));
+    EXPECT_EQ(e.status, 0) << e.err;
+    std::string const notes = Json::parse(std::ifstream(folder / "s.json")).at("notes").dump();
+    EXPECT_NE(notes.find("water is frozen at 260 K"), std::string::npos) << notes;
+}
+
 TEST(Sampling, TheTemperaturesAreTheThermostats) {
     TemporaryFolder const folder;
     Ended const e =

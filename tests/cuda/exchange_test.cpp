@@ -133,7 +133,7 @@ TEST_P(GpuExchange, RefusesAWayThatThereIsNot) {
 auto const name_of_joint = [](auto const& joint) { return std::string(joint.param); };
 INSTANTIATE_TEST_SUITE_P(Joints, GpuExchange,
                          ::testing::Values("link", "planar", "spherical", "universal", "revolute",
-                                           "helical"),
+                                           "helical", "planar3"),
                          name_of_joint);
 INSTANTIATE_TEST_SUITE_P(Joints, GpuExchangeInGraphs, ::testing::Values("link", "spherical"),
                          name_of_joint);

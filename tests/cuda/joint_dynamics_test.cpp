@@ -62,11 +62,13 @@ class GpuJoints : public ::testing::Test {
     /// tip.
     void expect_same_with_loads_drives_and_tips(int steps) const {
         using enum JointType;
-        std::optional<JointType> const tips[] = {std::nullopt, spherical, revolute, universal,
-                                                 weld,         prismatic, helical};
+        std::optional<JointType> const tips[] = {std::nullopt, spherical,   revolute,
+                                                 universal,    weld,        prismatic,
+                                                 helical,      cylindrical, planar3};
         std::uint64_t seed = 100;
-        for (RandomJoints const joints : {RandomJoints::spherical, RandomJoints::universal,
-                                          RandomJoints::planar, RandomJoints::any})
+        for (RandomJoints const joints :
+             {RandomJoints::spherical, RandomJoints::universal, RandomJoints::planar,
+              RandomJoints::any, RandomJoints::all})
             for (std::optional<JointType> const tip : tips) {
                 if (tip && joints == RandomJoints::planar)
                     continue;  // these hold a tip a second time
@@ -92,8 +94,8 @@ class GpuJoints : public ::testing::Test {
 };
 
 TEST_F(GpuJoints, EveryJointAndBase) {
-    for (char const* const joint :
-         {"planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld", "mixed"})
+    for (char const* const joint : {"planar", "spherical", "universal", "revolute", "prismatic",
+                                    "helical", "weld", "mixed", "cylindrical", "planar3"})
         for (char const* const base : {"free", "fixed"}) {
             std::string chains;
             for (int const bodies : {1, 17, 300})
@@ -161,8 +163,9 @@ TEST_F(GpuJoints, Rings) {
     using enum JointType;
     std::uint64_t seed = 200;
     for (RandomJoints const joints : {RandomJoints::spherical, RandomJoints::universal,
-                                      RandomJoints::planar, RandomJoints::any})
-        for (JointType const closing : {spherical, revolute, universal, weld, prismatic, helical}) {
+                                      RandomJoints::planar, RandomJoints::any, RandomJoints::all})
+        for (JointType const closing :
+             {spherical, revolute, universal, weld, prismatic, helical, cylindrical, planar3}) {
             SCOPED_TRACE("seed " + std::to_string(++seed));
             expect_same(scene_of({random_chain(seed, {.bodies = 40,
                                                       .joints = joints,

@@ -36,8 +36,9 @@ class GpuLevels : public ::testing::Test {
 };
 
 TEST_F(GpuLevels, EveryKindAndSize) {
-    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute",
-                                    "prismatic", "helical", "weld", "mixed"})
+    for (char const* const joint :
+         {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical",
+          "cylindrical", "planar3", "weld", "mixed"})
         for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 256, 257, 2047, 2048, 2049}) {
             SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies));
             expect_same(scene_of(std::string("{base: ") + (bodies % 2 ? "free" : "fixed") +

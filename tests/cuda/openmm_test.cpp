@@ -19,6 +19,11 @@
 #include "tests/cuda/openmm_scene.hpp"
 #include "tests/support/gpu.hpp"
 
+#define CATENA_TEST_DOMAINS                                                                    \
+    "pdb: " CATENA_SOURCE_DIR                                                                  \
+    "/inputs/multi-domain.cif, chain: A, model: calvados2, gaps: model, velocities: thermal, " \
+    "rigid: ['A:1-34', 'A:47-80', 'A:93-126']"
+
 namespace catena::test {
 namespace {
 
@@ -331,6 +336,10 @@ INSTANTIATE_TEST_SUITE_P(
              "velocities: "
              "thermal}",
              "box: {periodic: [40, 40, 40]}"},
+        // Beads carried by rigid domains, and beads of linkers between them.
+        Case{"domains", "{name: a, " CATENA_TEST_DOMAINS "}", "box: {periodic: [40, 40, 40]}"},
+        Case{"many_domains", "{name: a, count: 20, " CATENA_TEST_DOMAINS "}",
+             "box: {periodic: [60, 60, 60]}"},
         Case{"layers",
              "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
              "velocities: "

@@ -142,6 +142,7 @@ RunScene articulated(RunScene scene, std::string const& more = "") {
 INSTANTIATE_TEST_SUITE_P(
     Articulated, GpuRun,
     ::testing::Values(articulated(joint_chains("rk4_helical", "helical", "", "rk4")),
+                      articulated(joint_chains("rk4_planar3", "planar3", "", "rk4")),
                       articulated(joint_chains("verlet_mixed", "mixed", "", "velocity-verlet")),
                       articulated(joint_chains("rk4_planar_refined", "planar", "", "rk4"),
                                   ", refine: 1")),
@@ -154,6 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
                       joint_chains("rk4_universal_held", "universal", held, "rk4"),
                       joint_chains("rk4_helical_held", "helical", held, "rk4"),
                       joint_chains("rk4_mixed_held", "mixed", held, "rk4"),
+                      joint_chains("rk4_cylindrical_held", "cylindrical", held, "rk4"),
+                      joint_chains("rk4_planar3_held", "planar3", held, "rk4"),
                       joint_chains("verlet_planar", "planar", "", "velocity-verlet"),
                       joint_chains("verlet_spherical_held", "spherical", held, "velocity-verlet"),
                       joint_chains("verlet_universal_held", "universal", held, "velocity-verlet"),

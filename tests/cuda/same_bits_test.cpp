@@ -115,8 +115,9 @@ class Gpu : public ::testing::Test {
 };
 
 TEST_F(Gpu, EveryKindAndSize) {
-    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute",
-                                    "prismatic", "helical", "weld", "mixed"})
+    for (char const* const joint :
+         {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical",
+          "cylindrical", "planar3", "weld", "mixed"})
         for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 256, 257, 2047, 2048, 2049})
             for (Handles const handles : kinds(std::string(joint) != "link"))
                 for (char const* const base : {"free", "fixed"}) {
@@ -296,13 +297,14 @@ TEST_F(Gpu, ManyArticulatedChains) {
 /// joint at the tip.
 TEST_F(Gpu, LoadsDrivesAndTips) {
     using enum JointType;
-    std::optional<JointType> const tips[] = {std::nullopt, spherical, revolute, universal,
-                                             weld,         prismatic, helical};
+    std::optional<JointType> const tips[] = {std::nullopt, spherical, revolute,    universal, weld,
+                                             prismatic,    helical,   cylindrical, planar3};
     std::uint64_t seed = 0;
     for (RandomJoints const joints :
          {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed,
           RandomJoints::universal, RandomJoints::weld, RandomJoints::prismatic,
-          RandomJoints::helical, RandomJoints::planar, RandomJoints::any})
+          RandomJoints::helical, RandomJoints::planar, RandomJoints::any, RandomJoints::cylindrical,
+          RandomJoints::planar3, RandomJoints::all})
         for (std::optional<JointType> const tip : tips)
             for (Base const base : {Base::fixed, Base::free}) {
                 // Joints that cannot turn, or only in a plane, hold a tip a second time.
@@ -326,7 +328,7 @@ TEST_F(Gpu, LoadsDrivesAndTips) {
 /// slides.
 TEST_F(Gpu, SlidingAndDriven) {
     RandomChainOptions options{.bodies = 40,
-                               .joints = RandomJoints::any,
+                               .joints = RandomJoints::all,
                                .base = Base::fixed,
                                .springs = true,
                                .drag = true,

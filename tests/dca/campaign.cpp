@@ -8,6 +8,7 @@
 
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
+#include "joints/joint_models.hpp"
 #include "measure/nudged.hpp"
 #include "measure/solution.hpp"
 #include "measure/solver_errors.hpp"
@@ -31,8 +32,15 @@ Kind constexpr kinds[] = {
     {"weld mixture", RandomJoints::weld},   {"revolute+spherical", RandomJoints::mixed},
     {"every kind", RandomJoints::any}};
 std::size_t constexpr kind_count = std::size(kinds);
+Kind constexpr later_kinds[] = {{"cylindrical", RandomJoints::cylindrical},
+                                {"planar3", RandomJoints::planar3},
+                                {"all", RandomJoints::all}};
 JointType constexpr tips[] = {JointType::spherical, JointType::revolute,  JointType::universal,
                               JointType::weld,      JointType::prismatic, JointType::helical};
+
+JointType constexpr later_tips[] = {
+    JointType::spherical, JointType::revolute, JointType::universal,   JointType::weld,
+    JointType::prismatic, JointType::helical,  JointType::cylindrical, JointType::planar3};
 
 std::size_t pick(Random& random, std::size_t count) {
     return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
@@ -49,13 +57,9 @@ Freedom freedom(ChainSpec const& chain) {
         bool const driven = std::any_of(
             b.driven.begin(), b.driven.end(),
             [&](DrivenJoint const& d) { return d.body == static_cast<std::int64_t>(k); });
-        int const coordinates = driven                               ? 0
-                                : b.joint[k] == JointType::weld      ? 0
-                                : b.joint[k] == JointType::spherical ? 3
-                                : b.joint[k] == JointType::free      ? 6
-                                : b.joint[k] == JointType::universal ? 2
-                                                                     : 1;
-        int const turns = b.joint[k] == JointType::prismatic ? 0 : std::min(coordinates, 3);
+        int const coordinates = driven ? 0 : freedom_of(b.joint[k]);
+        int turns = std::min(coordinates, 3);
+        for (int i = 0; i < coordinates && i < 3; ++i) turns -= is_length(b.joint[k], i);
         f.turns += turns;
         f.all += coordinates;
     }
@@ -244,17 +248,20 @@ std::string CampaignErrors::text() const {
         acceleration, acceleration_bound, force, force_bound, residual, residual_bound, in_double);
 }
 
-CampaignCase campaign_case(std::uint64_t seed) {
+CampaignCase campaign_case(std::uint64_t seed, CampaignJoints joints) {
     Random random(seed * 0x9e3779b97f4a7c15U + 1);
     CampaignCase c{.seed = seed, .kind = {}, .chain = {}, .loads = {}};
-    std::size_t const kind = pick(random, kind_count + 2), n = 1 + pick(random, 64);
+    bool const later = joints == CampaignJoints::later;
+    std::size_t const kind = pick(random, later ? std::size(later_kinds) : kind_count + 2),
+                      n = 1 + pick(random, 64);
     Base const base = random.chance(0.5) ? Base::fixed : Base::free;
     bool const tip = random.chance(0.4);
-    JointType const tip_type = tips[pick(random, std::size(tips))];
+    JointType const tip_type = later ? later_tips[pick(random, std::size(later_tips))]
+                                     : tips[pick(random, std::size(tips))];
     if (random.chance(0.8)) c.loads.gravity = random.vector(10);
     c.backend = backends()[pick(random, backends().size())];
     c.handles = random.chance(0.5) ? Handles::projected : Handles::full;
-    if (kind >= kind_count) {
+    if (!later && kind >= kind_count) {
         bool const linked = kind > kind_count;
         Tip const end = tip ? Tip::jointed : Tip::free;
         c.kind = linked ? "bodies on links" : "beads on links";
@@ -262,9 +269,10 @@ CampaignCase campaign_case(std::uint64_t seed) {
                          : random_bead_chain(seed, n, base, end);
         return c;
     }
-    c.kind = kinds[kind].name;
+    Kind const& of = later ? later_kinds[kind] : kinds[kind];
+    c.kind = of.name;
     RandomChainOptions options{.bodies = n,
-                               .joints = kinds[kind].joints,
+                               .joints = of.joints,
                                .base = base,
                                .moving = random.chance(0.9),
                                .loaded = random.chance(0.8),
@@ -333,11 +341,11 @@ Shrunk smallest_failing(CampaignCase const& c,
     });
 }
 
-void run_campaign(std::uint64_t first, std::uint64_t last) {
+void run_campaign(std::uint64_t first, std::uint64_t last, CampaignJoints joints) {
     std::map<std::string, Row> table;
     std::string failures, smallest;
     for (std::uint64_t seed = first; seed <= last; ++seed) {
-        CampaignCase const c = campaign_case(seed);
+        CampaignCase const c = campaign_case(seed, joints);
         std::string const problem = add_to(table[c.kind], c);
         if (problem.empty()) continue;
         failures +=

@@ -21,7 +21,10 @@ struct CampaignCase {
     Backend backend = Backend::serial;
     Handles handles = Handles::projected;
 };
-CampaignCase campaign_case(std::uint64_t seed);
+/// Joints that the chains of a campaign have: those of its first version, or each of those that
+/// came later and all of them together, tips included. The chains of a seed do not change.
+enum class CampaignJoints { first, later };
+CampaignCase campaign_case(std::uint64_t seed, CampaignJoints joints = CampaignJoints::first);
 
 /// Errors are relative to the largest component of each quantity: accelerations (joints, centres of
 /// mass, angular, base) and constraint forces (torques, forces) by the articulated-body algorithm
@@ -50,6 +53,7 @@ Shrunk smallest_failing(CampaignCase const&, std::function<bool(CampaignCase con
 
 /// Runs seeds first to last, prints a table with a row a kind, and fails the test if a chain is not
 /// good, the first of them shrunk.
-void run_campaign(std::uint64_t first, std::uint64_t last);
+void run_campaign(std::uint64_t first, std::uint64_t last,
+                  CampaignJoints joints = CampaignJoints::first);
 
 }  // namespace catena::test

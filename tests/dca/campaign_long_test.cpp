@@ -6,6 +6,9 @@ namespace catena::test {
 namespace {
 
 TEST(Campaign, ChainsOf10000SeedsAgreeWithTheOracles) { run_campaign(1, 10000); }
+TEST(Campaign, ChainsOf10000SeedsOfLaterJointsAgreeWithTheOracles) {
+    run_campaign(1, 10000, CampaignJoints::later);
+}
 
 }  // namespace
 }  // namespace catena::test

@@ -10,6 +10,9 @@ namespace catena::test {
 namespace {
 
 TEST(Campaign, ChainsOf2000SeedsAgreeWithTheOracles) { run_campaign(1, 2000); }
+TEST(Campaign, ChainsOfLaterJointsAgreeWithTheOracles) {
+    run_campaign(1, 2000, CampaignJoints::later);
+}
 
 /// What hangs on three slides at right angles falls freely: no force is left there, and the
 /// residual must not ask for digits of none.

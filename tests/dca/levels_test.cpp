@@ -42,8 +42,9 @@ class Levels : public ::testing::Test {
 };
 
 TEST_F(Levels, EveryKindAndSize) {
-    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute",
-                                    "prismatic", "helical", "weld", "mixed"})
+    for (char const* const joint :
+         {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical",
+          "cylindrical", "planar3", "weld", "mixed"})
         for (int const bodies : sizes({1, 2, 3, 31, 32, 33, 255, 257}, {3, 32, 257})) {
             SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies));
             expect_same(scene_of(random(joint, bodies, bodies % 2 ? "free" : "fixed")));
@@ -86,8 +87,8 @@ TEST_F(Levels, AbsoluteCoordinates) {
 TEST_F(Levels, LoadsDrivesTipsAndRefusals) {
     using enum JointType;
     std::uint64_t seed = 0;
-    for (RandomJoints const joints :
-         {RandomJoints::revolute, RandomJoints::prismatic, RandomJoints::planar, RandomJoints::any})
+    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::prismatic,
+                                      RandomJoints::planar, RandomJoints::any, RandomJoints::all})
         for (JointType const tip : {spherical, revolute, weld, helical}) {
             SCOPED_TRACE("seed " + std::to_string(++seed));
             Scene scene;

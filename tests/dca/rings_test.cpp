@@ -132,17 +132,21 @@ TEST_P(Rings, redundant_bridges_move_as_the_oracle_says) {
 
 /// Of every kind of joints and closing joint, against articulated bodies.
 TEST_P(Rings, random_rings_agree_with_articulated_bodies) {
-    JointType const closing[] = {JointType::spherical, JointType::revolute,  JointType::universal,
-                                 JointType::weld,      JointType::prismatic, JointType::helical};
+    JointType const closing[] = {JointType::spherical, JointType::revolute,    JointType::universal,
+                                 JointType::weld,      JointType::prismatic,   JointType::helical,
+                                 JointType::spherical, JointType::cylindrical, JointType::planar3};
     RandomJoints const joints[] = {RandomJoints::revolute, RandomJoints::spherical,
                                    RandomJoints::mixed,    RandomJoints::universal,
                                    RandomJoints::helical,  RandomJoints::any};
-    for (std::uint64_t seed = 0; seed < 72; ++seed) {
+    RandomJoints const later[] = {RandomJoints::cylindrical, RandomJoints::planar3,
+                                  RandomJoints::all};
+    for (std::uint64_t seed = 0; seed < 108; ++seed) {
+        bool const first = seed < 72;
         RandomChainOptions const options{.bodies = 12 + seed * 5 % 40,
-                                         .joints = joints[seed % 6],
+                                         .joints = first ? joints[seed % 6] : later[seed % 3],
                                          .base = Base::free,
                                          .springs = seed % 3 == 0,
-                                         .tip = closing[seed / 6 % 6],
+                                         .tip = closing[seed / 6 % (first ? 6 : 9)],
                                          .ring = true};
         Scene scene;
         scene.chains = {random_chain(seed, options)};

@@ -126,8 +126,9 @@ class StageKernels : public ::testing::Test {
 };
 
 TEST_F(StageKernels, EveryKindAndSize) {
-    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute",
-                                    "prismatic", "helical", "weld", "mixed"})
+    for (char const* const joint :
+         {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical",
+          "cylindrical", "planar3", "weld", "mixed"})
         for (int const bodies :
              alone() ? std::vector<int>{1, 2, 16, 33, 257} : std::vector<int>{2, 257}) {
             SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies));
@@ -174,8 +175,8 @@ TEST_F(StageKernels, LoadsDrivesTipsAndRings) {
     using enum JointType;
     std::uint64_t seed = 0;
     for (RandomJoints const joints :
-         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::any})
-        for (JointType const type : {spherical, weld, helical})
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::any, RandomJoints::all})
+        for (JointType const type : {spherical, weld, helical, planar3})
             for (bool const ring : {false, true}) {
                 SCOPED_TRACE("seed " + std::to_string(++seed));
                 RandomChainOptions options{.bodies = 70,

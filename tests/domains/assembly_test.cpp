@@ -125,7 +125,8 @@ TEST_F(Assemblies, a_loop_within_one_body_is_refused) {
     EXPECT_EQ(refusal({body({{0, 3}, {7, 9}})}),
               "residues 5 to 7 of chain A would be a flexible loop between two parts of one rigid "
               "body, which a serial chain cannot hold (): write \"A:1-10\" to make the loop rigid, "
-              "too (with `domains` or `pae`: `longest_loop: 3`), or leave a part out of the body");
+              "too (with `domains` or `pae`: `longest_loop: 3`), or make two bodies of the parts: "
+              "rigid: [\"A:1-4\", \"A:8-10\"]");
 }
 
 TEST_F(Assemblies, two_paths_between_bodies_are_refused) {

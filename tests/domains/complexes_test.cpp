@@ -155,12 +155,13 @@ TEST_F(Complexes, that_no_serial_chain_can_hold_are_refused) {
             at +
             "include flexible ends in the body's ranges until two are left, or give each "
             "chain bodies of its own");
-    EXPECT_EQ(refusal(scene_of("[[\"A:1-4\", \"A:8-12\"], [\"B:1-6\"]]")),
-              "residues 5 to 7 of chain A would be a flexible loop between two parts of one rigid "
-              "body, which a serial chain cannot hold" +
-                  at +
-                  "write \"A:1-12\" to make the loop rigid, too (with `domains` or `pae`: "
-                  "`longest_loop: 3`), or leave a part out of the body");
+    EXPECT_EQ(
+        refusal(scene_of("[[\"A:1-4\", \"A:8-12\"], [\"B:1-6\"]]")),
+        "residues 5 to 7 of chain A would be a flexible loop between two parts of one rigid "
+        "body, which a serial chain cannot hold" +
+            at +
+            "write \"A:1-12\" to make the loop rigid, too (with `domains` or `pae`: "
+            "`longest_loop: 3`), or make two bodies of the parts: rigid: [\"A:1-4\", \"A:8-12\"]");
     EXPECT_EQ(refusal(scene_of("[\"A:5-8\", [\"A:8-12\", \"B:1-6\"]]")),
               "residues 8 to 12 of chain A overlap the domain 5 to 8 of chain A (s.yaml: "
               "chains[0].rigid[1], line 1): assign each residue to one domain");

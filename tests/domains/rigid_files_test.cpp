@@ -68,8 +68,8 @@ TEST_F(RigidFiles, of_the_package_may_have_segments_whose_loops_become_rigid_whe
     EXPECT_EQ(refusal(scene_of("domains: domains.yaml")),
               "residues 10 to 12 would be a flexible loop between two parts of one rigid body, "
               "which a serial chain cannot hold (s.yaml: chains[0].rigid, line 1): write \"2-15\" "
-              "to make the loop rigid, too (with `domains` or `pae`: `longest_loop: 3`), or leave "
-              "a part out of the body");
+              "to make the loop rigid, too (with `domains` or `pae`: `longest_loop: 3`), or make "
+              "two bodies of the parts: rigid: [\"2-9\", \"13-15\"]");
     EXPECT_EQ(bodies_of("domains: domains.yaml, longest_loop: 3"),
               (Offsets{0, 1, 15, 16, 17, 18, 19, 20}));
     // A domain within the loop is then part of the body.
@@ -86,6 +86,10 @@ TEST_F(RigidFiles, of_the_package_with_other_contents) {
     };
     std::string const form =
         "write `NAME: [[first, last], ...]`, with residues counted from 1 along the chain";
+    for (char const* const text : {"", "# a comment\n", "- [2, 5]\n"})
+        EXPECT_EQ(refused(text), "the domain file names no protein (domains.yaml): " + form);
+    EXPECT_EQ(refused("TIA1: [[0, 5]]\n"),
+              "a domain has a residue 0 (domains.yaml: TIA1[0][0], line 1): " + form);
     EXPECT_EQ(refused("TIA1:\n"),
               "protein `TIA1` has no list of domains (domains.yaml: TIA1, line "
               "1): " +
@@ -161,8 +165,8 @@ TEST_F(RigidFiles, predictions_decide_domains_by_confidence_and_error) {
     EXPECT_EQ(refusal(scene_of("pae: pae.json, max_pae: 20, longest_loop: 9")),
               "residues 36 to 45 would be a flexible loop between two parts of one rigid body, "
               "which a serial chain cannot hold (s.yaml: chains[0].rigid, line 1): write \"11-70\" "
-              "to make the loop rigid, too (with `domains` or `pae`: `longest_loop: 10`), or leave "
-              "a part out of the body");
+              "to make the loop rigid, too (with `domains` or `pae`: `longest_loop: 10`), or make "
+              "two bodies of the parts: rigid: [\"11-35\", \"46-70\"]");
     EXPECT_EQ(refusal(scene_of("pae: pae.json, plddt: 95")),
               "no 20 residues in a row have a pLDDT of 95 and more and an error of 5 angstrom at "
               "most" +

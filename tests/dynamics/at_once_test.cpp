@@ -106,8 +106,8 @@ TEST_P(AtOnce, IsTheSolution) {
 
 /// In joint coordinates: by the residual, and the same on one rank and on all.
 TEST(AtOnceInJoints, IsASolution) {
-    for (char const* const joint :
-         {"planar", "spherical", "universal", "revolute", "helical", "mixed", "weld"})
+    for (char const* const joint : {"planar", "spherical", "universal", "revolute", "helical",
+                                    "mixed", "weld", "cylindrical", "planar3"})
         for (int const bodies : {1, 5, 16, 70, 333})
             for (char const* const tip : {"", ", tip: {joint: {type: spherical}}"}) {
                 if (*tip &&

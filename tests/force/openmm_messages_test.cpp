@@ -54,8 +54,8 @@ TEST_F(Messages, Platform) {
     spec.path = "device";
     EXPECT_EQ(of(spec),
               "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: "
-              "forces.openmm.path): use auto, or chains of beads, --backend cuda and "
-              "forces.openmm.platform: CUDA on a machine with a GPU");
+              "forces.openmm.path): use auto, or chains of beads and of rigid domains, "
+              "--backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
 }
 
 TEST_F(Messages, Builder) {

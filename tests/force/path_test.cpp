@@ -59,8 +59,8 @@ TEST(Path, AGpuIsTakenWhereItCanBe) {
 TEST(Path, Messages) {
     EXPECT_EQ(complaint([] { PathChoice("device", true, "there is none", "s.yaml"); }),
               "positions and forces cannot stay on a GPU: there is none (s.yaml: "
-              "forces.openmm.path): use auto, or chains of beads, --backend cuda and "
-              "forces.openmm.platform: CUDA on a machine with a GPU");
+              "forces.openmm.path): use auto, or chains of beads and of rigid domains, "
+              "--backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
     EXPECT_EQ(complaint([] { PathChoice("remote", true, "", "s.yaml"); }),
               "`remote` is not a path of OpenMM's forces (s.yaml: forces.openmm.path): use auto, "
               "device, host or inline");

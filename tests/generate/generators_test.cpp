@@ -164,12 +164,15 @@ TEST(Generators, every_random_joint) {
                                                         {"universal", universal},
                                                         {"weld", weld},
                                                         {"prismatic", prismatic},
-                                                        {"helical", helical}}) {
+                                                        {"helical", helical},
+                                                        {"cylindrical", cylindrical},
+                                                        {"planar3", planar3}}) {
         ChainSpec const chain = random_chain(50, name, "fixed", 3);
         BodyArrays const& b = chain.bodies;
         for (std::size_t k = 0; k < b.size(); ++k) {
             EXPECT_EQ(b.joint[k], type);
             EXPECT_TRUE(type != universal || norm(cross(b.first_axis[k], b.axis[k])) >= 0.5);
+            EXPECT_TRUE(type != planar3 || std::abs(dot(b.first_axis[k], b.axis[k])) <= 4e-16);
             EXPECT_TRUE(type != helical || std::abs(b.pitch[k]) >= 0.05);
             EXPECT_TRUE(type != weld || norm(b.torque[k]) == 0);
             EXPECT_NEAR(norm(b.axis[k]), type == weld ? 0 : 1, 1e-15);

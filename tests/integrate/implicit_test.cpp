@@ -186,7 +186,8 @@ double distance(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
 TEST(Staggered, IsOfSecondOrder) {
     for (RandomJoints const joints :
          {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal,
-          RandomJoints::prismatic, RandomJoints::helical, RandomJoints::mixed})
+          RandomJoints::prismatic, RandomJoints::helical, RandomJoints::mixed,
+          RandomJoints::cylindrical, RandomJoints::planar3})
         for (Base const base : {Base::fixed, Base::free})
             for (bool const damped : {false, true}) {
                 double constexpr time = 0.2;
@@ -245,8 +246,9 @@ double energy_of(Scene const& scene, ChainSystem& system) {
 /// the energy falls from where it starts at rest and comes back to it.
 TEST(Staggered, IsStableHoweverStiff) {
     auto const communicator = serial_communicator();
-    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical,
-                                      RandomJoints::universal, RandomJoints::mixed})
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal,
+          RandomJoints::mixed, RandomJoints::cylindrical, RandomJoints::planar3})
         for (double const times : {1e1, 1e3, 1e4, 1e6}) {  // omega h
             Scene const scene = plucked(joints, 0.01);
             double const h = times / stiffest(scene.chains[0]);

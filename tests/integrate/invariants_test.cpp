@@ -116,8 +116,8 @@ double order_of(Scene const& scene, bool fourth) {
 }
 
 TEST(JointIntegrators, HaveTheirOrderForEveryJoint) {
-    for (char const* joint :
-         {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
+    for (char const* joint : {"revolute", "spherical", "universal", "prismatic", "helical", "mixed",
+                              "cylindrical", "planar3"})
         for (char const* base : {"free", "fixed"}) {
             Scene const scene =
                 parse_scene(std::string("chains: [{name: a, base: ") + base +

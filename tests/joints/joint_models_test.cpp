@@ -21,12 +21,13 @@ std::vector<JointType> types() {
     return all;
 }
 
-/// Shape of a joint with random axes and a pitch.
-JointShape random_shape(scene::Draws& draws) {
+/// Shape of a joint with random axes and a pitch; if the joint glides, its axes are perpendicular.
+JointShape random_shape(scene::Draws& draws, bool glides = false) {
     Vec3 const axis = draws.on_sphere();
     Vec3 first = draws.on_sphere();
     while (norm(cross(first, axis)) < 0.5) first = draws.on_sphere();
-    return {axis, first, 0.2};
+    Vec3 const level = cross(first, axis);
+    return {axis, glides ? (1 / norm(level)) * level : first, 0.2};
 }
 
 TEST(JointModels, names_and_codes_of_files_stay) {
@@ -39,7 +40,9 @@ TEST(JointModels, names_and_codes_of_files_stay) {
                                                  {4, "universal"},
                                                  {5, "weld"},
                                                  {6, "prismatic"},
-                                                 {7, "helical"}}));
+                                                 {7, "helical"},
+                                                 {8, "cylindrical"},
+                                                 {9, "planar3"}}));
     for_each_joint(
         [](auto model) { EXPECT_STREQ(name_of(decltype(model)::type), decltype(model)::name); });
 }
@@ -64,9 +67,10 @@ TEST(JointModels, free_and_restricted_directions_are_six) {
 
 TEST(JointModels, every_type_has_one_motion) {
     for (JointType const type : types()) {
-        int const motions =
-            joints::has_motion<QuaternionMotion>(type) + joints::has_motion<UniversalMotion>(type) +
-            joints::has_motion<RigidMotion>(type) + joints::has_motion<ScrewMotion>(type);
+        int motions = 0;
+        joints::for_each(
+            [&](auto motion) { motions += joints::has_motion<decltype(motion)>(type); },
+            JointMotions{});
         EXPECT_EQ(motions, 1) << name_of(type);
         EXPECT_EQ(has_quaternion(type), joints::has_motion<QuaternionMotion>(type));
     }
@@ -77,13 +81,13 @@ TEST(JointModels, random_positions_keep_the_joint_closed) {
     for_each_joint([&](auto model) {
         using Model = decltype(model);
         for (int i = 0; i < 20; ++i) {
-            JointShape const shape = random_shape(draws);
+            JointShape const shape = random_shape(draws, Model::glides);
             auto const q = Model::random_position(draws);
             JointDisplacement const x = displacement_of(Model::type, shape, q);
             JointOpening const closed = Model::opening(shape, x.turn, x.shift);
             EXPECT_LT(closed.distance, 1e-14) << Model::name;
             EXPECT_LT(closed.angle, 1e-7) << Model::name;
-            Vec3 const across = cross(shape.axis, shape.first_axis);
+            Vec3 const across = Model::glides ? shape.axis : cross(shape.axis, shape.first_axis);
             JointOpening const open = Model::opening(shape, x.turn, x.shift + 0.1 * across);
             EXPECT_GT(open.distance, 0.04) << Model::name;
         }
@@ -105,8 +109,46 @@ TEST(JointModels, screws_are_normalised) {
     for_each_joint([](auto model) {
         Vec3 const s = decltype(model)::screw(0.3);
         EXPECT_NEAR(s[0] * s[0] + s[1] * s[1], 1, 1e-15);
-        EXPECT_EQ(s[1] != 0, slides(decltype(model)::type)) << decltype(model)::name;
+        if (decltype(model)::order == usual_order) {
+            EXPECT_EQ(s[1] != 0, slides(decltype(model)::type)) << decltype(model)::name;
+        }
     });
+}
+
+/// An order is a permutation. Its first directions do no work along the joint's coordinates, and
+/// the last three do.
+TEST(JointModels, restricted_directions_come_first) {
+    for_each_joint([](auto model) {
+        using Model = decltype(model);
+        std::set<int> directions;
+        for (int i = 0; i < 6; ++i) directions.insert(direction_at(Model::order, i));
+        EXPECT_EQ(directions, (std::set<int>{0, 1, 2, 3, 4, 5})) << Model::name;
+        if (Model::order == usual_order) return;
+        int turns = 0, shifts = 0;
+        for (int i = Model::restricted; i < 6; ++i)
+            (direction_at(Model::order, i) < 3 ? shifts : turns) += 1;
+        int lengths = 0;
+        for (int i = 0; i < Model::numbers; ++i) lengths += is_length(Model::type, i);
+        EXPECT_EQ(shifts, lengths) << Model::name;
+        EXPECT_EQ(turns, Model::freedom - lengths) << Model::name;
+        EXPECT_EQ(glides_in(Model::order), Model::glides) << Model::name;
+    });
+    EXPECT_FALSE(glides_in(usual_order));
+}
+
+TEST(JointModels, coordinates_are_angles_or_lengths) {
+    auto const kinds = [](JointType type) {
+        std::string text;
+        for (int i = 0; i < numbers_of_joint(type); ++i) text += is_length(type, i) ? 'l' : 'a';
+        return text;
+    };
+    EXPECT_EQ(kinds(JointType::revolute), "a");
+    EXPECT_EQ(kinds(JointType::prismatic), "l");
+    EXPECT_EQ(kinds(JointType::helical), "a");
+    EXPECT_EQ(kinds(JointType::cylindrical), "al");
+    EXPECT_EQ(kinds(JointType::planar3), "lla");
+    EXPECT_TRUE(mixes_units(JointType::cylindrical) && mixes_units(JointType::planar3));
+    EXPECT_FALSE(mixes_units(JointType::prismatic) || mixes_units(JointType::universal));
 }
 
 TEST(JointModels, mixed_chains_keep_their_order) {
@@ -126,7 +168,7 @@ TEST(JointModels, mixed_chains_keep_their_order) {
               "helical revolute spherical prismatic prismatic prismatic revolute spherical ");
 }
 
-TEST(JointModels, tips_in_a_plane_restrict_two_or_three_directions) {
+TEST(JointModels, tips_in_a_plane_restrict_some_of_its_directions) {
     JointShape const along{{{0, 0, 1}}, {{1, 0, 0}}, 0.2}, across{{{1, 0, 0}}, {{0, 1, 0}}, 0.2};
     Vec3 const normal{{0, 0, 1}};
     std::array<double, 4> const q{0, 0, 0, 0};
@@ -138,6 +180,12 @@ TEST(JointModels, tips_in_a_plane_restrict_two_or_three_directions) {
     EXPECT_EQ(UniversalJoint::restricted_in_plane(across, q, normal), 3);
     EXPECT_EQ(SphericalJoint::restricted_in_plane(across, q, normal), 2);
     EXPECT_EQ(WeldJoint::restricted_in_plane(across, q, normal), 3);
+    JointShape const oblique{{{0.6, 0, 0.8}}, {{0, 1, 0}}, 0};
+    EXPECT_EQ(CylindricalJoint::restricted_in_plane(along, q, normal), 2);
+    EXPECT_EQ(CylindricalJoint::restricted_in_plane(across, q, normal), 2);
+    EXPECT_EQ(CylindricalJoint::restricted_in_plane(oblique, q, normal), 3);
+    EXPECT_EQ(Planar3Joint::restricted_in_plane(along, q, normal), 0);
+    EXPECT_EQ(Planar3Joint::restricted_in_plane(oblique, q, normal), 2);
 }
 
 }  // namespace

@@ -71,9 +71,11 @@ Scene two_chains(RandomJoints joints, std::size_t bodies, Base base) {
     return scene;
 }
 
-constexpr RandomJoints all_joints[] = {
-    RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::weld,
-    RandomJoints::helical,  RandomJoints::planar,    RandomJoints::any};
+constexpr RandomJoints all_joints[] = {RandomJoints::revolute,  RandomJoints::spherical,
+                                       RandomJoints::universal, RandomJoints::weld,
+                                       RandomJoints::helical,   RandomJoints::planar,
+                                       RandomJoints::any,       RandomJoints::cylindrical,
+                                       RandomJoints::planar3,   RandomJoints::all};
 
 TEST(Kinematics, GoesFromJointToJoint) {
     auto const alone = serial_communicator();

@@ -46,6 +46,27 @@ TEST(Verdict, EnergyThatFluctuatesIsValidWithoutANote) {
     EXPECT_TRUE(v.passed);
     EXPECT_EQ(v.advice, "");
 }
+TEST(Verdict, AnEnergyThatIsNoNumberMakesAnyRunInvalid) {
+    for (char const* const integrator : {"rattle", "g-baoab"}) {
+        Scene const scene = chain_under(integrator);
+        EnergyWatch watch(scene);
+        for (int i = 0; i < 12; ++i) watch.add(100 * i, 250, i == 7 ? NAN : 0.0);
+        RunCheck const v = watch.energy().value();
+        EXPECT_FALSE(v.passed);
+        EXPECT_EQ(v.step, 700);
+        EXPECT_NE(v.advice.find("not a finite number at step 700"), std::string::npos) << v.advice;
+    }
+}
+TEST(Closing, PositionsThatAreNotFiniteAreSaid) {
+    try {
+        Closing().close(0, [] { return NAN; }, [] {});
+        FAIL();
+    } catch (ComputationError const& error) {
+        EXPECT_NE(std::string(error.what()).find("(positions are no longer finite)"),
+                  std::string::npos)
+            << error.what();
+    }
+}
 TEST(Verdict, ASmallDriftIsSaid) {
     Scene const scene = chain_under("rattle");
     EnergyWatch watch(scene);

@@ -64,7 +64,9 @@ class EveryJoint : public ::testing::TestWithParam<RandomJoints> {
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryJoint,
                          ::testing::Values(RandomJoints::universal, RandomJoints::weld,
                                            RandomJoints::prismatic, RandomJoints::helical,
-                                           RandomJoints::planar, RandomJoints::any));
+                                           RandomJoints::planar, RandomJoints::any,
+                                           RandomJoints::cylindrical, RandomJoints::planar3,
+                                           RandomJoints::all));
 TEST_P(EveryJoint, SolversAgree) { compare<double>(240, 12); }
 TEST_P(EveryJoint, SolversAgreeIn113Bits) { compare<Quad>(8, 4); }
 TEST_P(EveryJoint, SolversAgreeOnJointsThatDoNotClose) {

@@ -115,7 +115,7 @@ inline ChainSpec moved(ChainSpec chain, oracle::OracleResult<double> const& a, d
                 normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
             b.q[k] = {turned.w, turned.x, turned.y, turned.z};
         } else {
-            for (int i = 0; i < 2; ++i) b.q[k][static_cast<std::size_t>(i)] += step[i];
+            for (int i = 0; i < 3; ++i) b.q[k][static_cast<std::size_t>(i)] += step[i];
         }
         b.qd[k] = b.qd[k] + h * a.qdd[k];
     }

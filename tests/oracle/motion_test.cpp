@@ -59,8 +59,10 @@ void expect_second_order(double coarse, double fine, char const* what) {
 }
 
 RandomJoints const kinds[] = {
-    RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed,   RandomJoints::universal,
-    RandomJoints::weld,     RandomJoints::prismatic, RandomJoints::helical, RandomJoints::any};
+    RandomJoints::revolute,  RandomJoints::spherical, RandomJoints::mixed,
+    RandomJoints::universal, RandomJoints::weld,      RandomJoints::prismatic,
+    RandomJoints::helical,   RandomJoints::any,       RandomJoints::cylindrical,
+    RandomJoints::planar3,   RandomJoints::all};
 
 class Motion : public ::testing::TestWithParam<int> {
   protected:
@@ -137,6 +139,12 @@ TEST_P(Motion, PosesFollowTheDefinition) {
             turn = from_axis_angle(b.first_axis[i], q[0]) * from_axis_angle(b.axis[i], q[1]);
         if (type == JointType::prismatic) shift = q[0] * b.axis[i];
         if (type == JointType::helical) shift = (b.pitch[i] * q[0]) * b.axis[i];
+        if (type == JointType::cylindrical)
+            turn = from_axis_angle(b.axis[i], q[0]), shift = q[1] * b.axis[i];
+        if (type == JointType::planar3) {
+            turn = from_axis_angle(b.axis[i], q[2]);
+            shift = q[0] * b.first_axis[i] + q[1] * cross(b.axis[i], b.first_axis[i]);
+        }
         bool const free = type == JointType::free;
         x = free ? b.free_position : x + r * (b.translation[i] + b.rotation[i] * shift);
         r = free ? to_matrix(turn) : r * (b.rotation[i] * to_matrix(turn));
@@ -157,7 +165,8 @@ TEST_P(Motion, ADriveIsTheEffortItNeeds) {
         auto const i = static_cast<std::size_t>(d.body);
         JointType const type = c.bodies.joint[i];
         Vec3 &u = pushed.bodies.qd[i], &effort = pushed.bodies.torque[i], q = Vec3::zero();
-        for (int j = 0; j < (type == JointType::universal ? 2 : 1); ++j) {
+        bool const two = type == JointType::universal || type == JointType::cylindrical;
+        for (int j = 0; j < (two ? 2 : 1); ++j) {
             PrescribedMotion const& course = d.course[static_cast<std::size_t>(j)];
             double const turns = 2 * std::acos(-1.0) * course.frequency,
                          phase = turns * start + course.phase;
@@ -176,6 +185,7 @@ TEST_P(Motion, ADriveIsTheEffortItNeeds) {
         if (type == JointType::revolute) effort[0] = dot(axis, torque);
         if (type == JointType::helical)
             effort[0] = dot(axis, torque) + c.bodies.pitch[i] * dot(axis, force);
+        if (type == JointType::cylindrical) effort = {{dot(axis, torque), dot(axis, force), 0}};
         if (type == JointType::universal)  // the first axis in B: turned back about the second
             effort = {
                 {dot(to_matrix(from_axis_angle(axis, -q[1])) * c.bodies.first_axis[i], torque),

@@ -2,6 +2,7 @@
 // against time, the balances.
 #include <gtest/gtest.h>
 
+#include "joints/joint_models.hpp"
 #include "tests/oracle/compare.hpp"
 #include "tests/support/random_chain.hpp"
 
@@ -17,37 +18,24 @@ RandomJoints const kinds[] = {
 /// Coordinates that are free to move.
 int freedoms(ChainSpec const& chain) {
     int dof = 0;
-    for (JointType const type : chain.bodies.joint) {
-        if (type == JointType::free) dof += 6;
-        if (type == JointType::spherical) dof += 3;
-        if (type == JointType::universal) dof += 2;
-        if (type == JointType::revolute || type == JointType::prismatic ||
-            type == JointType::helical)
-            dof += 1;
-    }
+    for (JointType const type : chain.bodies.joint) dof += freedom_of(type);
     return dof - static_cast<int>(chain.bodies.driven.size()) * 2;  // at most
-}
-int held_by(JointType tip) {
-    switch (tip) {
-        case JointType::weld:
-            return 6;
-        case JointType::spherical:
-            return 3;
-        case JointType::universal:
-            return 4;
-        default:
-            return 5;
-    }
 }
 
 class Tips : public ::testing::TestWithParam<JointType> {
   protected:
     struct TipCase : Case {
         RandomJoints joints;
+        /// Coordinates that the tip takes. A planar3 tip of a body that only turns about a point is
+        /// held there already.
+        int needed() const {
+            JointType const tip = chain.tip_joint.type;
+            return restricted_by(tip) + (tip == JointType::planar3 ? 1 : 0);
+        }
         /// Whether the joints leave the tip every motion it forbids, so that its forces are unique.
         bool held_once() const {
-            return chain.base == Base::free || (joints != RandomJoints::prismatic &&
-                                                freedoms(chain) >= held_by(chain.tip_joint.type));
+            return chain.base == Base::free ||
+                   (joints != RandomJoints::prismatic && freedoms(chain) >= needed());
         }
     };
     static TipCase random_case(std::uint64_t seed, std::size_t largest) {
@@ -66,7 +54,7 @@ class Tips : public ::testing::TestWithParam<JointType> {
         c.loads.time = options.time;
         return c;
     }
-    /// c = 64: the articulated bodies answer by way of unit wrenches, whose system has a condition
+    /// c = 128: the articulated bodies answer by way of unit wrenches, whose system has a condition
     /// number of its own.
     template <class S>
     static void compare(int count, std::size_t largest) {
@@ -74,7 +62,7 @@ class Tips : public ::testing::TestWithParam<JointType> {
             TipCase const c = random_case(seed, largest);
             return c.held_once() ? std::optional<Case>(c) : std::nullopt;
         };
-        solvers_agree<S>(count, 64, held_once, [](Case const& c) {
+        solvers_agree<S>(count, 128, held_once, [](Case const& c) {
             inverse_dynamics_agree(
                 c, 64,
                 std::max(growth(c.chain, c.loads), oracle::condition_estimate(c.chain, c.loads)));
@@ -84,7 +72,8 @@ class Tips : public ::testing::TestWithParam<JointType> {
 INSTANTIATE_TEST_SUITE_P(Joints, Tips,
                          ::testing::Values(JointType::spherical, JointType::revolute,
                                            JointType::universal, JointType::weld,
-                                           JointType::prismatic, JointType::helical));
+                                           JointType::prismatic, JointType::helical,
+                                           JointType::cylindrical, JointType::planar3));
 
 TEST_P(Tips, SolversAgree) { compare<double>(320, 12); }
 TEST_P(Tips, SolversAgreeIn113Bits) { compare<Quad>(16, 4); }
@@ -177,10 +166,16 @@ std::vector<double> kept(ChainSpec const& chain, oracle::Loads const& loads, Mat
     auto const add = [&](auto const& values) {
         all.insert(all.end(), std::begin(values.data), std::end(values.data));
     };
-    bool const slides = tip.type == JointType::prismatic || tip.type == JointType::helical;
-    add(slides ? cross(tip.axis, shift) : shift);
+    bool const slides = tip.type == JointType::prismatic || tip.type == JointType::helical ||
+                        tip.type == JointType::cylindrical;
+    if (tip.type == JointType::planar3)
+        all.push_back(dot(tip.axis, shift));
+    else
+        add(slides ? cross(tip.axis, shift) : shift);
     if (tip.type == JointType::weld || tip.type == JointType::prismatic) add(turn);
-    if (tip.type == JointType::revolute || tip.type == JointType::helical) add(turn * tip.axis);
+    if (tip.type == JointType::revolute || tip.type == JointType::helical ||
+        tip.type == JointType::cylindrical || tip.type == JointType::planar3)
+        add(turn * tip.axis);
     if (tip.type == JointType::universal) all.push_back(dot(tip.first_axis, turn * tip.axis));
     if (tip.type == JointType::helical)
         all.push_back(dot(tip.axis, shift) -
@@ -211,6 +206,12 @@ std::pair<Mat3, Vec3> ground_frame(ChainSpec const& chain, oracle::Loads const& 
         turn = from_axis_angle(tip.first_axis, q[0]) * from_axis_angle(tip.axis, q[1]);
     if (tip.type == JointType::prismatic) shift = q[0] * tip.axis;
     if (tip.type == JointType::helical) shift = (tip.pitch * q[0]) * tip.axis;
+    if (tip.type == JointType::cylindrical)
+        turn = from_axis_angle(tip.axis, q[0]), shift = q[1] * tip.axis;
+    if (tip.type == JointType::planar3) {
+        turn = from_axis_angle(tip.axis, q[2]);
+        shift = q[0] * tip.first_axis + q[1] * cross(tip.axis, tip.first_axis);
+    }
     Mat3 const& r = k.orientation.back();
     return {r * (tip.rotation * to_matrix(turn)),
             k.origin.back() + r * (tip.translation + tip.rotation * shift)};
@@ -220,7 +221,7 @@ TEST_P(Tips, StayClosed) {
     int moving = 0;
     for (std::uint64_t seed = 0; seed < 32; ++seed) {
         TipCase const c = random_case(seed, 6);
-        if (!c.held_once() || freedoms(c.chain) <= held_by(GetParam())) continue;
+        if (!c.held_once() || freedoms(c.chain) <= restricted_by(GetParam())) continue;
         auto const a = oracle::aba<double>(c.chain, c.loads);
         auto const [g, origin] = ground_frame(c.chain, c.loads);
         double const h = 2e-4, size = largest(a.com_acceleration) + largest(a.alpha);

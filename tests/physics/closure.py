@@ -9,6 +9,15 @@ MIXED = {"units": "si", "forces": {"gravity": [0, 0, -9.81]},
          "chains": [{"name": "chain", "base": "fixed", "generator": {"random": {"bodies": 12, "joint": "mixed", "seed": 2, "loads": False}},
                      "tip": {"joint": {"type": "spherical"}}}],
          "dynamics": {"integrator": "rk4", "step": 1e-4}}
+
+
+def sliding(joint, tip):
+    """A chain of one kind of joints whose tip slides."""
+    return {**MIXED, "chains": [{"name": "chain", "base": "fixed", "generator": {"random": {"bodies": 12, "joint": joint, "seed": 2, "loads": False}},
+                                 "tip": {"joint": tip | {"translation": [0.3, 0.1, 0]}}}]}
+
+
+CYLINDRICAL, PLANAR3 = {"type": "cylindrical", "axis": [0.6, 0, 0.8]}, {"type": "planar3", "axes": [[0.8, 0, -0.6], [0.6, 0, 0.8]]}
 BEADS = {"units": "si", "chains": [{"name": "ring", "velocities": "thermal", "generator": {"polygon": {"bodies": 20, "joint": "link"}}, "tip": "ring"}],
          "dynamics": {"integrator": "rattle", "step": 1e-3, "temperature": 1e22}}
 EPS = 2.0**-53
@@ -16,6 +25,8 @@ EPS = 2.0**-53
 # length. RATTLE's sweeps stop at the scene's tolerance. The linkage stands still under its own gravity.
 CHAINS = {"four-bar": (ROOT + "/inputs/four-bar.yaml", {"forces.gravity": "[5, -9.81, 0]"}, 64 * EPS),
           "mixed": (MIXED, {}, 12 * 64 * EPS),
+          "planar3, cylindrical tip": (sliding("planar3", CYLINDRICAL), {}, 12 * 64 * EPS),
+          "cylindrical, planar3 tip": (sliding("cylindrical", PLANAR3), {}, 12 * 64 * EPS),
           "ring": (ROOT + "/inputs/ring.yaml", {}, 12 * 64 * EPS),
           "ring under RATTLE": (ROOT + "/inputs/ring.yaml", {"dynamics.integrator": "rattle", "dynamics.constraint_tolerance": 1e-14}, 1e-14),
           "ring of beads": (BEADS, {"dynamics.constraint_tolerance": 1e-14}, 1e-14),

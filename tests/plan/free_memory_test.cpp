@@ -49,6 +49,21 @@ TEST_F(FreeHostMemory, IsWhatTheTightestControlGroupLeaves) {
     EXPECT_EQ(free_host_memory(root_), 500000.0);
 }
 
+TEST_F(FreeHostMemory, IsWhatAControlGroupOfVersionOneLeaves) {
+    write("proc/self/cgroup", "12:cpu,cpuacct:/other\n5:memory:/jobs/mine\n");
+    write("sys/fs/cgroup/memory/jobs/mine/memory.limit_in_bytes", "9223372036854771712\n");
+    write("sys/fs/cgroup/memory/jobs/memory.limit_in_bytes", "1000000\n");
+    write("sys/fs/cgroup/memory/jobs/memory.usage_in_bytes", "700000\n");
+    write("sys/fs/cgroup/memory/jobs/memory.stat", "inactive_file 1\ntotal_inactive_file 200000\n");
+    EXPECT_EQ(free_host_memory(root_), 500000.0);
+}
+
+TEST_F(FreeHostMemory, IsThatOfAContainerWhichSeesItsOwnGroupOnly) {
+    write("proc/self/cgroup", "5:memory:/docker/1234\n");
+    write("sys/fs/cgroup/memory/memory.limit_in_bytes", "600000\n");
+    EXPECT_EQ(free_host_memory(root_), 600000.0);
+}
+
 TEST_F(FreeHostMemory, IgnoresAGroupWithoutALimit) {
     write("proc/self/cgroup", "0::/\n");
     write("sys/fs/cgroup/memory.max", "max\n");
@@ -90,7 +105,7 @@ TEST(LackingMemory, IsSaidWithBothNumbersIfTheScenesArraysFindNoRoom) {
     ASSERT_TRUE(lacking);
     EXPECT_GT(lacking->needed, 100 * 3e5);
     EXPECT_LE(lacking->free, 20000000);
-    EXPECT_NE(lacking->note().find("are free"), std::string::npos);
+    EXPECT_NE(lacking->note().find("`ulimit -v` leaves"), std::string::npos) << lacking->note();
 }
 
 }  // namespace

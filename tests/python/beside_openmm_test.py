@@ -12,8 +12,8 @@ import tempfile
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPT = os.path.join(ROOT, "jobs", "beside_openmm.py")
 TABLE = """name,ionic,temperature,ph,rg,rg_error,n,doi,sequence
-gly,0.2,280,7,1.5,0.1,6,10.1/x,GGGGSG
-ser,0.2,280,7,1.4,0.1,4,10.1/y,GSSG
+gly,0.2,280,7,0.5,0.1,6,10.1/x,GGGGSG
+ser,0.2,280,7,0.3,0.1,4,10.1/y,GSSG
 """
 PROGRAM = """#!{python}
 import json, os, sys
@@ -23,7 +23,7 @@ with open({folder!r} + "/calls", "a") as calls:
     calls.write(os.path.basename(words[2]) + "\\n")
 row = {{"step_ps": float(value["--steps"]), "ps_per_copy": float(value["--duration"]), "total_ns": 1.0, "every_ps": 1.0, "valid": True, "state": "VALID", "why": ""}}
 radius = lambda mean: {{"radius_of_gyration": {{"mean": mean, "error": 0.01, "plateau": True}}}}
-json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "hardware": {{"gpu": "none"}}, "build": {{}}, "results": [
+json.dump({{"copies": int(value["--copies"]), "discard_ps": float(value["--discard"]), "valid": True, "notes": ["water is frozen"], "hardware": {{"gpu": "none"}}, "build": {{}}, "results": [
     {{"method": "rigid", **row, **radius({rigid})}}, {{"method": "bonds", **row, **radius({bonds}), **{state}}}]}}, open(value["--json"], "w"))
 """
 
@@ -49,6 +49,9 @@ def main():
             file.write(TABLE)
         first = call(folder, 1.482, "--only", "gly")  # 1.2 % below: the known difference
         check(first.returncode == 0 and "VALID" in first.stdout, f"the known difference is no failure: {first.stdout}{first.stderr}")
+        check("differences than 2.8 % cannot be told" in first.stdout, f"the verdict says what it can tell: {first.stdout}")
+        check("jobs/beside_openmm.py: note on gly: water is frozen\n" in first.stderr, f"the program's notes: {first.stderr}")
+        check("3 copies are too few for a verdict: errors between copies are uncertain by 50 %" in first.stderr, f"too few copies: {first.stderr}")
         with open(os.path.join(folder, "out", "beside-openmm.csv"), encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         check([row["name"] for row in rows] == ["gly"], "only the protein asked for")

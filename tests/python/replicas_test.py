@@ -39,9 +39,9 @@ def table(folder):
 
 def made_up(folder):
     """Of runs that the test wrote."""
-    proteins = write(os.path.join(folder, "p.csv"), "# a comment\n" + HEAD + "gly,0.2,280,7,1.5,0.1,6,10.1/x,GGGGSG\n")
+    proteins = write(os.path.join(folder, "p.csv"), "# a comment\n" + HEAD + "gly,0.2,280,7,0.5,0.1,6,10.1/x,GGGGSG\n")
     out = os.path.join(folder, "out")
-    call([proteins, out, "--only", "scenes", "--steps", "10"])
+    call([proteins, out, "--only", "scenes", "--steps", "1e1"])
     with open(os.path.join(out, "scenes", "gly.yaml"), encoding="utf-8") as file:
         scene = file.read()
     for words in ("sequence: GGGGSG", "ionic_strength: 0.2, ph: 7", "temperature: 280", "steps: 10"):
@@ -60,7 +60,7 @@ def made_up(folder):
     done = call([proteins, out, "--only", "table"])
     if "| 1.00 (no error: too few frames) |" not in done.stdout:
         yield f"a run without an error: {done.stdout} {done.stderr}"
-    wrong = write(os.path.join(folder, "w.csv"), HEAD + "gly,0.2,280,7,1.5,0.1,7,10.1/x,GGGGSG\n")
+    wrong = write(os.path.join(folder, "w.csv"), HEAD + "gly,0.2,280,7,0.5,0.1,7,10.1/x,GGGGSG\n")
     done = call([wrong, out])
     if done.returncode != 2 or "6 residues, not 7" not in done.stderr:
         yield f"a sequence of another length: status {done.returncode}: {done.stderr}"
@@ -68,11 +68,13 @@ def made_up(folder):
 
 def refused(folder):
     """Of wrong tables and folders: one line and status 2 each."""
-    line = "gly,0.2,280,7,1.5,0.1,6,10.1/x,GGGGSG\n"
-    tables = {"rg": (HEAD + line.replace("1.5", "abc"), "`rg` of gly"), "n": (HEAD + line.replace(",6,", ",6.5,"), "not 6.5"),
+    line = "gly,0.2,280,7,0.5,0.1,6,10.1/x,GGGGSG\n"
+    tables = {"rg": (HEAD + line.replace("7,0.5", "7,abc"), "`rg` of gly"), "n": (HEAD + line.replace(",6,", ",6.5,"), "not 6.5"),
               "name": (HEAD + line.replace("gly,", "a/b,"), "names files"), "twice": (HEAD + line + line, "occurs twice"),
               "cold": (HEAD + line.replace("280", "cold"), "`temperature` of gly"), "error": (HEAD + line.replace("0.1,6", "-0.1,6"), "`rg_error` of gly"),
-              "column": (HEAD.replace("rg_error,", "") + line, "no column `rg_error`")}
+              "column": (HEAD.replace("rg_error,", "") + line, "no column `rg_error`"),
+              "angstrom": (HEAD + line.replace("7,0.5", "7,5"), "`rg` of gly is 5 nm, and 6 residues have"),
+              "metre": (HEAD + line.replace("7,0.5", "7,5e-10"), "give it in nm")}
     for name, (text, words) in tables.items():
         done = call([write(os.path.join(folder, name + ".csv"), text), os.path.join(folder, "not"), "--only", "scenes"])
         if done.returncode != 2 or words not in done.stderr or done.stderr.count("\n") != 1:

@@ -132,7 +132,8 @@ Refusal const joints_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: ball-and-socket}})y",
      "`ball-and-socket` is not a value of `type` (s.yaml: chains[0].bodies[1].joint.type, body 2, "
      "line 5): use one of `free`, `link`, "
-     "`revolute`, `planar`, `universal`, `spherical`, `prismatic`, `helical`, `weld`"},
+     "`revolute`, `planar`, `universal`, `spherical`, `prismatic`, `helical`, `cylindrical`, "
+     "`planar3`, `weld`"},
     {"zero_axis", R"y(chains:
   - base: fixed
     bodies:

@@ -91,7 +91,8 @@ chains: [{sequence: GGG, model: calvados2}])y",
     {"unknown_random_joint", "chains: [{generator: {random: {bodies: 3, joint: ball}}}]",
      "`ball` is not a value of `joint` (s.yaml: chains[0].generator.random.joint, line 1): use one "
      "of `link`, `planar`, "
-     "`revolute`, `universal`, `spherical`, `weld`, `prismatic`, `helical`, `mixed`"},
+     "`revolute`, `universal`, `spherical`, `weld`, `prismatic`, `helical`, `cylindrical`, "
+     "`planar3`, `mixed`"},
     {"unknown_base", "chains: [{sequence: GGG, model: calvados2, base: floating}]",
      "`floating` is not a value of `base` (s.yaml: chains[0].base, line 1): use one of `free`, "
      "`fixed`"},

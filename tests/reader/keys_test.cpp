@@ -94,7 +94,8 @@ std::string prediction() {
 /// Types of joints that differ in their keys.
 std::vector<std::string> const joints{
     "{type: revolute, axis: [0, 0, 1]}", "{type: universal, axes: [[1, 0, 0], [0, 1, 0]]}",
-    "{type: helical, axis: [0, 0, 1], pitch: 0.1}", "{type: spherical}"};
+    "{type: helical, axis: [0, 0, 1], pitch: 0.1}", "{type: spherical}",
+    "{type: planar3, axes: [[1, 0, 0], [0, 0, 1]]}"};
 
 /// Writes a DCD file of a frame of three beads on links and returns its path.
 std::string dcd_file() {

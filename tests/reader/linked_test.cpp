@@ -258,6 +258,10 @@ TEST_F(Domains, refusals) {
               "the list of rigid domains is empty (s.yaml: chains[0].rigid, line 1): leave the key "
               "out or " +
                   give);
+    EXPECT_EQ(refusal_of(yaml("[\"A:2-5\"]")),
+              "chain A is named, and the residues of this entry are counted from 1" + place +
+                  "leave the chain out, or give the structure as `pdb`, whose chains and residue "
+                  "numbers count");
     EXPECT_EQ(refusal_of(yaml("[3]")), "`3` is not a range of residues" + place +
                                            "write \"FIRST-LAST\", such as \"1-95\", or [1, 95]");
     EXPECT_EQ(refusal_of(yaml("[[9, 13]]")), "residue 13 of a chain of 12" + place + give);

@@ -293,8 +293,56 @@ TEST_F(Structures, ranges_in_another_form_are_told_what_was_meant) {
                 "makes one body of them");
     EXPECT_EQ(all("[\"A:1\u20133\"]"),
               "`A:1\u20133` in quotes has a dash that is no hyphen" + at + "write \"A:1-3\"");
+    for (char const* const blank : {"A:\u00a01-3", "A:1-\u00a03"})
+        EXPECT_EQ(all("[\"" + std::string(blank) + "\"]"),
+                  "`" + std::string(blank) + "` in quotes has a non-breaking space" + at +
+                      "write \"A:1-3\"");
     EXPECT_EQ(all("[\"\"]"), "an empty text is no range of residues" + at +
                                  "write \"CHAIN:FIRST-LAST\" within \"A:1-6\", \"B:1-6\"");
+}
+
+/// Brackets and quotes in another number than a list of ranges has.
+TEST_F(Structures, ranges_in_other_brackets_are_written_as_they_should_be) {
+    Words const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
+    write("a.pdb", pdb_text(strand(six, "A", 1, 0) + strand(six, "B", 1, 0, 20)));
+    std::string const at = " (s.yaml: chains[0].rigid, line 1): write rigid: ",
+                      two =
+                          "[\"A:1-3\", \"A:4-6\"] for a body of each, rigid: [[\"A:1-3\", "
+                          "\"A:4-6\"]] for one body";
+    auto const one = [&](std::string const& rigid) {
+        return refusal_with("chain: A, rigid: " + rigid);
+    };
+    EXPECT_EQ(one("\"A:1-3\""), "`A:1-3` in quotes is not a list of ranges" + at + "[\"A:1-3\"]");
+    EXPECT_EQ(one("1-3"), "`1-3` is not a list of ranges" + at + "[\"1-3\"]");
+    EXPECT_EQ(one("\"A:1-3,4-6\""), "`A:1-3,4-6` in quotes is not a list of ranges" + at + two);
+    EXPECT_EQ(one("[1, 3]"), "a list of numbers is not a list of ranges" + at + "[\"1-3\"]");
+    EXPECT_EQ(one("all").find("`all` is not a list of ranges (s.yaml: chains[0].rigid, line 1): "
+                              "write a list of ranges, such as rigid: [\"1-95\"]"),
+              0U);
+    EXPECT_EQ(one("{A: [1, 3]}").find("YAML makes a map of `A: [1, 3]`"), 0U) << one("{A: [1, 3]}");
+    std::string const deep = "ranges stand in too many brackets (s.yaml: chains[0].rigid[0]";
+    EXPECT_EQ(one("[[[\"A:1-3\"]]]").find(deep + "[0], line 1): write rigid: [\"A:1-3\"]"), 0U)
+        << one("[[[\"A:1-3\"]]]");
+    EXPECT_EQ(one("[[[[1, 3], [4, 6]]]]").find(deep), 0U) << one("[[[[1, 3], [4, 6]]]]");
+    EXPECT_NE(one("[[[[1, 3], [4, 6]]]]").find("rigid: [\"1-3\", \"4-6\"] for a body of each"),
+              std::string::npos);
+}
+
+TEST_F(Structures, ranges_in_other_words_are_told_what_was_meant) {
+    Words const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
+    write("a.pdb", pdb_text(strand(six, "A", 1, 0) + strand(six, "B", 1, 0, 20)));
+    auto const one = [&](std::string const& rigid) {
+        return refusal_with("chain: A, rigid: [" + rigid + "]");
+    };
+    EXPECT_NE(one("1-3: 4-6").find("write rigid: [\"1-3\", \"4-6\"] for a body of each"),
+              std::string::npos)
+        << one("1-3: 4-6");
+    for (char const* const text : {"1-3:4-6", "\"A:1-3:4-6\"", "\"A:1-3,4-6\"", "\"1-3 + 4-6\""})
+        EXPECT_NE(one(text).find("holds 2 ranges"), std::string::npos) << one(text);
+    for (char const* const text : {"1 to 3", "1..3", "\"1:3\"", "1/3"})
+        EXPECT_NE(one(text).find("did you mean \"1-3\"?"), std::string::npos) << one(text);
+    for (char const* const text : {"A1-A3", "\"A:1-A:3\"", "\"A:1 to 3\"", "A1..A3"})
+        EXPECT_NE(one(text).find("did you mean \"A:1-3\"?"), std::string::npos) << one(text);
 }
 
 TEST_F(Structures, insertion_codes_at_the_ends_of_ranges_get_a_hint) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "joints/joint_models.hpp"
 #include "oracle/oracle.hpp"
 #include "scene/pose.hpp"
 
@@ -62,15 +63,24 @@ JointType random_joint(Random& random, RandomChainOptions const& options, std::s
                        : one_of(random, {revolute, spherical, universal, prismatic, helical});
         case RandomJoints::any:
             return one_of(random, {revolute, spherical, universal, weld, prismatic, helical});
+        case RandomJoints::cylindrical:
+            return cylindrical;
+        case RandomJoints::planar3:
+            return planar3;
+        case RandomJoints::all:
+            return one_of(random, {revolute, spherical, universal, weld, prismatic, helical,
+                                   cylindrical, planar3});
         default:
             return revolute;
     }
 }
 
-/// Coordinates of a joint; 3 are those of a rotation.
+/// Coordinates of a joint; of a free one those of its rotation.
 int coordinates(JointType type) {
-    if (type == JointType::spherical || type == JointType::free) return 3;
-    return type == JointType::universal ? 2 : type == JointType::weld ? 0 : 1;
+    if (type == JointType::spherical || type == JointType::free || type == JointType::planar3)
+        return 3;
+    if (type == JointType::universal || type == JointType::cylindrical) return 2;
+    return type == JointType::weld ? 0 : 1;
 }
 /// Three numbers of which a joint takes as many as it has coordinates.
 Vec3 of_joint(JointType type, Vec3 v) {
@@ -80,11 +90,11 @@ Vec3 of_joint(JointType type, Vec3 v) {
 /// Coordinates in [-size, size), shifts in a fifth of that.
 std::array<double, 4> random_coordinates(Random& random, JointType type, double size,
                                          Quat const& rotation) {
-    if (coordinates(type) == 3) return as_array(rotation);
+    if (type == JointType::spherical || type == JointType::free) return as_array(rotation);
     std::array<double, 4> q{0, 0, 0, 0};
     for (int i = 0; i < coordinates(type); ++i)
         q[static_cast<std::size_t>(i)] =
-            random.uniform(-size, size) * (type == JointType::prismatic ? 0.2 : 1);
+            random.uniform(-size, size) * (is_length(type, i) ? 0.2 : 1);
     return q;
 }
 /// At least some 25 degrees off `axis`.
@@ -94,12 +104,20 @@ Vec3 direction_off(Random& random, Vec3 const& axis) {
     return v;
 }
 
+/// First axis of a joint with two; of planar3 perpendicular to `axis`.
+Vec3 first_axis(Random& random, JointType type, Vec3 const& axis) {
+    Vec3 const off = direction_off(random, axis);
+    if (type != JointType::planar3) return off;
+    Vec3 const level = cross(axis, off);
+    return (1 / norm(level)) * level;
+}
+
 Vec3 const planar_axis{{0, 0, 1}};
 
 void append_geometry(Random& random, RandomChainOptions const& options, JointType type,
                      BodyArrays& b) {
     bool const planar = options.joints == RandomJoints::planar,
-               any_first = type == JointType::universal;
+               any_first = type == JointType::universal || type == JointType::planar3;
     b.joint.push_back(type);
     b.axis.push_back(planar ? planar_axis : random.direction());
     bool const level = planar && type == JointType::revolute;
@@ -108,7 +126,7 @@ void append_geometry(Random& random, RandomChainOptions const& options, JointTyp
     b.translation.push_back(random.uniform(0.2, 0.6) * random.direction());
     if (any_first || !b.first_axis.empty()) {
         b.first_axis.resize(b.joint.size(), Vec3::zero());
-        if (any_first) b.first_axis.back() = direction_off(random, b.axis.back());
+        if (any_first) b.first_axis.back() = first_axis(random, type, b.axis.back());
     }
     if (type == JointType::helical || !b.pitch.empty()) {
         b.pitch.resize(b.joint.size(), 0);
@@ -154,7 +172,7 @@ TipJoint random_tip(Random& random, RandomChainOptions const& options) {
     bool const level = options.joints == RandomJoints::planar && tip.type == JointType::revolute &&
                        options.base == Base::fixed;
     tip.axis = level ? planar_axis : random.direction();
-    tip.first_axis = direction_off(random, tip.axis);
+    tip.first_axis = first_axis(random, tip.type, tip.axis);
     tip.pitch = random.uniform(0.02, 0.2);
     tip.rotation =
         to_matrix(level ? about_axis(planar_axis, random.uniform(-3, 3)) : random.orientation());

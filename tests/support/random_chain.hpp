@@ -25,7 +25,8 @@ class Random {
 };
 
 /// mixed: revolute and spherical; weld: welds among any other joints; planar: revolute, every axis
-/// parallel to all the others (a free base: but for body 1's own motion); any: every kind.
+/// parallel to all the others (a free base: but for body 1's own motion); any: every kind but
+/// cylindrical and planar3, which came later; all: every kind.
 enum class RandomJoints {
     revolute,
     spherical,
@@ -35,7 +36,10 @@ enum class RandomJoints {
     prismatic,
     helical,
     planar,
-    any
+    any,
+    cylindrical,
+    planar3,
+    all
 };
 
 struct RandomChainOptions {

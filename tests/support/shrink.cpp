@@ -156,7 +156,7 @@ std::string describe_body(BodyArrays const& b, std::size_t k) {
     auto const add = [&](char const* name, auto const& values) {
         if (!values.empty()) line += fmt::format(", {} {}", name, text(values[k]));
     };
-    if (b.joint[k] == JointType::universal) line += ", first axis " + text(b.first_axis[k]);
+    if (!b.first_axis.empty()) line += ", first axis " + text(b.first_axis[k]);
     if (b.joint[k] == JointType::helical) line += fmt::format(", pitch {:.17g}", b.pitch[k]);
     add("torque", b.torque), add("stiffness", b.stiffness), add("damping", b.damping),
         add("rest", b.rest);

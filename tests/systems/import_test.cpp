@@ -199,7 +199,7 @@ TEST_F(Import, NamedForcesAreLeftOut) {
     add_changes({{}, {"Wall"}, {}}, named);
     EXPECT_EQ(complaint([&] { import_openmm_system(named, "scene.yaml"); }),
               "the System has no force `Wall` (scene.yaml: forces.openmm.leave_out): name a force "
-              "or a kind of force: HarmonicBondForce");
+              "or a kind of force: HarmonicBondForce, MonteCarloBarostat");
 }
 
 TEST_F(Import, BranchesAndRingsAreNamed) {

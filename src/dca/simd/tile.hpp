@@ -80,7 +80,7 @@ CATENA_HD bool has_jointed_tip(GroupView const&, Column<Real> const&) {
     return false;
 }
 template <class Real>
-CATENA_HD Vector<Real, 3> outboard_screw(GroupView const& group, Column<Real> const& c) {
+CATENA_HD Vector<Real, 4> outboard_screw(GroupView const& group, Column<Real> const& c) {
     return read(group.screw, c + 1);
 }
 

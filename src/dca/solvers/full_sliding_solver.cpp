@@ -1,4 +1,4 @@
-// Handles of all six directions, with prismatic or helical joints.
+// Handles of all six directions, with joints that translate.
 #include "dca/solvers/joint_solver_of.hpp"
 
 namespace catena::dca {

@@ -1,4 +1,4 @@
-// Prismatic and helical joints: handles of five directions that mix force and torque.
+// Joints that translate: handles of five directions that mix force and torque.
 #include "dca/solvers/joint_solver_of.hpp"
 
 namespace catena::dca {

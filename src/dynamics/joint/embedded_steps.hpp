@@ -116,9 +116,10 @@ struct EmbeddedSteps {
     CATENA_HD double stage_divergence(std::int64_t k, double length) const {
         StateView const& state = steps.chains.scan.state;
         Vector<double, 4> const q = state.q.load(k);
-        double const size = dot(q, q), fast = 1e-3 * length * norm(state.qd.load(k));
+        Vec3 const qd = state.qd.load(k);
+        double const size = dot(q, q), fast = 1e-3 * length * norm(of_kind(k, true, qd));
         if (!steps.chains.joints().has_quaternion(k))
-            return worse(is_angular(k) ? fast : 0.0, 0.0 * size + 0.0 * fast);
+            return worse(fast, 0.0 * size + 0.0 * norm(qd));
         return worse(fast, worse(0.25 * size, 0.25 / size));
     }
     /// Velocity of body k, or of its base: the larger one of the step's two ends. `angular` selects
@@ -126,9 +127,8 @@ struct EmbeddedSteps {
     CATENA_HD double speed(std::int64_t k, bool angular) const {
         JointChains const& chains = steps.chains;
         StateView const &state = chains.scan.state, &start = steps.start;
-        double fastest = 0;
-        if (is_angular(k) == angular)
-            fastest = worse(norm(start.qd.load(k)), norm(state.qd.load(k)));
+        double const fastest = worse(norm(of_kind(k, angular, start.qd.load(k))),
+                                     norm(of_kind(k, angular, state.qd.load(k))));
         if (angular || !chains.on_free_base(k)) return fastest;
         std::int64_t const p = chains.joints().piece_of(k);
         return worse(norm(start.base_velocity.load(p)), norm(state.base_velocity.load(p)));
@@ -144,16 +144,16 @@ struct EmbeddedSteps {
         for (int i = 0; i < DormandPrince::stages; ++i)
             e = plus_scaled(e, d.weight[i], of_stage(i).load(k));
         Vec3 const of_speed{{e[4], e[5], e[6]}};
-        Vec3 of_place{{e[0], e[1], 0}};
+        Vec3 of_place{{e[0], e[1], e[2]}};
         if (chains.joints().has_quaternion(k)) {
             Quat const off = conjugate(as_quaternion(chains.scan.state.q.load(k))) *
                              Quat{e[0], e[1], e[2], e[3]};
             of_place = {{2 * off.x, 2 * off.y, 2 * off.z}};
         }
-        bool const angular = is_angular(k);
-        double const worst =
-            worse(norm(of_place) / (angular ? allowed.angle : allowed.length),
-                  norm(of_speed) / (angular ? allowed.speed.angular : allowed.speed.linear));
+        double const worst = worse(worse(norm(of_kind(k, true, of_place)) / allowed.angle,
+                                         norm(of_kind(k, true, of_speed)) / allowed.speed.angular),
+                                   worse(norm(of_kind(k, false, of_place)) / allowed.length,
+                                         norm(of_kind(k, false, of_speed)) / allowed.speed.linear));
         return chains.on_free_base(k) ? worse(worst, base_error(k, d, allowed)) : worst;
     }
     /// Counterpart of error() for a free base.
@@ -172,9 +172,14 @@ struct EmbeddedSteps {
     }
 
   private:
-    /// True unless the coordinates of joint k are lengths.
-    CATENA_HD bool is_angular(std::int64_t k) const {
-        return !has_lengths(steps.chains.joints().joint[k]);
+    /// Numbers of joint k's coordinates that are angles, or lengths unless `angular`; the others
+    /// become 0.
+    CATENA_HD Vec3 of_kind(std::int64_t k, bool angular, Vec3 const& numbers) const {
+        JointType const type = steps.chains.joints().joint[k];
+        Vec3 of_it = numbers;
+        for (int i = 0; i < 3; ++i)
+            if (is_length(type, i) == angular) of_it[i] = 0;
+        return of_it;
     }
     /// Maximum that keeps NaN.
     CATENA_HD static double worse(double a, double b) { return b > a || b != b ? b : a; }
@@ -193,7 +198,7 @@ struct EmbeddedSteps {
         Vector<Real, 4> const q =
             steps.chains.joints().has_quaternion(k)
                 ? JointSteps::rate_of_quaternion(as_quaternion(read(state.q, k)), qd)
-                : Vector<Real, 4>{{qd[0], qd[1], Real(0), Real(0)}};
+                : Vector<Real, 4>{{qd[0], qd[1], qd[2], Real(0)}};
         return {{q[0], q[1], q[2], q[3], qdd[0], qdd[1], qdd[2]}};
     }
 };

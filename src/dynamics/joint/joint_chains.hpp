@@ -22,17 +22,25 @@ struct JointChains : JointLoads {
     /// accelerations of all bodies are known.
     ConstView<2> revolute_acceleration;
 
+    /// Acceleration of the point of body k at `r` from its centre of mass, B.
+    template <class Place>
+    CATENA_HD Vec3At<Place> acceleration_at(Place k, Vec3At<Place> const& r) const {
+        Vec3At<Place> const w = omega(k);
+        return read(acceleration, k) + cross(read(alpha, k), r) + cross(w, cross(w, r));
+    }
     /// Acceleration of the outboard end of body k along the axes of its outboard joint. Components
-    /// 0-2 are the angular acceleration, component 3 is that of handle 2 along the last axis.
+    /// 0-2 are the angular acceleration, component 3 is that of handle 2 along the last axis. If
+    /// the joint glides, components 0-1 are those of handle 2 too.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> outboard_end_of(Place k) const {
         auto const e2 = axes2(k);
-        Vec3At<Place> const turning = read(alpha, k), along = transposed_times(e2, turning);
+        Vec3At<Place> along = transposed_times(e2, read(alpha, k));
         RealAt<Place> slide(0);
         if (joints().has_screws) {
-            Vec3At<Place> const w = omega(k), r = r2(k);
-            slide = dot(e2.column(2),
-                        read(acceleration, k) + cross(turning, r) + cross(w, cross(w, r)));
+            Vec3At<Place> const handle = acceleration_at(k, r2(k));
+            slide = dot(e2.column(2), handle);
+            if (joints().glides(k + 1))
+                for (int i = 0; i < 2; ++i) along[i] = dot(e2.column(i), handle);
         }
         return {{along[0], along[1], along[2], slide}};
     }
@@ -46,14 +54,16 @@ struct JointChains : JointLoads {
         return outboard_end_of(several - 1);
     }
     /// Second derivatives of joint k's coordinates. `relative_alpha` is the outboard minus the
-    /// inboard angular acceleration along the joint's axes. `relative_slide` is that of the meeting
-    /// points along the last axis.
+    /// inboard angular acceleration along the joint's axes; if the joint glides, its first two
+    /// components are the acceleration of the meeting points. `relative_slide` is that of the
+    /// meeting points along the last axis.
     template <class Place>
     CATENA_HD Vec3At<Place> rate_of_joint(Place k, Vec3At<Place> const& relative_alpha,
                                           RealAt<Place> const& relative_slide) const {
         auto const drift = [&] {
-            Vec3At<Place> linear;
-            return joint_velocity_term(k, linear);
+            JointRate<RealAt<Place>> term;
+            term.angular = joint_velocity_term(k, term.linear);
+            return term;
         };
         return with_axis_motion(joints().type(k), [&](auto motion) {
             return motion.acceleration(joint_at(k), relative_alpha, relative_slide, drift);
@@ -80,8 +90,9 @@ struct JointChains : JointLoads {
         if constexpr (is_one_body<Place>)
             if (LocalDrive const* const d = drive_of(k))
                 return {{scene::acceleration_at(d->first, time),
-                         has_two_axes(joints().joint[k]) ? scene::acceleration_at(d->second, time)
-                                                         : 0.0,
+                         has_two_coordinates(joints().joint[k])
+                             ? scene::acceleration_at(d->second, time)
+                             : 0.0,
                          0}};
         if (goes_by_revolute(k)) return {{rate_of_revolute(k), RealAt<Place>(0), RealAt<Place>(0)}};
         Vector3 const turning = read(alpha, k);
@@ -92,24 +103,37 @@ struct JointChains : JointLoads {
         if (is_ball(joints().type(k)))
             return turning - transposed_times(to_meeting, axes1 * inboard) +
                    cross(read(scan.state.qd, k), omega(k));
+        Vector3 relative = transposed_times(axes1, to_meeting * turning) - inboard;
         RealAt<Place> slide(0);
         if (joints().has_screws) {
-            Vector3 const r = r1(k), w = omega(k),
-                          axis = axes1.column(2);  // The axis has the same components in B.
-            slide = dot(axis, read(acceleration, k) + cross(turning, r) + cross(w, cross(w, r))) -
-                    before[3];
+            Vector3 const axis = axes1.column(2);  // The axis has the same components in B.
+            Vector3 const handle = acceleration_at(k, r1(k));
+            slide = dot(axis, handle) - before[3];
             if constexpr (is_one_body<Place>)
                 if (joints().is_first[k])
                     slide = slide + dot(axis, transposed_times(orientation(k), given.gravity));
+            if (joints().glides(k))
+                set_gliding(k, transposed_times(axes1, to_meeting * handle) - inboard, relative);
         }
-        return rate_of_joint(k, transposed_times(axes1, to_meeting * turning) - inboard, slide);
+        return rate_of_joint(k, relative, slide);
+    }
+    /// Sets the first two components of the relative acceleration of a joint that glides, whose
+    /// `handles` accelerate relative to each other along its axes.
+    template <class Place>
+    CATENA_HD void set_gliding(Place k, Vec3At<Place> const& handles,
+                               Vec3At<Place>& relative) const {
+        for (int i = 0; i < 2; ++i) relative[i] = handles[i];
+        if constexpr (is_one_body<Place>)
+            if (joints().is_first[k]) {
+                Vec3 const falling =
+                    transposed_times(joints().axes(k),
+                                     rotation(k) * transposed_times(orientation(k), given.gravity));
+                for (int i = 0; i < 2; ++i) relative[i] += falling[i];
+            }
     }
     /// Acceleration of the origin of body k on a free base, W.
     CATENA_HD Vec3 base_rate(std::int64_t k) const {
-        Vec3 const w = omega(k), r = r1(k);
-        return orientation(k) *
-                   (acceleration.load(k) + cross(alpha.load(k), r) + cross(w, cross(w, r))) +
-               given.gravity;
+        return orientation(k) * acceleration_at(k, r1(k)) + given.gravity;
     }
     /// True if body k is the base of a free chain.
     CATENA_HD bool on_free_base(std::int64_t k) const { return floats(joints().joint[k]); }

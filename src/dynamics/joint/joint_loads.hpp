@@ -21,10 +21,9 @@ struct ImplicitJoints {
     double of_stiffness = 0, of_damping = 0;
     /// True for joint k if it is implicit; null if no joint is.
     std::uint8_t const* joint = nullptr;
-    /// Compliance P B^-1 P^T along the joint's axes. In a sliding joint, its free direction is the
-    /// last one.
+    /// Compliance P B^-1 P^T along the last three directions of the joint's handles.
     View<6> compliance;
-    /// Acceleration P B^-1 tau, along the same axes.
+    /// Acceleration P B^-1 tau, along the same directions.
     View<3> yielding;
     /// Velocities at the step's start, on which dampers act; B covers what the step adds to them.
     View<3> start;
@@ -85,7 +84,7 @@ struct JointLoads {
     CarriedBeadsView beads;
     // Input and output of the solver.
     /// Known load of joint k on body k: torque along the joint's axes, and force along the last
-    /// axis.
+    /// axis. If the joint glides, the first two components are forces.
     View<4> joint_load;
     /// Torque and force on bodies and their accelerations, B. The accelerations are relative to a
     /// frame that falls with gravity.
@@ -182,7 +181,7 @@ struct JointLoads {
             auto const stiffness = read(given.stiffness, k);
             auto const rest = read(given.rest, k);
             if (!is_ball(joints().type(k))) {
-                for (int i = 0; i < 2; ++i) along[i] = along[i] - stiffness[i] * (q[i] - rest[i]);
+                for (int i = 0; i < 3; ++i) along[i] = along[i] - stiffness[i] * (q[i] - rest[i]);
             } else if constexpr (is_one_body<Place>) {
                 along = along +
                         spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
@@ -211,8 +210,8 @@ struct JointLoads {
                      damping = given.dampers ? given.damping.at(k, i) : 0;
         return fused(implicit.of_stiffness, stiffness, implicit.of_damping * damping);
     }
-    /// Columns of P of an implicit joint: motion along the joint's axes per unit rate of each
-    /// coordinate. Returns the number of coordinates.
+    /// Columns of P of an implicit joint: motion along the last three directions of its handles per
+    /// unit rate of each coordinate. Returns the number of coordinates.
     CATENA_HD int free_motions(std::int64_t k, Mat3& motions) const {
         motions = Mat3::zero();
         return with_motion(joints().joint[k], [&](auto motion) {
@@ -227,7 +226,7 @@ struct JointLoads {
         for (int i = 0; i < count; ++i) b[i] = implicit_inertia(k, i);
         // The springs' part of B is the inertia of a rotor in the axes of the outboard body, which
         // has a gyroscopic torque.
-        if (count == 3 && given.springs) {
+        if (is_ball(joints().joint[k]) && given.springs) {
             Vec3 const qd = scan.state.qd.load(k), stiffness = given.stiffness.load(k);
             Vec3 momentum;
             for (int i = 0; i < 3; ++i) momentum[i] = implicit.of_stiffness * stiffness[i] * qd[i];
@@ -249,14 +248,28 @@ struct JointLoads {
         implicit.yielding.store(k, yielding);
         joint_load.store(k, Vector<double, 4>::zero());
     }
-    /// Load on the outboard body from the moments along the coordinates. Components 0-2 are the
-    /// torque along the joint's axes (in a universal joint it lies in the plane of its two axes).
-    /// Component 3 is the force along the last axis.
+    /// Load on the outboard body from the moments along the coordinates, see joint_load. In a
+    /// universal joint the torque lies in the plane of its two axes.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> load_along_axes(Place k, Vec3At<Place> const& along) const {
         return with_motion(joints().type(k), [&](auto motion) {
             return motion.load(joint_at(k), [&] { return rotation(k); }, along);
         });
+    }
+    /// Torque of a known load in the axes of the columns of `e`; `across`: the joint glides.
+    template <class Real>
+    CATENA_HD static Vector<Real, 3> torque_of(Matrix<Real, 3, 3> const& e,
+                                               Vector<Real, 4> const& load, bool across) {
+        Real const none(0);
+        return e * (across ? Vector<Real, 3>{{none, none, load[2]}}
+                           : Vector<Real, 3>{{load[0], load[1], load[2]}});
+    }
+    /// Counterpart of torque_of() for the force.
+    template <class Real>
+    CATENA_HD static Vector<Real, 3> force_of(Matrix<Real, 3, 3> const& e,
+                                              Vector<Real, 4> const& load, bool across) {
+        Vector<Real, 3> const along = load[3] * e.column(2);
+        return across ? along + (load[0] * e.column(0) + load[1] * e.column(1)) : along;
     }
     /// Adds the known loads of the joints at both ends of body k, along their free directions, to
     /// its moment and force, B.
@@ -266,18 +279,20 @@ struct JointLoads {
         using Vector3 = Vec3At<Place>;
         auto const in = read(joint_load, k);
         auto const e1 = transposed_times(inboard_turn, joints().axes(k));
-        moment = moment + e1 * Vector3{{in[0], in[1], in[2]}};
+        bool const across1 = joints().glides(k);
+        moment = moment + torque_of(e1, in, across1);
         if (joints().has_screws) {
-            Vector3 const f = in[3] * e1.column(2);
+            Vector3 const f = force_of(e1, in, across1);
             push = push + f;
             moment = moment + cross(r1(k), f);
         }
         if (joints().ends_chain(k)) return;
         auto const out = read(joint_load, k + 1);
         auto const e2 = axes2(k);
-        moment = moment - e2 * Vector3{{out[0], out[1], out[2]}};
+        bool const across2 = joints().glides(k + 1);
+        moment = moment - torque_of(e2, out, across2);
         if (joints().has_screws) {
-            Vector3 const f = out[3] * e2.column(2);
+            Vector3 const f = force_of(e2, out, across2);
             push = push - f;
             moment = moment - cross(r2(k), f);
         }
@@ -387,9 +402,8 @@ struct JointLoads {
                 linear = linear +
                          transposed_times(
                              axes1, to_meeting * transposed_times(orientation(k), given.gravity));
-        auto const s = joints().direction_of_screw(k);
-        Vector<RealAt<Place>, 6> b{{linear[0], linear[1], s.c * linear[2] - s.s * angular[2],
-                                    angular[0], angular[1], s.s * linear[2] + s.c * angular[2]}};
+        Vector<RealAt<Place>, 6> b = dca::along_directions(
+            joints().direction_of_screw(k), dca::AlongAxes<RealAt<Place>>{linear, angular});
         if constexpr (is_one_body<Place>)
             if (implicit.has(k)) add_yielding(b, -implicit.yielding.load(k));
         store_first(bias, k, directions, b);

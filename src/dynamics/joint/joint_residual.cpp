@@ -122,7 +122,8 @@ Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<do
                                          Vector<double, 6> const& bias, Screw<double> const& s,
                                          int restricted) {
     Vector<double, 8> const d = out - in;
-    Vector<double, 6> e{{d[0], d[1], s.c * d[2] - s.s * d[5], d[3], d[4], s.s * d[2] + s.c * d[5]}};
+    Vector<double, 6> e = dca::along_directions(
+        s, dca::AlongAxes<double>{{{d[0], d[1], d[2]}}, {{d[3], d[4], d[5]}}});
     for (int i = 0; i < 6; ++i) e[i] = i < restricted ? e[i] + bias[i] : 0.0;
     return e;
 }
@@ -144,8 +145,8 @@ double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> co
     for (int i = restricted; i < 6; ++i) b[i] = 0.0;
     Vector<double, 6> const e = opening(out, in, b + yields, s, restricted);
     auto const sizes = [&](Vector<double, 6> const& v) {
-        return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) +
-               size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
+        dca::AlongAxes<double> const parts = dca::along_axes(s, v);
+        return norm(parts.linear) + size * norm(parts.angular);
     };
     return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b) + sizes(yields));
 }

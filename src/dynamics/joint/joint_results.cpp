@@ -8,22 +8,20 @@ namespace catena {
 
 Screw<double> JointSolution::screw(std::int64_t k) const {
     if (!group.has_screws) return {1, 0};
-    Vec3 const s = group.screw.view().load(k);
-    return {s[0], s[1]};
+    return dca::as_screw(group.screw.view().load(k));
 }
 
 Screw<double> JointSolution::outboard_screw(std::int64_t k) const {
     if (!group.has_jointed_tip(k))
         return k + 1 < group.size || group.neighbour_outboard >= 0 ? screw(k + 1)
                                                                    : Screw<double>{1, 0};
-    Vec3 const tip = group.tip_of(k).screw;
-    return {tip[0], tip[1]};
+    return dca::as_screw(group.tip_of(k).screw);
 }
 
 JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::int64_t at,
                                               Screw<double> const& s) const {
-    Vector<double, 6> const f = load_first(forces, at, group.directions);
-    return {{{f[0], f[1], s.c * f[2] + s.s * f[5]}}, {{f[3], f[4], s.c * f[5] - s.s * f[2]}}};
+    dca::AlongAxes<double> const f = dca::along_axes(s, load_first(forces, at, group.directions));
+    return {f.linear, f.angular};
 }
 
 /// Force of external wrenches and carried beads on body k, W.
@@ -50,7 +48,7 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
     }
     if (group.planar) add_across_plane(communicator, r);
     for (LocalTip const& tip : group.tips) {
-        Pair const found = along_axes(tip_force, tip.body, {tip.screw[0], tip.screw[1]});
+        Pair const found = along_axes(tip_force, tip.body, dca::as_screw(tip.screw));
         Mat3 const to_ground = orientation(tip.body) * axes2(tip.body);
         Vec3 const push = -(to_ground * found.force);
         // The handles coincide at the origin of G, which slides along the joint's axis.
@@ -115,7 +113,7 @@ PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Fi
             e.springs.back() =
                 spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(at));
         else if (!floats(group.joint[k]))
-            for (int i = 0; i < 2; ++i)
+            for (int i = 0; i < 3; ++i)
                 e.springs.back() += 0.5 * stiffness[i] * (at[i] - rest[i]) * (at[i] - rest[i]);
     }
     return e;

@@ -42,7 +42,7 @@ struct JointSteps {
         Coordinates const q = read(state.q, k);
         Coordinates const rate = joints.has_quaternion(k)
                                      ? rate_of_quaternion(as_quaternion(q), qd)
-                                     : Coordinates{{qd[0], qd[1], Real(0), Real(0)}};
+                                     : Coordinates{{qd[0], qd[1], qd[2], Real(0)}};
         Coordinates total = plus_scaled(s.first ? q : read(sum.q, k), weight, rate);
         Vec3At<Place> const total_rate = plus_scaled(s.first ? qd : read(sum.qd, k), weight, qdd);
         if (s.last) {
@@ -187,8 +187,8 @@ struct JointSteps {
         View<3> const& base = velocities ? state.base_velocity : state.base_position;
         base.store(p, base.load(p) + chains.base_rate(k));
     }
-    /// Adds an increment to the coordinates of body k. `alone`: components of q that are no
-    /// coordinates become 0.
+    /// Adds an increment to the coordinates of body k. `alone`: the component of q that is no
+    /// coordinate becomes 0.
     CATENA_HD void turn_by(std::int64_t k, Vec3 const& by, bool alone) const {
         View<4> const& to = chains.scan.state.q;
         Vector<double, 4> const q = to.load(k);
@@ -196,7 +196,7 @@ struct JointSteps {
             to.store(k, as_vector(normalized(as_quaternion(q) * from_rotation_vector(by))));
         else
             to.store(k, Vector<double, 4>{
-                            {q[0] + by[0], q[1] + by[1], alone ? 0.0 : q[2], alone ? 0.0 : q[3]}});
+                            {q[0] + by[0], q[1] + by[1], q[2] + by[2], alone ? 0.0 : q[3]}});
     }
     /// Returns 0, or NaN if the state of body k is not finite.
     CATENA_HD double trouble(std::int64_t k) const {

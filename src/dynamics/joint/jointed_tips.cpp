@@ -11,7 +11,8 @@ namespace catena {
 namespace {
 
 /// Properties of a tip that do not depend on which of its bodies are on this rank.
-JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vec3 const& screw, int restricted) {
+JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vector<double, 4> const& screw,
+                  int restricted) {
     JointedTip tip;
     tip.ring = joint.ring;
     tip.type = joint.type;
@@ -20,7 +21,7 @@ JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vec3 const& screw, in
     tip.rotation = joint.rotation;
     tip.translation = joint.translation;
     tip.axes = axes;
-    tip.screw = {screw[0], screw[1]};
+    tip.screw = dca::as_screw(screw);
     tip.restricted = restricted;
     tip.pitched = has_pitch(joint.type) && joint.pitch != 0;
     tip.cosine = dot(joint.first_axis, joint.axis);

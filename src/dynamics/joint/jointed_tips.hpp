@@ -121,7 +121,7 @@ struct JointedTips {
     CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
         Place m{t.translation - t.com, t.rotation * t.axes};
         if (slides(t.type)) m.point = e.apart() - t.com;
-        if (has_two_axes(t.type)) {
+        if (turns_twice(t.type)) {
             Vec3 const first = t.rotation * t.first_axis, second = e.to_last(t.axis);
             Vec3 const normal = cross(first, second), p = (1 / norm(normal)) * normal;
             m.axes.set_column(0, p);
@@ -155,18 +155,24 @@ struct JointedTips {
     /// bias"), with the rates that follow from the bodies' motion.
     CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
-        if (!has_two_axes(t.type) && !has_one_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
+        if (!turns_twice(t.type) && !keeps_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
         Pair const rate = opening_rate(t, e, m);
-        if (has_two_axes(t.type)) {
+        if (turns_twice(t.type)) {
             // First axis: (0, y, z).
             Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);
             Vec3 const u{{0, rate.angular[1], rate.angular[2]}};
             double const u1 = u[1] / first[1], u2 = u[2] - first[2] * u1;
             return {cross(w, u) + (u1 * u2) * cross(first, Vec3{{0, 0, 1}}), Vec3::zero()};
         }
-        double const c = t.screw.c, s = t.screw.s;
-        double const along = c * rate.angular[2] + (s == 0 ? 0.0 : s * rate.linear[2]);
-        return {cross(w, Vec3{{0, 0, c * along}}), 2.0 * cross(w, Vec3{{0, 0, s * along}})};
+        Pair const free = free_part(t, rate);
+        return {cross(w, free.angular), 2.0 * cross(w, free.linear)};
+    }
+    /// Part of a relative motion that the joint leaves free.
+    CATENA_HD static Pair free_part(JointedTip const& t, Pair const& motion) {
+        Vector<double, 6> d = along_directions(t, motion);
+        for (int i = 0; i < t.restricted; ++i) d[i] = 0;
+        dca::AlongAxes<double> const free = dca::along_axes(t.screw, d);
+        return {free.angular, free.linear};
     }
     /// Displacement of G relative to J, along the axes of the Place: the joint's closing error
     /// along its restricted directions.
@@ -177,12 +183,12 @@ struct JointedTips {
         Quat const relative =
             conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;
         if (is_rigid(t.type)) open.angular = rotation_vector(relative);
-        if (has_two_axes(t.type)) {
+        if (turns_twice(t.type)) {
             Vec3 const second = to_matrix(relative) * t.axis;
             open.angular[0] =
                 -(dot(t.first_axis, second) - t.cosine) / norm(cross(t.first_axis, second));
         }
-        if (has_one_axis(t.type)) {
+        if (keeps_axis(t.type)) {
             open.angular = transposed_times(t.axes, cross(t.axis, to_matrix(relative) * t.axis));
             double turned = dot(rotation_vector(relative), t.axis);
             // The number of whole revolutions follows from the sliding.
@@ -196,9 +202,7 @@ struct JointedTips {
     }
     /// Components along the directions of the joint's handles, in their order.
     CATENA_HD static Vector<double, 6> along_directions(JointedTip const& t, Pair const& pair) {
-        double const c = t.screw.c, s = t.screw.s;
-        return {{pair.linear[0], pair.linear[1], c * pair.linear[2] - s * pair.angular[2],
-                 pair.angular[0], pair.angular[1], s * pair.linear[2] + c * pair.angular[2]}};
+        return dca::along_directions(t.screw, dca::AlongAxes<double>{pair.linear, pair.angular});
     }
     /// Sets LoadsView::tip_bias for accelerations: velocity terms, and gravity as an acceleration
     /// of the ground.
@@ -238,7 +242,8 @@ struct JointedTips {
         Vector<double, 6> const open = along_directions(t, opening(t, e, place(t, e)));
         double worst = 0;
         for (int j = 0; j < t.restricted; ++j) {
-            double const along = std::fabs(open[j]) / (j < 3 ? reach : 1.0);
+            bool const linear = direction_at(static_cast<int>(t.screw.order), j) < 3;
+            double const along = std::fabs(open[j]) / (linear ? reach : 1.0);
             worst = along > worst || along != along ? along : worst;
         }
         return worst;
