@@ -37,9 +37,9 @@ INSTANTIATE_TEST_SUITE_P(
              "conformation: self_avoiding, velocities: thermal}",
              "box: {periodic: [90, 13, 12]}", 90},
         Case{"in_layers",
-             "{name: a, count: 110, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
-             "velocities: thermal}",
-             "box: {periodic: [110, 26, 26]}", 110, false, 1, true}),
+             "{name: a, count: 120, sequence: GKEKSDESKEKSDEKRSKEDKG, model: calvados2, "
+             "conformation: self_avoiding, velocities: thermal}",
+             "box: {periodic: [90, 13, 12]}", 90, false, 1, true}),
     [](auto const& scene) { return scene.param.name; });
 
 }  // namespace

@@ -179,9 +179,9 @@ INSTANTIATE_TEST_SUITE_P(
              "box: {periodic: [11.2, 11, 42]}", 42},
         // So many that OpenMM has lists in both Contexts.
         Case{"in_layers",
-             "{name: a, count: 110, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
-             "velocities: thermal}",
-             "box: {periodic: [110, 26, 26]}", 110, false, 1, true},
+             "{name: a, count: 120, sequence: GKEKSDESKEKSDEKRSKEDKG, model: calvados2, "
+             "conformation: self_avoiding, velocities: thermal}",
+             "box: {periodic: [90, 13, 12]}", 90, false, 1, true},
         Case{"open",
              "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, "
              "velocities: thermal}",

