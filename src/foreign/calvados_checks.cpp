@@ -9,11 +9,10 @@
 #include <filesystem>
 
 #include "error.hpp"
+#include "foreign/calvados_charges.hpp"
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
-#include "structure/calvados2.hpp"
-#include "systems/import.hpp"
 #include "systems/pdb_topology.hpp"
 
 namespace catena::foreign {
@@ -23,9 +22,6 @@ namespace {
 using scene::Node;
 
 constexpr double most_box_difference = 1e-4;  // nm
-/// Relative difference of prefactors and Debye lengths; covers constants of other digits, and is
-/// 0.2 K or 0.2 % of the ionic strength.
-constexpr double most_screening_difference = 1e-3;
 /// Key with which a configuration of the package ends: its keys are in alphabetical order.
 constexpr char const* last_key = "wfreq";
 /// Number of keys in alphabetical order from which a file is taken for the package's own.
@@ -52,36 +48,6 @@ void refuse_another_size(PackageFile const& config, SystemText const& system) {
                                     (*made)[0], (*made)[1], (*made)[2]),
                         "start the package's run.py again, which writes the System, or correct "
                         "`box`");
-}
-
-/// Throws InputError if the System's charges are not screened as the package screens them at the
-/// configuration's temperature and ionic strength.
-void refuse_another_water(PackageFile const& config, SystemText const& system) {
-    Node const *const temp = config.find("temp"), *const ionic = config.find("ionic");
-    if (temp == nullptr) return;
-    double const temperature = scene::number(*temp), salt = config.non_negative("ionic", 0);
-    std::string const remedy =
-        "start the package's run.py again, which writes the System, or "
-        "correct the value";
-    if (!(temperature > 0 && temperature <= hottest)) return;  // settings_of() refuses these
-    auto const made = read_screening(system.file(), scene::shown_path(system.file()));
-    if (!made) return;
-    calvados2::Yukawa const asked = calvados2::yukawa(temperature, salt);
-    if (std::abs(made->prefactor / asked.prefactor - 1) > most_screening_difference)
-        scene::fail(
-            *temp,
-            fmt::format("at {:.6g} K charges act with a prefactor of {:.6g} kJ nm/mol, "
-                        "those of {} with {:.6g}: it was written at another temperature",
-                        temperature, asked.prefactor, bare_name(system.file()), made->prefactor),
-            remedy);
-    if (ionic != nullptr &&
-        std::abs(made->kappa - asked.kappa) > most_screening_difference * made->kappa)
-        scene::fail(
-            *ionic,
-            fmt::format("{:.6g} mol/l at {:.6g} K screen charges with {:.4g}/nm, {} does "
-                        "with {:.4g}/nm: it was written with another ionic strength",
-                        salt, temperature, asked.kappa, bare_name(system.file()), made->kappa),
-            remedy);
 }
 
 /// A key of the configuration that makes a force of the System.
@@ -168,7 +134,7 @@ void check_configuration(PackageFile const& config, Files const& files, bool is_
                          Settings& settings) {
     SystemText const system(files.system);
     refuse_another_size(config, system);
-    refuse_another_water(config, system);
+    refuse_other_charges(config, files);
     refuse_lost_forces(config, system, is_continued);
     note_unasked_force(config, system, settings);
     if (settings.steps > 0 && settings.every > settings.steps)

@@ -13,10 +13,10 @@ namespace catena::foreign {
 /// the order of its keys tells. The package writes them in alphabetical order.
 void refuse_cut(PackageFile const& config);
 
-/// Throws InputError if the configuration's box, temperature or ionic strength is not the System's,
-/// or if it asks for a force that the System lacks. Notes frames that are never due. `is_continued`
-/// says that the start is not the package's first one; a continued run of the package leaves out
-/// forces of the equilibration.
+/// Throws InputError if the configuration's box or charges are not the System's, or if it asks for
+/// a force that the System lacks. Notes frames that are never due. `is_continued` says that the
+/// start is not the package's first one; a continued run of the package leaves out forces of the
+/// equilibration.
 void check_configuration(PackageFile const& config, Files const& files, bool is_continued,
                          Settings& settings);
 

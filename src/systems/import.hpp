@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct ImportedChain {
 struct Screening {
     double prefactor;  // kJ nm/mol
     double kappa;      // 1/nm, inverse Debye length
+    /// Distance at which the energy is cut, nm; infinite without a cutoff.
+    double cutoff = std::numeric_limits<double>::infinity();
+    std::vector<double> charges = {};  // e, one per particle
 };
 
 /// All chains of a System with its box.

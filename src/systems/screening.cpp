@@ -108,6 +108,8 @@ std::optional<Screening> screening_of(OpenMM::System const& system) {
                 fitted(repulsion(system, i, static_cast<int>(charged - charges.begin()), r), r);
             if (!found) continue;
             found->prefactor /= *charged * *charged;
+            found->cutoff = reach_of(*pairs);
+            found->charges = charges;
             return found;
         } catch (std::bad_alloc const&) {
             throw;

@@ -348,6 +348,19 @@ TEST_F(DamagedPackage, AnotherTemperatureOrSaltThanTheSystemsIsRefused) {
     replace("ionic: 0.15", "ionic: 0.5");
     expect_refused(import(), 2, "0.5 mol/l at 293.15 K screen charges with 2.318/nm");
     expect_refused(import(), 2, "idr.xml does with 1.27/nm: it was written with another ionic");
+    replace("ionic: 0.5", "cutoff_yu: 3.5");
+    expect_refused(import(), 2, "charges are cut at 3.5 nm, those of idr.xml at 4 nm (idr/config.");
+}
+
+TEST_F(DamagedPackage, HistidinesAtAnotherPhAreRefused) {
+    replace_in(folder + "/top.pdb", "GLY A   4", "HIS A   4");  // it has no charge
+    replace("random_number_seed", "pH: 14\nrandom_number_seed");
+    EXPECT_EQ(import().status, 0) << import().err;
+    replace("pH: 14", "pH: 7");
+    expect_refused(
+        import(), 2,
+        "at that pH a histidine has 0.0909 e, that of particle 3 (from 0) of idr.xml has "
+        "0 e: it was written at another pH (idr/config.yaml: pH, line 8)");
 }
 
 TEST_F(DamagedPackage, ForcesAreLeftOutByTheNamesThatCheckShows) {
