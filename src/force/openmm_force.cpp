@@ -164,7 +164,8 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads,
 /// GPUs compute lists of a shorter reach less efficiently. CALVADOS 2 at 330 mg/ml has 0.21 of the
 /// pairs with layers, and OpenMM's pair kernels take 0.61 to 0.63 of the time (100,000 and a
 /// million beads, H200). Few beads take less time in one Context, because each has launches of its
-/// own. Path `host` on a GPU waits for every Context.
+/// own. Path `host` on a GPU waits for every Context. `few_on_device` = 0 leaves layers on path
+/// `device` to `layers: all`.
 double OpenMmForces::most_pairs(OpenMmSpec const& spec, BeadSystem const& beads) const {
     double constexpr few = 0.6, few_on_device = 0.3, all = 1;
     std::int64_t constexpr many_beads_on_device = 30'000;

@@ -340,6 +340,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"domains", "{name: a, " CATENA_TEST_DOMAINS "}", "box: {periodic: [40, 40, 40]}"},
         Case{"many_domains", "{name: a, count: 20, " CATENA_TEST_DOMAINS "}",
              "box: {periodic: [60, 60, 60]}"},
+        Case{"domains_in_layers", "{name: a, count: 2, " CATENA_TEST_DOMAINS "}",
+             "box: {periodic: [40, 40, 40]}", true},
         Case{"layers",
              "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
              "velocities: "
