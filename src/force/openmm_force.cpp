@@ -68,7 +68,7 @@ class OpenMmForces final : public OpenMmForce {
     bool shares_one_list() const {
         return path_.on_device() && communicator_.size() > 1 && !by_pairs_;
     }
-    double most_pairs(OpenMmSpec const& spec, BeadSystem const& beads) const;
+    double most_pairs(OpenMmSpec const& spec) const;
     /// Moves forces out of the model into layers, if that pays on this platform and path.
     std::vector<ForceLayer> layers(OpenMmSpec const& spec, BeadSystem const& beads);
     std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec,
@@ -161,23 +161,18 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads,
 }
 
 /// Returns the largest part of the pairs of a single Context with which layers pay; 0: no layers.
-/// GPUs compute lists of a shorter reach less efficiently. CALVADOS 2 at 330 mg/ml has 0.21 of the
-/// pairs with layers, and OpenMM's pair kernels take 0.61 to 0.63 of the time (100,000 and a
-/// million beads, H200). Few beads take less time in one Context, because each has launches of its
-/// own. Path `host` on a GPU waits for every Context. `few_on_device` = 0 leaves layers on path
-/// `device` to `layers: all`.
-double OpenMmForces::most_pairs(OpenMmSpec const& spec, BeadSystem const& beads) const {
-    double constexpr few = 0.6, few_on_device = 0.3, all = 1;
-    std::int64_t constexpr many_beads_on_device = 30'000;
+/// `auto` gives GPUs none. On path `device` a million beads of CALVADOS 2 took 2.72 ms a step with
+/// layers and 2.79 without, 100,000 beads 0.342 and 0.326 ms (H200, src/force/README.md). Path
+/// `host` on a GPU waits for every Context.
+double OpenMmForces::most_pairs(OpenMmSpec const& spec) const {
+    double constexpr few = 0.6, all = 1;
     if (spec.layers == "none" || spec.replicate || shares_one_list()) return 0;
     if (spec.layers == "all") return all;
-    if (path_.on_device())
-        return beads.size() < many_beads_on_device * communicator_.size() ? 0 : few_on_device;
     return platform_.on_cpu() ? few : 0;
 }
 
 std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem const& beads) {
-    double const most = most_pairs(spec, beads);
+    double const most = most_pairs(spec);
     if (most == 0) return {};
     std::vector<ForceLayer> taken = take_layers(model_, beads, most);
     for (ForceLayer const& layer : taken)
