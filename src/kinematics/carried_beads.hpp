@@ -76,8 +76,9 @@ class CarriedBeadsIn {
         : any_(group.carried_beads() > 0),
           in_scene_(group.carried_in_scene),
           space_(space),
+          bodies_(bodies_of_beads(group)),
           offset_(group.bead_offset),
-          body_(bodies_of_beads(group)),
+          body_(bodies_),
           place_(group.bead_place),
           position_(group.carried_beads()),
           force_(group.carried_beads()) {}
@@ -107,6 +108,7 @@ class CarriedBeadsIn {
   private:
     bool any_, in_scene_, forces_are_out_ = false;
     Space space_;
+    std::vector<std::int64_t> bodies_;  // On the host a List is a view.
     typename Space::template List<std::int64_t> offset_, body_;
     typename Space::template List<Vec3> place_;
     typename Space::template FieldOf<3> position_, force_;
