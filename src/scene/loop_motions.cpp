@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "joints/joint_models.hpp"
 #include "scene/pose.hpp"
@@ -14,6 +15,8 @@ namespace {
 
 /// Fraction of a unit twist that counts as zero: numbers printed with seven digits.
 double constexpr printed_digits = 1e-6;
+/// Most bodies of a loop that is cut at every pair of joints, a cost of n^3.
+std::size_t constexpr longest_cut_everywhere = 32;
 
 double dot(Twist const& a, Twist const& b) {
     return catena::dot(a.angular, b.angular) + catena::dot(a.linear, b.linear);
@@ -31,6 +34,7 @@ class TwistSpace {
   public:
     int dimension() const { return dimension_; }
     bool is_full() const { return dimension_ == 6; }
+    Twist const& basis(int i) const { return basis_[static_cast<std::size_t>(i)]; }
     /// Adds a twist; returns true if it was not in the space.
     bool add(Twist const& twist) {
         double const size = std::sqrt(dot(twist, twist));
@@ -43,7 +47,6 @@ class TwistSpace {
     }
 
   private:
-    Twist const& basis(int i) const { return basis_[static_cast<std::size_t>(i)]; }
     /// Adds a twist's part across the space if it exceeds `printed_digits`.
     bool add_part(Twist part) {
         for (int again = 0; again < 2; ++again)
@@ -67,51 +70,124 @@ double length_of(ChainSpec const& chain) {
     return longest > 0 ? longest : 1;
 }
 
-/// Adds the twists of a joint with frame J at `frame`; returns true if one of them is new.
-bool add_joint(JointType type, JointShape const& shape, std::array<double, 4> const& q,
-               Pose const& frame, double length, TwistSpace& space) {
+/// Twists of a joint.
+struct LoopJoint {
+    std::array<Twist, 6> twists;
+    std::size_t count = 0;
+};
+
+/// Returns the twists of a joint with frame J at `frame`, in the axes and about the origin of the
+/// frame's reference, lengths divided by `length`.
+LoopJoint joint_at(JointType type, JointShape const& shape, std::array<double, 4> const& q,
+                   Pose const& frame, double length) {
     Mat3 const axes = to_matrix(frame.orientation);
-    bool any = false;
+    LoopJoint joint;
     with_joint(type, [&](auto model) {
         for (Twist const& t : decltype(model)::twists(shape, q)) {
-            Vec3 const angular = axes * t.angular;
-            Vec3 const linear = axes * t.linear + cross(frame.origin, angular);
-            any |= space.add({angular, (1 / length) * linear});
+            Vec3 const angular = axes * t.angular,
+                       linear = axes * t.linear + cross(frame.origin, angular);
+            joint.twists[joint.count++] = {angular, (1 / length) * linear};
         }
-        return any;
+        return true;
     });
+    return joint;
+}
+
+/// Adds a joint's twists; returns true if one of them is new.
+bool add(TwistSpace& space, LoopJoint const& joint) {
+    bool any = false;
+    for (std::size_t i = 0; i < joint.count; ++i) any |= space.add(joint.twists[i]);
     return any;
 }
 
-/// Returns the motions of the last body that the joints make, W. In a ring they are relative to the
-/// first body, in its axes; its own joint is not part of the loop. `end` receives the last body's
-/// pose, unless the space is full before it.
-TwistSpace motions_of_bodies(ChainSpec const& chain, double length, Pose& end) {
+/// Calls visit(joint) for the bodies' joints of the loop, then for the tip's, until it returns
+/// false. Twists are in W or, in a ring, in the axes of the first body, whose own joint is not part
+/// of the loop.
+template <class Visit>
+void visit_joints(ChainSpec const& chain, Visit const& visit) {
     BodyArrays const& bodies = chain.bodies;
-    TwistSpace space;
+    double const length = length_of(chain);
+    Pose end;
     for (std::size_t k = chain.is_ring() ? 1 : 0; k < bodies.size(); ++k) {
         Pose const frame{to_quaternion(bodies.rotation[k]), bodies.translation[k]};
         JointShape const shape{bodies.axis[k],
                                bodies.first_axis.empty() ? Vec3::zero() : bodies.first_axis[k],
                                bodies.pitch.empty() ? 0 : bodies.pitch[k]};
-        if (add_joint(bodies.joint[k], shape, bodies.q[k], end * frame, length, space))
-            space.close();
-        if (space.is_full()) return space;
+        if (!visit(joint_at(bodies.joint[k], shape, bodies.q[k], end * frame, length))) return;
         end = next_pose(bodies, k, end);
     }
-    return space;
+    TipJoint const& tip = chain.tip_joint;
+    Pose const frame{to_quaternion(tip.rotation), tip.translation};
+    visit(joint_at(tip.type, {tip.axis, tip.first_axis, tip.pitch}, tip.q, end * frame, length));
+}
+
+/// Motions of the joints of a part of a loop: of one joint its own, of several those of their
+/// group.
+class PartOfLoop {
+  public:
+    void add(LoopJoint const& joint) {
+        if (scene::add(space_, joint) && joints_ > 0) space_.close();
+        ++joints_;
+    }
+    TwistSpace const& motions() const { return space_; }
+
+  private:
+    TwistSpace space_;
+    int joints_ = 0;
+};
+
+/// Number of directions of the motions of two parts of a loop together.
+int directions_of(TwistSpace a, TwistSpace const& b) {
+    for (int i = 0; i < b.dimension(); ++i) a.add(b.basis(i));
+    return a.dimension();
+}
+
+/// Returns the least number of directions over all ways to cut a loop into two parts. The motions
+/// of either part do not depend on the position of the other, so this holds at all positions.
+int least_directions(std::vector<LoopJoint> const& joints) {
+    std::size_t const n = joints.size();
+    int least = 6;
+    for (std::size_t begin = 0; begin + 1 < n; ++begin) {
+        PartOfLoop part;
+        for (std::size_t end = begin + 1; end < n && !part.motions().is_full(); ++end) {
+            part.add(joints[end - 1]);
+            PartOfLoop rest;
+            for (std::size_t k = end; k < n + begin && !rest.motions().is_full(); ++k)
+                rest.add(joints[k % n]);
+            least = std::min(least, directions_of(part.motions(), rest.motions()));
+        }
+    }
+    return least;
+}
+
+/// Returns the number of directions of a loop that is cut at its tip only.
+int directions_at_tip(ChainSpec const& chain) {
+    PartOfLoop bodies;
+    LoopJoint tip;
+    std::size_t left = chain.bodies.size() - (chain.is_ring() ? 1 : 0);
+    visit_joints(chain, [&](LoopJoint const& joint) {
+        if (left-- == 0)
+            tip = joint;
+        else
+            bodies.add(joint);
+        return !bodies.motions().is_full();
+    });
+    TwistSpace all = bodies.motions();
+    add(all, tip);
+    return all.dimension();
 }
 
 }  // namespace
 
 int restricted_by_tip(ChainSpec const& chain) {
-    TipJoint const& tip = chain.tip_joint;
-    double const length = length_of(chain);
-    Pose end;
-    TwistSpace space = motions_of_bodies(chain, length, end);
-    Pose const frame = end * Pose{to_quaternion(tip.rotation), tip.translation};
-    add_joint(tip.type, {tip.axis, tip.first_axis, tip.pitch}, tip.q, frame, length, space);
-    return space.dimension() - freedom_of(tip.type);
+    int const own = freedom_of(chain.tip_joint.type);
+    if (chain.bodies.size() > longest_cut_everywhere) return directions_at_tip(chain) - own;
+    std::vector<LoopJoint> joints;
+    visit_joints(chain, [&](LoopJoint const& joint) {
+        joints.push_back(joint);
+        return true;
+    });
+    return least_directions(joints) - own;
 }
 
 }  // namespace catena::scene

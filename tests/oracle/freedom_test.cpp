@@ -66,27 +66,34 @@ std::vector<Kind> const tips{{"revolute", "n"},  {"spherical", "n"},  {"cylindri
                              {"prismatic", "x"}, {"planar3", "x"},    {"cylindrical", "x"},
                              {"revolute", "o"},  {"cylindrical", "o"}};
 
-/// Five revolute joints about n, among them another joint, first, in the middle or last.
+/// Five revolute joints about n, among them another joint, first, in the middle or last. Joints
+/// that leave the group, at an end and with such a tip, make a loop of three parts: then the count
+/// is an upper bound.
 TEST(LoopFreedom, is_the_rank_that_the_jacobian_lacks) {
-    std::vector<Kind> const others{{"revolute", "n"},    {"cylindrical", "n"}, {"prismatic", "n"},
-                                   {"prismatic", "x"},   {"prismatic", "o"},   {"helical", "n"},
-                                   {"planar3", "n"},     {"planar3", "x"},     {"weld", "n"},
-                                   {"cylindrical", "x"}, {"revolute", "o"},    {"universal", "n"},
-                                   {"spherical", "n"}};
-    int checked = 0;
-    for (Kind const& other : others)
+    std::vector<Kind> const others{{"revolute", "n"},  {"cylindrical", "n"}, {"prismatic", "n"},
+                                   {"prismatic", "x"}, {"prismatic", "o"},   {"helical", "n"},
+                                   {"planar3", "n"},   {"planar3", "x"},     {"weld", "n"},
+                                   {"spherical", "n"}, {"cylindrical", "x"}, {"revolute", "o"},
+                                   {"universal", "n"}};
+    int exact = 0, bounds = 0;
+    for (std::size_t i = 0; i < others.size(); ++i)
         for (std::size_t const place : {0U, 2U, 5U}) {
             std::vector<Kind> joints(5, {"revolute", "n"});
-            joints.insert(joints.begin() + static_cast<std::ptrdiff_t>(place), other);
+            joints.insert(joints.begin() + static_cast<std::ptrdiff_t>(place), others[i]);
             for (Kind const& tip : tips) {
+                SCOPED_TRACE(fmt::format("{} {} at {}, tip {} {}", others[i].type,
+                                         others[i].direction, place, tip.type, tip.direction));
                 ChainSpec const chain = bridge(joints, tip);
-                EXPECT_EQ(restricted(chain), closure_rank(chain))
-                    << other.type << " " << other.direction << " at " << place << ", tip "
-                    << tip.type << " " << tip.direction;
-                ++checked;
+                bool const three_parts = i >= 10 && place != 2;
+                if (three_parts)
+                    EXPECT_GE(restricted(chain), closure_rank(chain));
+                else
+                    EXPECT_EQ(restricted(chain), closure_rank(chain));
+                ++(three_parts ? bounds : exact);
             }
         }
-    EXPECT_EQ(checked, 13 * 3 * 14);
+    EXPECT_EQ(exact, (10 * 3 + 3) * 14);
+    EXPECT_EQ(bounds, 3 * 2 * 14);
 }
 
 /// Rotations about one axis and all translations: a group of four directions.
@@ -147,7 +154,7 @@ TEST(LoopFreedom, is_that_of_the_positions_nearby) {
 ChainSpec polygon(int bars, std::string const& closing) {
     double const turn = 2 * std::acos(-1.0) / bars;
     std::string const body = "{mass: 1, com: [0.5, 0.1, 0], inertia: [0.5, 0.6, 0.7], joint: ";
-    std::string bodies = body + "{type: free, position: [1e5, 2e5, -3e5]}}";
+    std::string bodies = body + "{type: free, q: {position: [1e5, 2e5, -3e5]}}}";
     for (int k = 1; k < bars; ++k)
         bodies += fmt::format(
             ", {}{{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0], q: {:.17g}}}}}", body,
