@@ -142,7 +142,7 @@ std::string flat_loop(int bodies, std::string const& first, std::string const& n
         if (type == "planar3")
             return fmt::format(
                 "{{type: planar3, axes: [{}, {}]{}, q: [0.1, {}, 0.4], qd: [{}, 1, "
-                "-0.5]}}",
+                "-0.5], torque: [1, 2, 0.5]}}",
                 across, n, at, 0.1 * (k % 4), k % 3);
         return fmt::format("{{type: revolute, axis: {}{}, q: {}, qd: {}}}", n, at,
                            0.3 + 0.2 * (k % 4), 0.5 * (k % 3) - 0.4);
@@ -162,7 +162,7 @@ std::string flat_loop(int bodies, std::string const& first, std::string const& n
 /// All that the closing joint restricts is restricted already: its matrix is zero.
 TEST_P(Rings, wholly_redundant_closing_joints_carry_nothing) {
     std::vector<std::string> texts;
-    for (int const bodies : {2, 3, 4, 7, 40})
+    for (int const bodies : {2, 3, 4, 7, 12})
         for (char const* const tip : {"revolute", "planar3"})
             texts.push_back(flat_loop(bodies, "planar3", "revolute", tip));
     for (int const bodies : {2, 5, 40})
