@@ -120,25 +120,36 @@ CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& 
     return inverse;
 }
 
-/// Returns the joint that closes a loop. Its factor is that of any joint; if it is nearly singular,
-/// its factor is zero and `inboard` holds the pseudo-inverse, which is zero otherwise.
+/// True if a matrix's diagonal has no negative number and no NaN.
 template <class Real, int K>
-CATENA_HD JointMatrix<Real, K> closing_joint(Symmetric<Real, K> const& z,
-                                             Vector<Real, K> const& size, int restricted) {
-    JointMatrix<Real, K> joint{factorize(z, restricted), Matrix<Real, K, K>::zero(),
-                               Matrix<Real, K, K>::zero()};
-    if (!is_nearly_singular(joint.factor, size, restricted)) return joint;
+CATENA_HD bool has_diagonal_of_squares(Matrix<Real, K, K> const& m) {
+    bool good = true;
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) good = good && m(i, i) >= Real(0);
+    return good;
+}
+/// The joint that closes a loop.
+template <class Real, int K>
+struct ClosingJoint {
+    /// The factor is that of any joint. If it is nearly singular, it is zero and `inboard` holds
+    /// the pseudo-inverse, which is zero otherwise.
+    JointMatrix<Real, K> joint;
+    /// True if the joint was nearly singular, but not indefinite. The pseudo-inverse of a joint
+    /// that is wholly redundant is zero.
+    bool has_least_norm = false;
+};
+/// Returns the joint that closes a loop.
+template <class Real, int K>
+CATENA_HD ClosingJoint<Real, K> closing_joint(Symmetric<Real, K> const& z,
+                                              Vector<Real, K> const& size, int restricted) {
+    ClosingJoint<Real, K> closing{
+        {factorize(z, restricted), Matrix<Real, K, K>::zero(), Matrix<Real, K, K>::zero()}};
+    JointMatrix<Real, K>& joint = closing.joint;
+    if (!is_nearly_singular(joint.factor, size, restricted)) return closing;
     joint.inboard = least_norm_inverse(z, size, restricted);
     joint.factor = Symmetric<Real, K>::zero();
-    return joint;
-}
-/// True if the joint was nearly singular, but not indefinite.
-template <class Real, int K>
-CATENA_HD bool has_least_norm(JointMatrix<Real, K> const& joint) {
-    bool any = false;
-    CATENA_UNROLL
-    for (int i = 0; i < K; ++i) any = any || joint.inboard(i, i) > Real(0);
-    return any;
+    closing.has_least_norm = has_diagonal_of_squares(joint.inboard);
+    return closing;
 }
 /// Returns the closing joint's force. It cancels `apart`, the acceleration of the joint's inboard
 /// side relative to its outboard side.

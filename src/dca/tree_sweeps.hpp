@@ -140,16 +140,18 @@ struct TreeSweeps {
         PivotFailure found;
         JointAt const at_first = at(root.first);
         Joint first{};
+        bool has_least_norm = false;
         if (root.tip == TipTo::nothing) {
             first.factor = factorize(held.z11, at_first.restricted);
         } else {
             bool const ring = root.tip == TipTo::first_body;
-            first = closing_joint(ring ? ring_matrix(floating) : held.z11,
-                                  open_response(floating, ring), at_first.restricted);
+            auto const closing = closing_joint(ring ? ring_matrix(floating) : held.z11,
+                                               open_response(floating, ring), at_first.restricted);
+            first = closing.joint;
+            has_least_norm = closing.has_least_norm;
         }
         joints.store(root.first, first);
-        if (root.tip == TipTo::nothing || !has_least_norm(first))
-            watch(at_first, first.factor, found);
+        if (!has_least_norm) watch(at_first, first.factor, found);
         note(found);
         return first;
     }

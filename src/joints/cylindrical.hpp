@@ -67,9 +67,9 @@ struct CylindricalJoint : JointDefaults {
     static JointOpening opening(JointShape const& shape, Quat const& turn, Vec3 const& origin) {
         return {norm(cross(shape.axis, origin)), tilt_of(shape.axis, turn)};
     }
-    static int restricted_in_plane(JointShape const& shape, std::array<double, 4> const&,
-                                   Vec3 const& normal) {
-        return are_parallel(shape.axis, normal) || are_perpendicular(shape.axis, normal) ? 2 : 3;
+    static std::array<Twist, freedom> twists(JointShape const& shape,
+                                             std::array<double, 4> const&) {
+        return {{{shape.axis, Vec3::zero()}, {Vec3::zero(), shape.axis}}};
     }
     /// Draws a position: a uniform angle, and a length in [-0.5, 0.5].
     template <class Draws>

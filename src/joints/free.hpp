@@ -18,6 +18,12 @@ struct FreeJoint : JointDefaults {
     static JointDisplacement displacement(JointShape const&, std::array<double, 4> const& q) {
         return {{q[0], q[1], q[2], q[3]}, Vec3::zero()};
     }
+    static std::array<Twist, freedom> twists(JointShape const&, std::array<double, 4> const&) {
+        std::array<Twist, freedom> all;
+        for (std::size_t i = 0; i < 3; ++i)
+            all[i] = rotations[i], all[i + 3] = {Vec3::zero(), rotations[i].angular};
+        return all;
+    }
     /// Draws a position; angles and rotations are uniform.
     template <class Draws>
     static std::array<double, 4> random_position(Draws& draws) {

@@ -31,6 +31,10 @@ struct HelicalJoint : JointDefaults {
         return {std::hypot(norm(cross(shape.axis, origin)), std::remainder(along, a_turn)),
                 tilt_of(shape.axis, turn)};
     }
+    static std::array<Twist, freedom> twists(JointShape const& shape,
+                                             std::array<double, 4> const&) {
+        return {{{shape.axis, shape.pitch * shape.axis}}};
+    }
     /// Draws a position; angles and rotations are uniform.
     template <class Draws>
     static std::array<double, 4> random_position(Draws& draws) {

@@ -32,6 +32,15 @@ struct JointOpening {
     double distance = 0, angle = 0;
 };
 
+/// Velocity of a body relative to a frame, in the frame's axes: angular, and linear of the point at
+/// the frame's origin.
+struct Twist {
+    Vec3 angular = Vec3::zero(), linear = Vec3::zero();
+};
+/// Rotations about the three axes of a frame.
+inline constexpr std::array<Twist, 3> rotations{
+    {{{{1, 0, 0}}, {{0, 0, 0}}}, {{{0, 1, 0}}, {{0, 0, 0}}}, {{{0, 0, 1}}, {{0, 0, 0}}}}};
+
 /// {c, s, rate}: a coordinate q rotates the joint by c rate q about its axis and slides it by
 /// s rate q; c^2 + s^2 = 1 (ChainGroup::screw).
 inline constexpr Vec3 pure_rotation{{1, 0, 1}};
@@ -56,17 +65,6 @@ CATENA_HD constexpr int direction_at(int order, int place) {
 /// the normal is fixed in both bodies. turns: the bodies stay in the plane if the axis is normal to
 /// it.
 enum class PlaneRole : std::uint8_t { breaks, starts, carries, turns };
-
-/// True if two vectors are parallel up to rounding.
-inline bool are_parallel(Vec3 const& a, Vec3 const& b) {
-    double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();
-    return norm(cross(a, b)) <= rounding * norm(a) * norm(b);
-}
-/// True if two vectors are perpendicular up to rounding.
-inline bool are_perpendicular(Vec3 const& a, Vec3 const& b) {
-    double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();
-    return std::abs(dot(a, b)) <= rounding * norm(a) * norm(b);
-}
 
 /// Properties of a joint model, with the values that hold unless the model states others.
 struct JointDefaults {
@@ -115,10 +113,10 @@ struct JointDefaults {
     static JointOpening opening(JointShape const&, Quat const&, Vec3 const& origin) {
         return {norm(origin), 0};
     }
-    /// Number of a plane's three directions that a tip's joint restricts at position q. `normal` is
-    /// the plane's, in J.
-    static int restricted_in_plane(JointShape const&, std::array<double, 4> const&, Vec3 const&) {
-        return 3;
+    /// Twists that span the motion of B relative to J at position q, as many as `freedom`. A link
+    /// lists none.
+    static std::array<Twist, 0> twists(JointShape const&, std::array<double, 4> const&) {
+        return {};
     }
     /// Position of a joint without coordinates; draws nothing.
     template <class Draws>

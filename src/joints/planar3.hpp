@@ -65,9 +65,12 @@ struct Planar3Joint : JointDefaults {
     static JointOpening opening(JointShape const& shape, Quat const& turn, Vec3 const& origin) {
         return {std::abs(dot(shape.axis, origin)), tilt_of(shape.axis, turn)};
     }
-    static int restricted_in_plane(JointShape const& shape, std::array<double, 4> const&,
-                                   Vec3 const& normal) {
-        return are_parallel(shape.axis, normal) ? 0 : 2;
+    /// The rotation about J's origin, with the translations, is any rotation in the plane.
+    static std::array<Twist, freedom> twists(JointShape const& shape,
+                                             std::array<double, 4> const&) {
+        return {{{Vec3::zero(), shape.first_axis},
+                 {Vec3::zero(), cross(shape.axis, shape.first_axis)},
+                 {shape.axis, Vec3::zero()}}};
     }
     /// Draws a position: lengths in [-0.5, 0.5], and a uniform angle.
     template <class Draws>

@@ -23,9 +23,9 @@ struct PrismaticJoint : JointDefaults {
     static JointOpening opening(JointShape const& shape, Quat const& turn, Vec3 const& origin) {
         return {norm(cross(shape.axis, origin)), norm(rotation_vector(turn))};
     }
-    static int restricted_in_plane(JointShape const& shape, std::array<double, 4> const&,
-                                   Vec3 const& normal) {
-        return are_perpendicular(shape.axis, normal) ? 2 : 3;
+    static std::array<Twist, freedom> twists(JointShape const& shape,
+                                             std::array<double, 4> const&) {
+        return {{{Vec3::zero(), shape.axis}}};
     }
     /// Draws a position; lengths lie in [-0.5, 0.5].
     template <class Draws>

@@ -22,9 +22,9 @@ struct RevoluteJoint : JointDefaults {
     static JointOpening opening(JointShape const& shape, Quat const& turn, Vec3 const& origin) {
         return {norm(origin), tilt_of(shape.axis, turn)};
     }
-    static int restricted_in_plane(JointShape const& shape, std::array<double, 4> const&,
-                                   Vec3 const& normal) {
-        return are_parallel(shape.axis, normal) ? 2 : 3;
+    static std::array<Twist, freedom> twists(JointShape const& shape,
+                                             std::array<double, 4> const&) {
+        return {{{shape.axis, Vec3::zero()}}};
     }
     /// Draws a position; angles and rotations are uniform.
     template <class Draws>

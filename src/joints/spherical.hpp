@@ -18,8 +18,8 @@ struct SphericalJoint : JointDefaults {
     static JointDisplacement displacement(JointShape const&, std::array<double, 4> const& q) {
         return {{q[0], q[1], q[2], q[3]}, Vec3::zero()};
     }
-    static int restricted_in_plane(JointShape const&, std::array<double, 4> const&, Vec3 const&) {
-        return 2;
+    static std::array<Twist, freedom> twists(JointShape const&, std::array<double, 4> const&) {
+        return rotations;
     }
     /// Draws a position; angles and rotations are uniform.
     template <class Draws>

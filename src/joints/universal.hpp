@@ -31,11 +31,9 @@ struct UniversalJoint : JointDefaults {
         double const c = std::cos(q[0]), s = std::sin(q[0]);
         return c * axis + s * cross(first, axis) + (1 - c) * dot(first, axis) * first;
     }
-    static int restricted_in_plane(JointShape const& shape, std::array<double, 4> const& q,
-                                   Vec3 const& normal) {
-        return are_parallel(shape.first_axis, normal) || are_parallel(second_axis(shape, q), normal)
-                   ? 2
-                   : 3;
+    static std::array<Twist, freedom> twists(JointShape const& shape,
+                                             std::array<double, 4> const& q) {
+        return {{{shape.first_axis, Vec3::zero()}, {second_axis(shape, q), Vec3::zero()}}};
     }
     /// Draws a position; angles and rotations are uniform.
     template <class Draws>

@@ -27,8 +27,9 @@ class OpenChain {
         : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
         std::vector<Attitude<S>> const attitude = attitudes(links_);
         tip_ = read_tip(chain, links_, attitude);
-        omega_ = attitude.back().orientation * attitude.back().omega;
-        first_omega_ = attitude.front().orientation * attitude.front().omega;
+        last_ = attitude.back().orientation, first_ = attitude.front().orientation;
+        omega_ = last_ * attitude.back().omega;
+        first_omega_ = first_ * attitude.front().omega;
         for (Link<S> const& link : links_) silent_.push_back(silent(link));
     }
     TipClosure<S> const& tip() const { return tip_; }
@@ -51,7 +52,21 @@ class OpenChain {
                           aba_links(pushed(silent_, components), V3<S>::zero()));
     }
 
+    /// What response(j)[j] would be if the bodies at the tip were free. It is never less.
+    S free_response(std::size_t j) const {
+        std::vector<S> components(tip_.locked.size(), S(0));
+        components[j] = S(1);
+        return mobility(links_.back(), last_, tip_wrench(tip_, components, V3<S>::zero())) +
+               mobility(links_.front(), first_, wrench_on_first(tip_, components, tip_.first_arm));
+    }
+
   private:
+    /// Power of the acceleration that a wrench about the centre of mass gives a free body.
+    static S mobility(Link<S> const& link, M3<S> const& orientation, SpatialForce<S> const& f) {
+        V3<S> const torque = transposed_times(orientation, f.torque);
+        return dot(torque, Cholesky<S, 3>(link.inertia).solve(torque)) +
+               dot(f.force, f.force) / link.mass;
+    }
     /// Returns the links with the tip wrench added to the loads of the end bodies.
     std::vector<Link<S>> pushed(std::vector<Link<S>> links,
                                 std::vector<S> const& components) const {
@@ -73,23 +88,28 @@ class OpenChain {
 
     std::vector<Link<S>> links_, silent_;
     V3<S> gravity_, omega_, first_omega_;
+    M3<S> last_, first_;
     TipClosure<S> tip_;
 };
 
 /// System for the components of the tip wrench. Rows and columns are scaled to a unit diagonal, so
-/// that moments and forces have equal weight when the rank is determined.
+/// that moments and forces have equal weight when the rank is determined. Rows that are rounding
+/// errors beside the responses of free bodies count as zero.
 template <class S>
 class TipSystem {
   public:
-    TipSystem(Dense<S> matrix, double bodies) : scale_(matrix.rows()) {
+    TipSystem(Dense<S> matrix, Column<S> const& free, double bodies) : scale_(matrix.rows()) {
         using std::sqrt;
-        S const most = matrix.rows() > 0 ? S(matrix.diagonal().maxCoeff()) : S(0);
+        S const most = matrix.rows() > 0 ? S(matrix.diagonal().maxCoeff()) : S(0),
+                rounding = S(64 * bodies) * Eigen::NumTraits<S>::epsilon();
         for (Index i = 0; i < matrix.rows(); ++i) {
             S const d = matrix(i, i);
-            scale_[i] = d > S(Eigen::NumTraits<S>::epsilon()) * most ? S(S(1) / S(sqrt(d))) : S(0);
+            bool const moves =
+                d > S(Eigen::NumTraits<S>::epsilon()) * most && d > rounding * free[i];
+            scale_[i] = moves ? S(S(1) / S(sqrt(d))) : S(0);
         }
         matrix = scale_.asDiagonal() * matrix * scale_.asDiagonal();
-        lu_ = FullPivoting<S>(matrix, S(64 * bodies) * Eigen::NumTraits<S>::epsilon());
+        lu_ = FullPivoting<S>(matrix, rounding);
     }
     /// Adds to `components` the change that removes the residual `defect`.
     void correct(Column<S> const& defect, std::vector<S>& components) const {
@@ -201,8 +221,12 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
     std::size_t const m = open.tip().locked.size();
     Dense<S> matrix(m, m);
     // Column j of the matrix is the open chain's response to a unit of component j.
-    for (std::size_t j = 0; j < m; ++j) matrix.col(static_cast<Index>(j)) = open.response(j);
-    TipSystem<S> const system(matrix, static_cast<double>(chain.size()));
+    Column<S> free(m);
+    for (std::size_t j = 0; j < m; ++j) {
+        matrix.col(static_cast<Index>(j)) = open.response(j);
+        free[static_cast<Index>(j)] = open.free_response(j);
+    }
+    TipSystem<S> const system(matrix, free, static_cast<double>(chain.size()));
     std::vector<S> components(m, S(0));
     OracleResult<S> result = open.solve(components);
     // The second pass corrects the rounding errors of the first.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "joints/joint_models.hpp"
+#include "scene/loop_motions.hpp"
 
 namespace catena::scene {
 
@@ -78,28 +79,6 @@ bool is_planar(ChainSpec const& chain) {
     return chain.base == Base::fixed && !any_slides(chain) && parallel_within(rounding, chain, odd);
 }
 
-/// Number of a plane's three directions that the tip's joint restricts. `normal` is in J of the
-/// tip.
-int restricted_in_plane(TipJoint const& tip, Vec3 const& normal) {
-    JointShape const shape{tip.axis, tip.first_axis, tip.pitch};
-    return with_joint(tip.type, [&](auto model) {
-        return decltype(model)::restricted_in_plane(shape, tip.q, normal);
-    });
-}
-
-/// Number of directions that the tip's joint restricts. If the other joints keep the chain in a
-/// plane, only the plane's three directions count.
-std::int64_t restricted_by_tip(ChainSpec const& chain) {
-    if (chain.tip == Tip::free) return 0;
-    ParallelAxes axes(rounding);
-    std::size_t odd = 0;
-    bool const may_be_flat = chain.is_ring() || chain.base == Base::fixed;
-    if (!may_be_flat || !add_all(chain.bodies, axes, odd) || !axes.any())
-        return 6 - coordinates_of(chain.tip_joint.type);
-    return restricted_in_plane(chain.tip_joint,
-                               transposed_times(chain.tip_joint.rotation, axes.direction()));
-}
-
 std::int64_t freedom_of_links(ChainSpec const& chain) {
     auto const n = static_cast<std::int64_t>(chain.size());
     std::int64_t dof = 3 * n - (chain.base == Base::free ? n - 1 : n);
@@ -168,7 +147,7 @@ bool takes_articulated_handles(ChainSpec const& chain) {
 std::int64_t degrees_of_freedom(ChainSpec const& chain) {
     if (chain.is_beads() || chain.is_linked()) return freedom_of_links(chain);
     BodyArrays const& bodies = chain.bodies;
-    std::int64_t dof = -restricted_by_tip(chain);
+    std::int64_t dof = chain.tip == Tip::free ? 0 : -restricted_by_tip(chain);
     for (JointType const joint : bodies.joint) dof += coordinates_of(joint);
     for (DrivenJoint const& driven : bodies.driven)
         dof -= coordinates_of(bodies.joint[static_cast<std::size_t>(driven.body)]);

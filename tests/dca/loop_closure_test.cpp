@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <limits>
 
 #include "dca/loop_closure.hpp"
 #include "tests/support/random_chain.hpp"
@@ -65,10 +66,11 @@ TEST(Closure, the_least_forces_are_those_of_the_pseudo_inverse) {
             cod.setThreshold(1e-10);
             cod.compute(scale * z * scale);
             EigenMatrix const expected = scale * cod.pseudoInverse() * scale;
-            auto const joint = dca::closing_joint(symmetric(z), diagonal(z), restricted);
-            ASSERT_TRUE(dca::has_least_norm(joint)) << seed << ", rank " << rank;
+            auto const closing = dca::closing_joint(symmetric(z), diagonal(z), restricted);
+            ASSERT_TRUE(closing.has_least_norm) << seed << ", rank " << rank;
             EigenMatrix const unscaled = z.diagonal().cwiseSqrt().asDiagonal();
-            EigenMatrix const error = unscaled * (as_eigen(joint.inboard) - expected) * unscaled;
+            EigenMatrix const error =
+                unscaled * (as_eigen(closing.joint.inboard) - expected) * unscaled;
             double const condition = cod.pseudoInverse().norm();
             EXPECT_LE(error.norm(), 64 * 0x1p-52 * condition * condition)
                 << seed << ", rank " << rank << " of " << restricted;
@@ -78,19 +80,48 @@ TEST(Closure, the_least_forces_are_those_of_the_pseudo_inverse) {
 TEST(Closure, regular_joints_are_factorised_as_all_others) {
     EigenMatrix const z =
         random_matrix(3, K) + EigenMatrix(random_matrix(3, K).diagonal().asDiagonal());
-    auto const joint = dca::closing_joint(symmetric(z), diagonal(z), K);
-    EXPECT_FALSE(dca::has_least_norm(joint));
+    auto const closing = dca::closing_joint(symmetric(z), diagonal(z), K);
+    EXPECT_FALSE(closing.has_least_norm);
     auto const factor = dca::factorize(symmetric(z), K);
     for (int i = 0; i < Symmetric<double, K>::size; ++i)
-        EXPECT_EQ(joint.factor.data[i], factor.data[i]);
+        EXPECT_EQ(closing.joint.factor.data[i], factor.data[i]);
+}
+
+/// The chain itself prevents all motions that the joint would: it carries nothing.
+TEST(Closure, wholly_redundant_joints_have_a_pseudo_inverse_of_zero) {
+    for (double const noise : {0.0, 1e-14, -1e-14})
+        for (int restricted = 1; restricted <= K; ++restricted) {
+            EigenMatrix const size = EigenMatrix::Identity();
+            auto const closing =
+                dca::closing_joint(symmetric(noise * size), diagonal(size), restricted);
+            EXPECT_TRUE(closing.has_least_norm) << noise << ", " << restricted;
+            EXPECT_EQ(as_eigen(closing.joint.inboard), EigenMatrix::Zero());
+            for (double const number : closing.joint.factor.data) EXPECT_EQ(number, 0);
+        }
+}
+
+TEST(Closure, numbers_that_are_not_finite_are_not_taken_for_redundant_ones) {
+    double const none = std::numeric_limits<double>::quiet_NaN(),
+                 infinite = std::numeric_limits<double>::infinity();
+    EigenMatrix const size = EigenMatrix::Identity();
+    for (double const number : {none, infinite}) {
+        EXPECT_FALSE(dca::closing_joint(symmetric(number * EigenMatrix::Ones()), diagonal(size), K)
+                         .has_least_norm);
+        Symmetric<double, 1> z;
+        z(0, 0) = number;
+        EXPECT_FALSE(dca::closing_joint(z, Vector<double, 1>{{1}}, 1).has_least_norm);
+    }
+    EigenMatrix z = EigenMatrix::Zero();
+    z(3, 1) = z(1, 3) = none;
+    EXPECT_FALSE(dca::closing_joint(symmetric(z), diagonal(size), K).has_least_norm);
 }
 
 TEST(Closure, indefinite_matrices_are_not_taken_for_singular_ones) {
     EigenMatrix z = EigenMatrix::Identity();
     z(4, 4) = -0.1;
-    auto const joint = dca::closing_joint(symmetric(z), diagonal(EigenMatrix::Identity()), K);
-    EXPECT_FALSE(dca::has_least_norm(joint));
-    EXPECT_FALSE(joint.factor(4, 4) > 0);
+    auto const closing = dca::closing_joint(symmetric(z), diagonal(EigenMatrix::Identity()), K);
+    EXPECT_FALSE(closing.has_least_norm);
+    EXPECT_FALSE(closing.joint.factor(4, 4) > 0);
 }
 
 }  // namespace

@@ -130,6 +130,55 @@ TEST_P(Rings, redundant_bridges_move_as_the_oracle_says) {
     }
 }
 
+/// A chain that moves across `n`: joint 1 of type `first`, then joints of type `next`, and `tip`.
+std::string flat_loop(int bodies, std::string const& first, std::string const& next,
+                      std::string const& tip) {
+    std::string const free = first == "free" ? "free" : "fixed",
+                      n = free == "free" ? "[0, 0, 1]" : "[0.36, 0.48, 0.8]",
+                      across = free == "free" ? "[1, 0, 0]" : "[0.8, -0.6, 0]";
+    auto const joint = [&](std::string const& type, int k) {
+        if (type == "free") return std::string("{type: free, qd: {omega: [0, 0, 0.5]}}");
+        std::string const at = ", translation: [1, 0.1, 0]";
+        if (type == "planar3")
+            return fmt::format(
+                "{{type: planar3, axes: [{}, {}]{}, q: [0.1, {}, 0.4], qd: [{}, 1, "
+                "-0.5], torque: [1, 2, 0.5]}}",
+                across, n, at, 0.1 * (k % 4), k % 3);
+        return fmt::format("{{type: revolute, axis: {}{}, q: {}, qd: {}}}", n, at,
+                           0.3 + 0.2 * (k % 4), 0.5 * (k % 3) - 0.4);
+    };
+    std::string text = "units: si\nchains:\n  - base: " + free + "\n    bodies:\n";
+    for (int k = 0; k < bodies; ++k)
+        text += "      - {mass: 2, com: [0.5, 0.1, 0.3], inertia: [0.5, 0.6, 0.7], joint: " +
+                joint(k == 0 ? first : next, k) + "}\n";
+    std::string const shape =
+        tip == "planar3" ? fmt::format("axes: [{}, {}]", across, n) : "axis: " + n;
+    return text +
+           fmt::format("    tip: {{{}: {{type: {}, {}, translation: [1, 0, 0]}}}}\n",
+                       free == "free" ? "ring" : "joint", tip, shape) +
+           "forces: {gravity: [0, -9.81, 1]}\n";
+}
+
+/// All that the closing joint restricts is restricted already: its matrix is zero.
+TEST_P(Rings, wholly_redundant_closing_joints_carry_nothing) {
+    std::vector<std::string> texts;
+    for (int const bodies : {2, 3, 4, 7, 12})
+        for (char const* const tip : {"revolute", "planar3"})
+            texts.push_back(flat_loop(bodies, "planar3", "revolute", tip));
+    for (int const bodies : {2, 5, 40})
+        for (char const* const next : {"revolute", "planar3"})
+            texts.push_back(flat_loop(bodies, "free", next, "planar3"));
+    for (std::string const& text : texts) {
+        SCOPED_TRACE(text);
+        Scene scene = with_backend(parse_scene(text, "flat.yaml"));
+        scene.chains[0] = fitted(scene);
+        auto const exact = oracle::aba<long double>(scene.chains[0], {scene.forces.gravity, {}});
+        Errors const e = errors(scene, exact, *communicator_);
+        EXPECT_LE(e.acceleration, 1e-11);
+        EXPECT_LE(e.residual, e.residual_bound);
+    }
+}
+
 /// Of every kind of joints and closing joint, against articulated bodies.
 TEST_P(Rings, random_rings_agree_with_articulated_bodies) {
     JointType const closing[] = {JointType::spherical, JointType::revolute,    JointType::universal,

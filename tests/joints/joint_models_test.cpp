@@ -168,24 +168,51 @@ TEST(JointModels, mixed_chains_keep_their_order) {
               "helical revolute spherical prismatic prismatic prismatic revolute spherical ");
 }
 
-TEST(JointModels, tips_in_a_plane_restrict_some_of_its_directions) {
-    JointShape const along{{{0, 0, 1}}, {{1, 0, 0}}, 0.2}, across{{{1, 0, 0}}, {{0, 1, 0}}, 0.2};
-    Vec3 const normal{{0, 0, 1}};
-    std::array<double, 4> const q{0, 0, 0, 0};
-    EXPECT_EQ(RevoluteJoint::restricted_in_plane(along, q, normal), 2);
-    EXPECT_EQ(RevoluteJoint::restricted_in_plane(across, q, normal), 3);
-    EXPECT_EQ(PrismaticJoint::restricted_in_plane(along, q, normal), 3);
-    EXPECT_EQ(PrismaticJoint::restricted_in_plane(across, q, normal), 2);
-    EXPECT_EQ(UniversalJoint::restricted_in_plane(along, q, normal), 2);
-    EXPECT_EQ(UniversalJoint::restricted_in_plane(across, q, normal), 3);
-    EXPECT_EQ(SphericalJoint::restricted_in_plane(across, q, normal), 2);
-    EXPECT_EQ(WeldJoint::restricted_in_plane(across, q, normal), 3);
-    JointShape const oblique{{{0.6, 0, 0.8}}, {{0, 1, 0}}, 0};
-    EXPECT_EQ(CylindricalJoint::restricted_in_plane(along, q, normal), 2);
-    EXPECT_EQ(CylindricalJoint::restricted_in_plane(across, q, normal), 2);
-    EXPECT_EQ(CylindricalJoint::restricted_in_plane(oblique, q, normal), 3);
-    EXPECT_EQ(Planar3Joint::restricted_in_plane(along, q, normal), 0);
-    EXPECT_EQ(Planar3Joint::restricted_in_plane(oblique, q, normal), 2);
+/// Part of a velocity across the twists of a joint.
+double across(std::vector<Twist> twists, Twist velocity) {
+    auto const inner = [](Twist const& a, Twist const& b) {
+        return dot(a.angular, b.angular) + dot(a.linear, b.linear);
+    };
+    auto const minus = [](Twist const& a, double factor, Twist const& b) {
+        return Twist{a.angular - factor * b.angular, a.linear - factor * b.linear};
+    };
+    for (std::size_t i = 0; i < twists.size(); ++i) {
+        Twist const& base = twists[i];
+        for (std::size_t j = i + 1; j < twists.size(); ++j)
+            twists[j] = minus(twists[j], inner(base, twists[j]) / inner(base, base), base);
+        velocity = minus(velocity, inner(base, velocity) / inner(base, base), base);
+    }
+    return std::sqrt(inner(velocity, velocity));
+}
+
+/// The velocity that each coordinate gives, by differences of the joint's displacement.
+TEST(JointModels, twists_span_the_motion) {
+    scene::Draws draws(7, 0);
+    for (int round = 0; round < 20; ++round)
+        for_each_joint([&](auto model) {
+            using Model = decltype(model);
+            if (Model::quaternion || Model::numbers == 0) return;
+            JointShape const shape = random_shape(draws, Model::glides);
+            auto const q = Model::random_position(draws);
+            auto const listed = Model::twists(shape, q);
+            ASSERT_EQ(listed.size(), static_cast<std::size_t>(Model::freedom)) << Model::name;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(Model::numbers); ++i) {
+                double const h = 1e-4;
+                auto ahead = q, behind = q;
+                ahead[i] += h, behind[i] -= h;
+                auto const to = Model::displacement(shape, ahead),
+                           from = Model::displacement(shape, behind);
+                Vec3 const angular = (0.5 / h) * rotation_vector(to.turn * conjugate(from.turn));
+                Vec3 const linear = (0.5 / h) * (to.shift - from.shift) -
+                                    cross(angular, 0.5 * (to.shift + from.shift));
+                EXPECT_GT(norm(angular) + norm(linear), 0.1) << Model::name;
+                EXPECT_LE(across({listed.begin(), listed.end()}, {angular, linear}), 1e-7)
+                    << Model::name << ", coordinate " << i;
+            }
+        });
+    EXPECT_EQ(SphericalJoint::twists({}, {}).size(), 3U);
+    EXPECT_EQ(FreeJoint::twists({}, {}).size(), 6U);
+    EXPECT_TRUE(WeldJoint::twists({}, {}).empty());
 }
 
 }  // namespace

@@ -141,7 +141,12 @@ TEST(BadTips, of_bodies) {
                   ".q, line 1): leave it out or correct `type`");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: revolute}}")),
               "key `axis` is missing" + at + ", line 1): add `axis: [0, 0, 1]`");
+    // On the spherical joint's centre the tip leaves the last body its rotation.
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: revolute, axis: [0, 0, 1]}}")),
+              "accepted");
+    EXPECT_EQ(refusal_of(arm(ball,
+                             ", tip: {joint: {type: revolute, axis: [0, 1, 0], translation: "
+                             "[1, 0, 0]}}")),
               "the tip's joint restricts 5 directions, the chain has 4 degrees of freedom" + at +
                   ", line 1): give the tip a joint that restricts less, or the chain more joints");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {}}")),
