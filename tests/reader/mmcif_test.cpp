@@ -198,5 +198,26 @@ TEST_F(Mmcif, positions_may_come_from_mmcif) {
     EXPECT_DOUBLE_EQ(s.chains.at(0).beads.position[2][0], 0.76);
 }
 
+TEST_F(Mmcif, a_chain_whose_name_looks_like_a_range_is_a_chain) {
+    std::vector<std::string> const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
+    write("a.cif", cif_text(strand(six, "1-2", 1, 0)));
+    write("b.cif", cif_text(strand(six, "A", 1, 0)));
+    std::string const range = "\"1-2:1-4\"";
+    for (std::string const& rigid : {range, "[" + range + "]"}) {
+        Scene const scene = read(scene_of("a.cif", "rigid: [" + rigid + "]"));
+        EXPECT_EQ(scene.chains.at(0).carried().residue.size(), 6U);
+    }
+    EXPECT_NE(refusal(scene_of("a.cif", "rigid: [\"1-2:1-3, 4-6\"]"))
+                  .find("write each in quotes of its own: \"1-2:1-3\", \"1-2:4-6\";"),
+              std::string::npos)
+        << refusal(scene_of("a.cif", "rigid: [\"1-2:1-3, 4-6\"]"));
+    EXPECT_NE(refusal(scene_of("a.cif", "rigid: {1-2: 1-4}"))
+                  .find("write [\"1-2:1-4\"], in quotes and without a blank"),
+              std::string::npos)
+        << refusal(scene_of("a.cif", "rigid: {1-2: 1-4}"));
+    EXPECT_NE(refusal(scene_of("b.cif", "rigid: [\"1-2:1-4\"]")).find("holds 2 ranges"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace catena::test
