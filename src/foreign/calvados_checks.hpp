@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "foreign/files.hpp"
 #include "foreign/package_file.hpp"
@@ -9,9 +10,10 @@
 
 namespace catena::foreign {
 
-/// Throws InputError for a configuration that was cut: within its last line, or after a line, which
-/// the order of its keys tells. The package writes them in alphabetical order.
-void refuse_cut(PackageFile const& config);
+/// Throws InputError for a configuration that was cut: after a key without a value, or after a
+/// line, which the order of its keys tells. The package writes them in alphabetical order. Notes a
+/// last line with a value but without a line feed, which may be cut.
+void refuse_cut(PackageFile const& config, std::vector<std::string>& notes);
 
 /// Throws InputError if the configuration's box or charges are not the System's, or if it asks for
 /// a force that the System lacks. Notes frames that are never due. `is_continued` says that the
@@ -32,7 +34,8 @@ struct CalvadosComponents {
 /// kind.
 CalvadosComponents read_components(std::string const& file);
 
-/// Throws InputError if the topology does not have one chain for each molecule.
+/// Throws InputError if the topology does not have one chain for each molecule. It may have more if
+/// molecules may be complexes of several chains.
 void refuse_other_molecules(CalvadosComponents const& components, Files const& files);
 
 }  // namespace catena::foreign

@@ -118,7 +118,7 @@ void find_calvados_files(Files& files) {
             "config.yaml is not read: it has no `sysname`, which the CALVADOS package writes.");
         return;
     }
-    refuse_cut(*read);
+    refuse_cut(*read, files.notes);
     files.config = config.string();
     if (certain) files.components = components.string();
 }
