@@ -25,12 +25,15 @@ using scene::Node;
 constexpr double most_difference = 1e-3;
 constexpr double most_charge_difference = 1e-3;  // e
 constexpr double most_cutoff_difference = 1e-6;  // nm
-constexpr char const* run_again =
-    "start the package's run.py again, which writes the System, or correct the value";
 
 /// Name of the System without its folder, for messages.
 std::string system_name(Files const& files) {
     return scene::shown_path(std::filesystem::path(files.system).filename().string());
+}
+
+/// Name of the topology without its folder, for messages.
+std::string name_of_topology(Files const& files) {
+    return scene::shown_path(std::filesystem::path(files.topology).filename().string());
 }
 
 /// Throws InputError for another temperature or ionic strength. Notes a temperature beyond that of
@@ -88,11 +91,13 @@ void refuse_ph(PackageFile const& config, Files const& files, ScreenedChains con
             if (!inner || chain.residue[k] != "HIS" ||
                 std::abs(charges[p] - asked) <= most_charge_difference)
                 continue;
-            scene::fail(*ph,
-                        fmt::format("at that pH a histidine has {:.3g} e, that of particle {} "
-                                    "(from 0) of {} has {:.3g} e: it was written at another pH",
-                                    asked, p, system_name(files), charges[p]),
-                        run_again);
+            scene::fail(
+                *ph,
+                fmt::format("at that pH a histidine has {:.3g} e, that of particle {} "
+                            "(from 0) of {} has {:.3g} e: it was written at another pH, "
+                            "or {} has its atoms in another order than the particles",
+                            asked, p, system_name(files), charges[p], name_of_topology(files)),
+                run_again);
         }
 }
 

@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "foreign/calvados_charges.hpp"
+#include "foreign/calvados_forces.hpp"
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
@@ -105,8 +106,24 @@ void add_component(Node const& component, PackageFile const& file, Node const* d
     };
     Node const* const copies = valued(property("nmol"));
     sum.molecules += copies == nullptr ? 1 : whole_of(*copies, 0);
+    auto const word = [&](char const* key, char const* otherwise) {
+        Node const* const node = valued(property(key));
+        return node == nullptr ? std::string(otherwise) : scene::text(*node);
+    };
+    auto const stiffness = [&](char const* key, double otherwise) {
+        Node const* const node = valued(property(key));
+        sum.stiffness.insert(node == nullptr ? otherwise : scene::number(*node));
+    };
+    sum.proteins = sum.proteins && word("molecule_type", "protein") == "protein";
+    ++sum.harmonic_forces;
+    stiffness("kb", 8033);
     Node const* const restraint = valued(property("restraint"));
-    sum.restrained = sum.restrained || (restraint != nullptr && scene::truth(*restraint));
+    if (restraint == nullptr || !scene::truth(*restraint)) return;
+    sum.restrained = true;
+    if (word("restraint_type", "harmonic") == "go")
+        sum.custom_forces += 3;  // contacts, scaled contacts and scaled charges
+    else
+        ++sum.harmonic_forces, stiffness("k_harmonic", 700);
 }
 
 }  // namespace
@@ -140,6 +157,10 @@ void check_configuration(PackageFile const& config, Files const& files, bool is_
     refuse_another_size(config, system);
     refuse_other_charges(config, files, settings.notes);
     refuse_lost_forces(config, system, is_continued);
+    refuse_other_forces(config, system);
+    if (config.truth("pressure_coupling"))
+        settings.notes.push_back(
+            "`pressure_coupling` is not taken over: the scene has a constant volume.");
     note_unasked_force(config, system, settings);
     if (settings.steps > 0 && settings.every > settings.steps)
         settings.notes.push_back(

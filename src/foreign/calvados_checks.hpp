@@ -1,6 +1,8 @@
 // Checks that the files of a CALVADOS folder agree: configuration, components, System, topology.
 #pragma once
 
+#include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,12 @@ struct CalvadosComponents {
     std::int64_t molecules = 0;
     /// True if a component has restraints within its domains.
     bool restrained = false;
+    /// True if all components are proteins.
+    bool proteins = true;
+    /// Number of HarmonicBondForces and CustomBondForces that the components make.
+    std::int64_t harmonic_forces = 0, custom_forces = 0;
+    /// Stiffnesses of bonds and elastic networks, kJ/mol/nm2.
+    std::set<double> stiffness;
 };
 
 /// Reads components.yaml. Throws InputError for one without components and for values of the wrong

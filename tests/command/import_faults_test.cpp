@@ -397,6 +397,75 @@ TEST_F(DamagedPackage, AnotherTemperatureOrSaltThanTheSystemsIsRefused) {
     expect_refused(import(), 2, "charges are cut at 3.5 nm, those of idr.xml at 4 nm (idr/config.");
 }
 
+TEST_F(DamagedPackage, ContactsThatAreNotTheSystemsAreRefused) {
+    for (auto const& [line, made] : {std::pair{"eps_lj: 0.8368", "0.2"},
+                                     {"cutoff_lj: 2.5", "2"},
+                                     {"fixed_lambda: 0.5", "0"}}) {
+        std::string const text = line, key = text.substr(0, text.find(':'));
+        write(folder + "/config.yaml", config_of("idr", text + "\n"));
+        expect_refused(import(), 2,
+                       fmt::format("`{}` is {}, and idr.xml was written with {} (idr/config.yaml: "
+                                   "{}",
+                                   key, text.substr(key.size() + 2), made, key));
+    }
+    write(folder + "/config.yaml",
+          config_of("idr", "eps_lj: 0.2\ncutoff_lj: 2.0\nfixed_lambda: 0\n"));
+    EXPECT_EQ(import().status, 0) << import().err;
+    write(folder + "/config.yaml", config_of("idr", "pressure_coupling: true\n"));
+    expect_note("`pressure_coupling` is not taken over: the scene has a constant volume.");
+}
+
+TEST_F(DamagedPackage, ComponentsOfAnotherSystemAreRefused) {
+    std::string const file = folder + "/components.yaml", idr = "system:\n  idr:\n    nmol: 1\n";
+    write(file, idr + "    restraint: true\n");
+    expect_refused(import(), 2,
+                   "the components, their `restraint` and `custom_restraints` of config.yaml make "
+                   "2 HarmonicBondForces and 0 CustomBondForces, and idr.xml has 1 "
+                   "HarmonicBondForce and 0 CustomBondForces (idr/components.yaml)");
+    write(file, idr + "    kb: 4000\n");
+    expect_refused(import(), 2,
+                   "bonds of idr.xml have a stiffness of 8033 kJ/mol/nm2, those of the components "
+                   "(`kb`, `k_harmonic`) 4000");
+    write(file, idr);
+    write(folder + "/config.yaml", config_of("idr", "custom_restraints: true\n"));
+    expect_refused(import(), 2, "make 2 HarmonicBondForces and 0 CustomBondForces, and idr.xml");
+}
+
+TEST_F(DamagedPackage, NetworksThatAreNotTheSystemsAreSaid) {
+    std::string const two = package_folder(here, "two-domains"), file = two + "/components.yaml";
+    auto const imported = [&](std::string const& more) {
+        write(file, "system:\n  two-domains:\n    nmol: 1\n" + more);
+        return catena({"import", "two-domains", "--overwrite"}, here.path());
+    };
+    EXPECT_EQ(imported("    restraint: true\n").status, 0);
+    expect_refused(imported("    restraint: true\n    k_harmonic: 70\n"), 2,
+                   "bonds of two-domains.xml have a stiffness of 700 kJ/mol/nm2");
+    expect_refused(imported("    restraint: true\n    restraint_type: go\n"), 2,
+                   "make 1 HarmonicBondForce and 3 CustomBondForces, and two-domains.xml has 2");
+    Ended const e = imported("    restraint: false\n");
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("make 1 HarmonicBondForce and 0 CustomBondForces: the others act, too."),
+              std::string::npos)
+        << e.out;
+}
+
+TEST_F(DamagedPackage, APullThatIsNotTheSystemsIsRefused) {
+    std::string const slab = package_folder(here, "slab");
+    auto const imported = [&](std::string const& more) {
+        write(slab + "/config.yaml", config_of("slab", more));
+        return catena({"import", "slab", "--overwrite"}, here.path());
+    };
+    expect_refused(imported("ext_force: true\n"), 2,
+                   "`ext_force_expr` is not the CustomExternalForce of slab.xml, "
+                   "`k*abs(periodicdistance(x,y,z,x,y,z0))` (slab/config.yaml: ext_force_expr");
+    expect_refused(imported("slab_eq: true\nk_eq: 0.2\n"), 2,
+                   "`k_eq` is 0.2, and slab.xml was written with 0.02 (slab/config.yaml: k_eq");
+    Ended const e = imported("slab_eq: true\nk_eq: 0.02\n");
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("config.yaml has no `steps_eq`; 1000 is assumed."), std::string::npos)
+        << e.out;
+}
+
 /// Beyond the critical point there is nothing to compare with: the permittivity would be negative.
 TEST_F(DamagedPackage, WaterThatIsHotterThanAnyIsNotCompared) {
     for (std::string const temperature : {"700", "2000"}) {
@@ -416,8 +485,13 @@ TEST_F(DamagedPackage, HistidinesAtInnerEndsOfAComplexHaveTheirCharges) {
     auto& charges = dynamic_cast<OpenMM::CustomNonbondedForce&>(system->getForce(0));
     charges.setParticleParameters(16, {histidine - 1});
     charges.setParticleParameters(17, {histidine + 1});
-    auto& bonds = dynamic_cast<OpenMM::HarmonicBondForce&>(system->getForce(2));
-    bonds.setBondParameters(16, 16, 17, 0.38, 0);
+    system->removeForce(2);
+    auto* const bonds = new OpenMM::HarmonicBondForce;
+    for (int p = 1; p < system->getNumParticles(); ++p)
+        if (p != 17) bonds->addBond(p - 1, p, 0.38, 8033);
+    auto* const network = new OpenMM::HarmonicBondForce;
+    network->addBond(0, 4, 0.76, 700);
+    system->addForce(bonds), system->addForce(network);
     auto const save = [&] {
         std::ofstream out(folder + "/idr.xml");
         OpenMM::XmlSerializer::serialize(system.get(), "System", out);
@@ -432,7 +506,7 @@ TEST_F(DamagedPackage, HistidinesAtInnerEndsOfAComplexHaveTheirCharges) {
     expect_refused(import(), 2, "the components make 1 molecule, and top.pdb has 2 chains");
     write(folder + "/components.yaml", "system:\n  idr:\n    nmol: 1\n    restraint: true\n");
     expect_note("2, 34 bodies");
-    bonds.setBondParameters(16, 16, 17, 0.38, 8033);  // no end: the charge is wrong
+    bonds->addBond(16, 17, 0.38, 8033);  // no end: the charge is wrong
     save();
     expect_refused(import(), 2, "that of particle 16 (from 0) of idr.xml has -0.909 e");
 }
@@ -445,7 +519,8 @@ TEST_F(DamagedPackage, HistidinesAtAnotherPhAreRefused) {
     expect_refused(
         import(), 2,
         "at that pH a histidine has 0.0909 e, that of particle 3 (from 0) of idr.xml has "
-        "0 e: it was written at another pH (idr/config.yaml: pH, line 8)");
+        "0 e: it was written at another pH, or top.pdb has its atoms in another order than the "
+        "particles (idr/config.yaml: pH, line 8)");
 }
 
 TEST_F(DamagedPackage, ForcesAreLeftOutByTheNamesThatCheckShows) {

@@ -200,8 +200,13 @@ TEST_F(Mmcif, positions_may_come_from_mmcif) {
 
 TEST_F(Mmcif, a_chain_whose_name_looks_like_a_range_is_a_chain) {
     std::vector<std::string> const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
-    write("a.cif", cif_text(strand(six, "1-2", 1, 0)));
-    write("b.cif", cif_text(strand(six, "A", 1, 0)));
+    auto const bent = [&](std::string const& chain) {
+        std::vector<AtomLine> atoms = strand(six, chain, 1, 0);
+        for (std::size_t k = 0; k < atoms.size(); ++k) atoms[k].y = k % 2 == 0 ? 0 : 1;
+        return cif_text(atoms);
+    };
+    write("a.cif", bent("1-2"));
+    write("b.cif", bent("A"));
     std::string const range = "\"1-2:1-4\"";
     for (std::string const& rigid : {range, "[" + range + "]"}) {
         Scene const scene = read(scene_of("a.cif", "rigid: [" + rigid + "]"));
