@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
+#include <list>
 
 #include "command/commands.hpp"
 #include "console/long_task.hpp"
@@ -102,20 +103,21 @@ std::string start_folder(std::string const& scene) {
     return fs::path(scene).replace_extension().string() + "-start";
 }
 
-/// A folder that vanishes with its files unless it is kept or was there before.
-class NewFolder {
+/// A file or folder that vanishes with its contents unless it is kept or was there before.
+class NewPath {
   public:
-    explicit NewFolder(std::string path) : path_(std::move(path)) {
+    explicit NewPath(std::string path) : path_(std::move(path)) {
         std::error_code ignored;
         kept_ = fs::exists(fs::symlink_status(path_, ignored));
     }
-    NewFolder(NewFolder const&) = delete;
-    NewFolder& operator=(NewFolder const&) = delete;
-    ~NewFolder() {
+    NewPath(NewPath const&) = delete;
+    NewPath& operator=(NewPath const&) = delete;
+    ~NewPath() {
         std::error_code ignored;
         if (!kept_) fs::remove_all(path_, ignored);
     }
     void keep() { kept_ = true; }
+    bool is_kept() const { return kept_; }
 
   private:
     std::string path_;
@@ -183,6 +185,19 @@ std::vector<foreign::SceneDraft> drafts_of(foreign::Files const& files,
     return drafts;
 }
 
+/// Writes all scenes, or none and no start if one fails. A start stays if a scene was replaced that
+/// needs it.
+void write_all(std::vector<Written> const& scenes, NewPath& start) {
+    std::list<NewPath> files;
+    for (Written const& scene : scenes) {
+        NewPath& file = files.emplace_back(scene.file);
+        write_text_file(scene.file, scene.text);
+        if (file.is_kept()) start.keep();
+    }
+    for (NewPath& file : files) file.keep();
+    start.keep();
+}
+
 /// Writes a word of a command as a shell reads it: quoted unless it is plain, control characters
 /// escaped.
 std::string shell_word(std::string const& text) {
@@ -248,7 +263,7 @@ Outcome import_folder(Communicator const& communicator, ImportRequest const& req
     on_first_rank(communicator, [&] {
         foreign::Files const files = foreign::find_files(request.source, request.topology);
         foreign::Settings const settings = settings_of(files);
-        NewFolder start(start_folder(scene_file(files, request)));
+        NewPath start(start_folder(scene_file(files, request)));
         std::vector<foreign::SceneDraft> const drafts = drafts_of(files, settings, request);
         std::vector<Written> scenes;
         for (foreign::SceneDraft const& draft : drafts) scenes.push_back(settled(draft));
@@ -259,11 +274,8 @@ Outcome import_folder(Communicator const& communicator, ImportRequest const& req
             for (std::string const& note : scene.notes)
                 if (std::find(notes.begin(), notes.end(), note) == notes.end())
                     notes.push_back(note);
-        for (Written const& scene : scenes) {
-            write_text_file(scene.file, scene.text);
-            written.push_back(scene.file);
-        }
-        start.keep();
+        write_all(scenes, start);
+        for (Written const& scene : scenes) written.push_back(scene.file);
         outcome.text = text_of(files, drafts.back(), scenes, notes);
         outcome.json = {{"scenes", written},
                         {"tool", settings.tool.empty() ? Json() : Json(settings.tool)},

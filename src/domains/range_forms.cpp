@@ -96,9 +96,17 @@ std::string plain(std::string text, int& dashes, int& spaces) {
     return text;
 }
 
-/// Ranges that a text holds: "A:1-30, 41-72" has "A:1-30" and "A:41-72", "1-72:77-148" has two.
-/// Empty for a text with anything else.
-std::vector<std::string> ranges_of(std::string const& text) {
+/// True for a range of a chain that the file has, whatever its name: "1-2:5-20".
+bool is_range_of_chain(std::string const& text, IsChain const& is_chain) {
+    std::size_t const colon = text.rfind(':');
+    return colon != std::string::npos && is_chain(without_blanks(text.substr(0, colon))) &&
+           is_span(without_blanks(text.substr(colon + 1)));
+}
+
+/// Ranges that a text holds: "A:1-30, 41-72" has "A:1-30" and "A:41-72", "1-72:77-148" has two
+/// unless "1-72" is a chain. Empty for a text with anything else.
+std::vector<std::string> ranges_of(std::string const& text, IsChain const& is_chain) {
+    if (is_range_of_chain(text, is_chain)) return {without_blanks(text)};
     int ignored = 0;
     std::string const written = plain(text, ignored, ignored);
     for (char const* const marks : {",;&+ \t", ",;&+"}) {
@@ -107,7 +115,7 @@ std::vector<std::string> ranges_of(std::string const& text) {
         for (std::string const& part : parts) {
             std::size_t const colon = part.rfind(':');
             std::string const before = colon == std::string::npos ? "" : part.substr(0, colon);
-            if (is_range(before)) {  // two ranges with a colon between them
+            if (is_range(before) && !is_chain(before)) {  // two ranges with a colon between them
                 ranges.insert(ranges.end(), {before, chain_in(before) + part.substr(colon + 1)});
             } else {
                 if (!chain_in(part).empty()) chain = chain_in(part);
@@ -136,19 +144,20 @@ std::string span_of(Node const& pair) {
 }
 
 /// Ranges that an entry of a map stands for: `A: 1-72`, `A: [1, 72]`, `1-72: 77-148`.
-std::vector<std::string> ranges_of_entry(Node const& entry) {
+std::vector<std::string> ranges_of_entry(Node const& entry, IsChain const& is_chain) {
     if (is_pair(entry)) return {entry.key + ":" + span_of(entry)};
     if (entry.kind != Node::Kind::scalar) return {};
-    return ranges_of(entry.key + ":" + without_blanks(entry.text));
+    return ranges_of(entry.key + ":" + without_blanks(entry.text), is_chain);
 }
 
 /// Ranges that a node holds in any form and depth; empty if it holds something else, too.
-std::vector<std::string> ranges_in(Node const& node) {
-    if (node.kind == Node::Kind::scalar) return ranges_of(node.text);
+std::vector<std::string> ranges_in(Node const& node, IsChain const& is_chain) {
+    if (node.kind == Node::Kind::scalar) return ranges_of(node.text, is_chain);
     if (is_pair(node)) return {span_of(node)};
     std::vector<std::string> all;
     for (Node const& item : node.items) {
-        auto const more = node.kind == Node::Kind::map ? ranges_of_entry(item) : ranges_in(item);
+        auto const more = node.kind == Node::Kind::map ? ranges_of_entry(item, is_chain)
+                                                       : ranges_in(item, is_chain);
         if (more.empty()) return {};
         all.insert(all.end(), more.begin(), more.end());
     }
@@ -168,12 +177,13 @@ std::string forms_of(std::vector<std::string> const& ranges) {
 
 }  // namespace
 
-bool is_map_of_ranges(Node const& node) {
-    return node.kind == Node::Kind::map && !node.items.empty() && !ranges_in(node).empty();
+bool is_map_of_ranges(Node const& node, IsChain const& is_chain) {
+    return node.kind == Node::Kind::map && !node.items.empty() &&
+           !ranges_in(node, is_chain).empty();
 }
 
-void refuse_map(Node const& node) {
-    std::vector<std::string> const ranges = ranges_in(node);
+void refuse_map(Node const& node, IsChain const& is_chain) {
+    std::vector<std::string> const ranges = ranges_in(node, is_chain);
     if (node.kind != Node::Kind::map || ranges.empty())
         fail(node, "a map is not a range of residues",
              "write ranges in quotes, such as \"A:1-95\"");
@@ -183,14 +193,16 @@ void refuse_map(Node const& node) {
                      shown(first.key),
                      is_pair(first) ? "[" + first.items[0].text + ", " + first.items[1].text + "]"
                                     : shown(first.text)),
-         ranges.size() == 1 || first.kind != Node::Kind::scalar || !is_range(first.key)
+         ranges.size() == 1 || is_chain(first.key) || first.kind != Node::Kind::scalar ||
+                 !is_range(first.key)
              ? fmt::format("write [{}], in quotes and without a blank", quoted(ranges))
              : forms_of(ranges));
 }
 
-void refuse_no_list(Node const& rigid) {
+void refuse_no_list(Node const& rigid, IsChain const& is_chain) {
     if (rigid.kind != Node::Kind::list)
-        fail(rigid, describe(rigid) + " is not a list of ranges", forms_of(ranges_in(rigid)));
+        fail(rigid, describe(rigid) + " is not a list of ranges",
+             forms_of(ranges_in(rigid, is_chain)));
     bool const bare =
         rigid.items.size() > 1 && std::all_of(rigid.items.begin(), rigid.items.end(), is_number);
     if (!bare) return;
@@ -202,8 +214,8 @@ void refuse_no_list(Node const& rigid) {
     fail(rigid, "a list of numbers is not a list of ranges", forms_of(ranges));
 }
 
-void refuse_depth(Node const& node) {
-    std::vector<std::string> const ranges = ranges_in(node);
+void refuse_depth(Node const& node, IsChain const& is_chain) {
+    std::vector<std::string> const ranges = ranges_in(node, is_chain);
     if (!ranges.empty()) fail(node, "ranges stand in too many brackets", forms_of(ranges));
 }
 
@@ -217,8 +229,8 @@ void refuse_printed(Node const& node) {
              fmt::format("write \"{}\"", shown(written)));
 }
 
-void refuse_several_ranges(Node const& node) {
-    std::vector<std::string> const ranges = ranges_of(text(node));
+void refuse_several_ranges(Node const& node, IsChain const& is_chain) {
+    std::vector<std::string> const ranges = ranges_of(text(node), is_chain);
     if (ranges.size() > 1)
         fail(node, fmt::format("{} holds {} ranges", describe(node), ranges.size()),
              fmt::format("write each in quotes of its own: {}; [{}] makes one body of them",

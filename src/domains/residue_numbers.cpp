@@ -141,6 +141,17 @@ void Numbering::refuse_backwards(Node const& node, Domain const& range) const {
              : fmt::format("write [{}, {}]", low, high));
 }
 
+std::function<bool(std::string const&)> Numbering::chain_names() const {
+    return [numbers = &numbers_](std::string const& name) {
+        auto const& others = numbers->other_chains;
+        return !name.empty() && (std::any_of(numbers->chains.begin(), numbers->chains.end(),
+                                             [&](auto const& names) {
+                                                 return names[0] == name || names[1] == name;
+                                             }) ||
+                                 std::find(others.begin(), others.end(), name) != others.end());
+    };
+}
+
 bool Numbering::is_chain(std::string const& name) const {
     return std::any_of(numbers_.chains.begin(), numbers_.chains.end(),
                        [&](auto const& names) { return names[0] == name || names[1] == name; });
@@ -174,11 +185,11 @@ bool Numbering::is_list_of_ranges(Node const& node) {
 
 std::array<ResidueName, 2> Numbering::ends_of(Node const& node) const {
     if (node.kind == Node::Kind::scalar) return ends_in(node);
-    if (node.kind == Node::Kind::map) refuse_map(node);
+    if (node.kind == Node::Kind::map) refuse_map(node, chain_names());
     bool const nests = std::any_of(node.items.begin(), node.items.end(), [](Node const& item) {
         return item.kind == Node::Kind::list || item.text.find('-', 1) != std::string::npos;
     });
-    if (nests) refuse_depth(node);
+    if (nests) refuse_depth(node, chain_names());
     if (node.kind != Node::Kind::list || node.items.size() != 2)
         fail(node, describe(node) + " is not a pair of residues", remedy());
     return {{{"", label(node.items[0])}, {"", label(node.items[1])}}};
@@ -189,7 +200,7 @@ std::array<ResidueName, 2> Numbering::ends_in(Node const& node) const {
     if (without_blanks(node.text).empty())
         fail(node, "an empty text is no range of residues", remedy());
     refuse_printed(node);
-    refuse_several_ranges(node);
+    refuse_several_ranges(node, chain_names());
     std::string const written = without_blanks(text(node));
     refuse_missing_colon(node, written);
     std::size_t const colon = written.rfind(':');

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -61,6 +62,8 @@ class Numbering {
     /// Residues with the number of the range's last one and an insertion code that the range leaves
     /// out, such as "52A, 52B" after 48 to 52; empty without any.
     std::string left_out_insertions(Domain const& range) const;
+    /// Test for the names of the file's chains, which outlives the Numbering but not its numbers.
+    std::function<bool(std::string const&)> chain_names() const;
     /// True for a list of ranges, such as ["A:1-95", "B:1-88"] or [[1, 30], [41, 80]].
     static bool is_list_of_ranges(Node const& node);
 

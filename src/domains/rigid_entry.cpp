@@ -340,7 +340,7 @@ void note_insertions(Numbering const& by, RigidBodies& made) {
 }
 
 RigidBodies read_list(Node const& rigid, ResidueNumbers const& numbers, Numbering const& by) {
-    refuse_no_list(rigid);
+    refuse_no_list(rigid, by.chain_names());
     if (rigid.items.empty())
         fail(rigid, "the list of rigid domains is empty", "leave the key out or " + by.remedy());
     RigidBodies made;
@@ -366,7 +366,8 @@ RigidBodies read_rigid_bodies(Node const& rigid, RigidSource const& source) {
     Numbering const numbering(source.numbers);
     bool const keyed =
         rigid.kind == Node::Kind::map && (rigid.find("domains") || rigid.find("pae"));
-    if (!keyed && is_map_of_ranges(rigid)) refuse_map(rigid);
+    IsChain const is_chain = numbering.chain_names();
+    if (!keyed && is_map_of_ranges(rigid, is_chain)) refuse_map(rigid, is_chain);
     RigidBodies made = rigid.kind == Node::Kind::map ? RigidMap(rigid, source).read()
                                                      : read_list(rigid, source.numbers, numbering);
     if (rigid.kind == Node::Kind::map)

@@ -41,7 +41,7 @@ OpenMmState read_openmm_state(std::string const&, std::string const& where) {
     throw built_without("OpenMM", where, remedy);
 }
 
-std::optional<Screening> read_screening(std::string const&, std::string const& where) {
+std::optional<ScreenedChains> read_screened_chains(std::string const&, std::string const& where) {
     throw built_without("OpenMM", where, remedy);
 }
 

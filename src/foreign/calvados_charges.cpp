@@ -25,20 +25,30 @@ using scene::Node;
 constexpr double most_difference = 1e-3;
 constexpr double most_charge_difference = 1e-3;  // e
 constexpr double most_cutoff_difference = 1e-6;  // nm
-constexpr char const* run_again =
-    "start the package's run.py again, which writes the System, or correct the value";
 
 /// Name of the System without its folder, for messages.
 std::string system_name(Files const& files) {
     return scene::shown_path(std::filesystem::path(files.system).filename().string());
 }
 
-/// Throws InputError for another temperature or ionic strength.
-void refuse_water(PackageFile const& config, Files const& files, Screening const& made) {
+/// Name of the topology without its folder, for messages.
+std::string name_of_topology(Files const& files) {
+    return scene::shown_path(std::filesystem::path(files.topology).filename().string());
+}
+
+/// Throws InputError for another temperature or ionic strength. Notes a temperature beyond that of
+/// liquid water, at which nothing can be compared.
+void refuse_water(PackageFile const& config, Files const& files, Screening const& made,
+                  std::vector<std::string>& notes) {
     Node const *const temp = config.find("temp"), *const ionic = config.find("ionic");
     if (temp == nullptr) return;
     double const temperature = scene::number(*temp), salt = config.non_negative("ionic", 0);
     if (!(temperature > 0 && temperature <= hottest)) return;  // settings_of() refuses these
+    if (temperature > calvados2::warmest_water)
+        return notes.push_back(fmt::format(
+            "temp is {:.6g} K, and the permittivity of water is known up to {:g} K: whether the "
+            "charges of {} are those of config.yaml's `temp` and `ionic` is not checked.",
+            temperature, calvados2::warmest_water, system_name(files)));
     calvados2::Yukawa const asked = calvados2::yukawa(temperature, salt);
     if (std::abs(made.prefactor / asked.prefactor - 1) > most_difference)
         scene::fail(*temp,
@@ -66,34 +76,39 @@ void refuse_cutoff(PackageFile const& config, Files const& files, Screening cons
                     run_again);
 }
 
-/// Throws InputError for histidines with the charge of another pH. Ends of chains, which have
-/// charges of their own, are left out.
-void refuse_ph(PackageFile const& config, Files const& files, Screening const& made) {
+/// Throws InputError for histidines with the charge of another pH. Ends of chains have charges of
+/// their own and are left out. The package writes a complex as one chain of the topology, so that
+/// the System's bonds tell the ends.
+void refuse_ph(PackageFile const& config, Files const& files, ScreenedChains const& made) {
     Node const* const ph = config.find("pH");
     if (ph == nullptr || files.topology.empty()) return;
     double const asked = calvados2::histidine_charge(scene::number(*ph));
+    std::vector<double> const& charges = made.screening.charges;
     std::size_t p = 0;
     for (PdbChain const& chain : read_pdb_topology(files.topology, files.topology))
-        for (std::size_t k = 0; k < chain.size() && p < made.charges.size(); ++k, ++p) {
-            bool const inner = k > 0 && k + 1 < chain.size();
+        for (std::size_t k = 0; k < chain.size() && p < charges.size(); ++k, ++p) {
+            bool const inner = made.joined[p] && p + 1 < charges.size() && made.joined[p + 1];
             if (!inner || chain.residue[k] != "HIS" ||
-                std::abs(made.charges[p] - asked) <= most_charge_difference)
+                std::abs(charges[p] - asked) <= most_charge_difference)
                 continue;
-            scene::fail(*ph,
-                        fmt::format("at that pH a histidine has {:.3g} e, that of particle {} "
-                                    "(from 0) of {} has {:.3g} e: it was written at another pH",
-                                    asked, p, system_name(files), made.charges[p]),
-                        run_again);
+            scene::fail(
+                *ph,
+                fmt::format("at that pH a histidine has {:.3g} e, that of particle {} "
+                            "(from 0) of {} has {:.3g} e: it was written at another pH, "
+                            "or {} has its atoms in another order than the particles",
+                            asked, p, system_name(files), charges[p], name_of_topology(files)),
+                run_again);
         }
 }
 
 }  // namespace
 
-void refuse_other_charges(PackageFile const& config, Files const& files) {
-    auto const made = read_screening(files.system, scene::shown_path(files.system));
+void refuse_other_charges(PackageFile const& config, Files const& files,
+                          std::vector<std::string>& notes) {
+    auto const made = read_screened_chains(files.system, scene::shown_path(files.system));
     if (!made) return;
-    refuse_water(config, files, *made);
-    refuse_cutoff(config, files, *made);
+    refuse_water(config, files, made->screening, notes);
+    refuse_cutoff(config, files, made->screening);
     refuse_ph(config, files, *made);
 }
 

@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "foreign/calvados_charges.hpp"
+#include "foreign/calvados_forces.hpp"
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
@@ -105,20 +106,36 @@ void add_component(Node const& component, PackageFile const& file, Node const* d
     };
     Node const* const copies = valued(property("nmol"));
     sum.molecules += copies == nullptr ? 1 : whole_of(*copies, 0);
+    auto const word = [&](char const* key, char const* otherwise) {
+        Node const* const node = valued(property(key));
+        return node == nullptr ? std::string(otherwise) : scene::text(*node);
+    };
+    auto const stiffness = [&](char const* key, double otherwise) {
+        Node const* const node = valued(property(key));
+        sum.stiffness.insert(node == nullptr ? otherwise : scene::number(*node));
+    };
+    sum.proteins = sum.proteins && word("molecule_type", "protein") == "protein";
+    ++sum.harmonic_forces;
+    stiffness("kb", 8033);
     Node const* const restraint = valued(property("restraint"));
-    sum.restrained = sum.restrained || (restraint != nullptr && scene::truth(*restraint));
+    if (restraint == nullptr || !scene::truth(*restraint)) return;
+    sum.restrained = true;
+    if (word("restraint_type", "harmonic") == "go")
+        sum.custom_forces += 3;  // contacts, scaled contacts and scaled charges
+    else
+        ++sum.harmonic_forces, stiffness("k_harmonic", 700);
 }
 
 }  // namespace
 
-void refuse_cut(PackageFile const& config) {
+void refuse_cut(PackageFile const& config, std::vector<std::string>& notes) {
     std::string const& file = config.root().text;
     std::string const line = open_line(read_text_file(file)), last = last_key;
-    if (line.find_first_not_of(" \t") != std::string::npos)
+    std::size_t const end = line.find_last_not_of(" \t\r");
+    if (end != std::string::npos && line[end] == ':')
         throw InputError(
             fmt::format("the configuration ends within its last line, `{}`", scene::shown(line)),
-            scene::shown_path(file),
-            fmt::format("{}, or end that line with a line feed if it is whole", write_again));
+            scene::shown_path(file), fmt::format("{}, or give that key a value", write_again));
     std::vector<std::string> keys;
     for (Node const& item : config.root().items) keys.push_back(item.key);
     if (config.root().find(last) == nullptr && std::ssize(keys) >= least_keys &&
@@ -128,14 +145,22 @@ void refuse_cut(PackageFile const& config) {
                                      scene::shown(keys.back()), last),
                          scene::shown_path(file),
                          fmt::format("{}, or add `{}`", write_again, last));
+    if (end != std::string::npos)
+        notes.push_back(fmt::format(
+            "config.yaml ends with `{}` and without a line feed: see that no digit is missing.",
+            scene::shown(line)));
 }
 
 void check_configuration(PackageFile const& config, Files const& files, bool is_continued,
                          Settings& settings) {
     SystemText const system(files.system);
     refuse_another_size(config, system);
-    refuse_other_charges(config, files);
+    refuse_other_charges(config, files, settings.notes);
     refuse_lost_forces(config, system, is_continued);
+    refuse_other_forces(config, system);
+    if (config.truth("pressure_coupling"))
+        settings.notes.push_back(
+            "`pressure_coupling` is not taken over: the scene has a constant volume.");
     note_unasked_force(config, system, settings);
     if (settings.steps > 0 && settings.every > settings.steps)
         settings.notes.push_back(
@@ -160,7 +185,9 @@ void refuse_other_molecules(CalvadosComponents const& components, Files const& f
     if (files.topology.empty()) return;
     auto const chains =
         static_cast<std::int64_t>(read_pdb_topology(files.topology, files.topology).size());
-    if (chains == components.molecules) return;
+    // A complex, which only structures give, has several chains once its ends have a TER.
+    if (chains == components.molecules || (components.restrained && chains > components.molecules))
+        return;
     throw InputError(
         fmt::format("the components make {} molecule{}, and {} has {} chain{}",
                     components.molecules, components.molecules == 1 ? "" : "s",

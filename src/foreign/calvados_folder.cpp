@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "foreign/calvados_checks.hpp"
+#include "foreign/calvados_forces.hpp"
 #include "foreign/package_file.hpp"
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
@@ -49,7 +50,10 @@ void read_slab(PackageFile const& config, Files const& files, Settings& settings
     char const* const force = "CustomExternalForce";
     if (!config.truth("slab_eq") || !SystemText(files.system).holds(force)) return;
     settings.equilibration_forces = {force};
-    if (!is_equilibrated(files)) settings.equilibration_steps = config.whole("steps_eq", 1000, 0);
+    if (is_equilibrated(files)) return;
+    settings.equilibration_steps = config.whole("steps_eq", 1000, 0);
+    if (!config.find("steps_eq"))
+        settings.notes.push_back("config.yaml has no `steps_eq`; 1000 is assumed.");
 }
 
 /// True for a configuration of the package, which is certain beside components.yaml. Throws
@@ -118,7 +122,7 @@ void find_calvados_files(Files& files) {
             "config.yaml is not read: it has no `sysname`, which the CALVADOS package writes.");
         return;
     }
-    refuse_cut(*read);
+    refuse_cut(*read, files.notes);
     files.config = config.string();
     if (certain) files.components = components.string();
 }
@@ -191,6 +195,8 @@ Settings calvados_settings(Files const& files) {
     if (files.components.empty()) return settings;
     CalvadosComponents const components = read_components(files.components);
     refuse_other_molecules(components, files);
+    refuse_other_bonds(config, components, SystemText(files.system), files.components,
+                       settings.notes);
     if (components.restrained)
         settings.notes.push_back(
             "The package's elastic networks stay forces. To move domains as rigid bodies, write "

@@ -10,6 +10,10 @@
 
 namespace catena::foreign {
 
+/// Advice for a key whose value is not the System's.
+inline constexpr char const* run_again =
+    "start the package's run.py again, which writes the System, or correct the value";
+
 /// Holds the keys of config.yaml or components.yaml.
 class PackageFile {
   public:

@@ -73,11 +73,27 @@ constexpr std::array<std::string_view, 14> kinds = {
     "brownian", "nosehoover",     "custom",        "compound",       "dpd",
     "qtb",      "rpmd",           "drudelangevin", "drudenosehoover"};
 
+/// True for the Langevin dynamics of a plugin, such as ICLangevinIntegrator. `lower` is the kind
+/// in lower case.
+bool is_langevin_of_plugin(IntegratorTag const& tag, std::string_view lower) {
+    bool const named = lower.ends_with("langevin") || lower.ends_with("langevinmiddle");
+    return named && tag.attributes.contains("temperature") && tag.attributes.contains("friction") &&
+           tag.attributes.contains("stepSize");
+}
+
+/// Kind of an integrator in lower case and without "integrator".
+std::string without_integrator(std::string const& kind) {
+    std::string lower = in_lower_case(kind);
+    std::string_view const end = "integrator";
+    if (lower.ends_with(end)) lower.resize(lower.size() - end.size());
+    return lower;
+}
+
 /// Throws InputError for an integrator of which it is not known what it does.
 void refuse_unknown(IntegratorTag const& tag, std::string const& kind) {
-    std::string lower = in_lower_case(kind);
-    lower.resize(lower.size() - std::string_view("integrator").size());
+    std::string const lower = without_integrator(kind);
     if (std::find(kinds.begin(), kinds.end(), lower) != kinds.end()) return;
+    if (is_langevin_of_plugin(tag, lower)) return;
     throw InputError(fmt::format("`{}` is no integrator that is known", scene::shown(kind)),
                      scene::shown_path(tag.file),
                      "write the one of the run again, or move the file out of the folder and set "
@@ -152,7 +168,8 @@ std::string integrator_note(std::string const& kind, Settings const& settings) {
         note += fmt::format(
             "{}That integrator has no thermostat, the scene's has: {:.6g} K, friction {:.6g}/ps.",
             note.empty() ? "" : " ", settings.temperature, settings.friction);
-    if (!note.empty() || is("langevin")) return note;
+    std::string const name = without_integrator(kind);
+    if (!note.empty() || name == "langevin" || name == "langevinmiddle") return note;
     return fmt::format(
         "The scene is Langevin dynamics at {:.6g} K with friction {:.6g}/ps; what else that "
         "integrator does is not taken over.",

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "generate/conformation.hpp"
 #include "generate/start_fit.hpp"
@@ -20,6 +22,9 @@ namespace catena::scene {
 namespace {
 
 double constexpr same_mass = 1e-3;  // relative; covers masses of few digits
+/// What ends of chains add to a residue, and the differences between ends, amu.
+std::array<double, 4> constexpr masses_of_ends{2, 14, 16, 18};
+double constexpr same_end = 1e-3;  // amu
 
 /// Makes a draft of an imported chain and fits its positions to the lengths of its links.
 Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fit) {
@@ -44,17 +49,27 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
     return draft;
 }
 
+/// True for masses of one residue, at an end of a chain or elsewhere.
+bool are_alike(double a, double b) {
+    double const difference = std::abs(a - b);
+    return difference <= same_mass * a ||
+           std::any_of(masses_of_ends.begin(), masses_of_ends.end(),
+                       [&](double end) { return std::abs(difference - end) <= same_end; });
+}
+
 /// Notes amino acids whose masses in the System differ from each other: atoms and particles may
-/// have different orders. Ends of chains, which have the masses of termini, are left out.
+/// have different orders. Compared are beads with the same place in their residues. Ends of chains
+/// are left out.
 void note_mixed_masses(ImportedSystem const& imported, Node const& topology, Scene& scene) {
-    std::map<std::string, double> mass;
+    std::map<std::pair<std::string, int>, double> mass;
     std::int64_t particle = 0;
     for (ImportedChain const& chain : imported.chains)
         for (std::size_t k = 0; k < chain.mass.size(); ++k, ++particle) {
             std::string const& residue = chain.residue[k];
             if (k == 0 || k + 1 == chain.mass.size() || !is_amino_acid(residue)) continue;
-            double const known = mass.emplace(residue, chain.mass[k]).first->second;
-            if (std::abs(known - chain.mass[k]) <= same_mass * known) continue;
+            double const known =
+                mass.try_emplace({residue, chain.place[k]}, chain.mass[k]).first->second;
+            if (are_alike(known, chain.mass[k])) continue;
             return scene.note(fmt::format(
                 "{} has the masses {:.6g} and {:.6g} amu in the System (the latter is particle {}, "
                 "from 0): does `{}` have its atoms in the order of the particles?",

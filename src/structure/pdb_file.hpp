@@ -41,6 +41,10 @@ struct PdbAtom {
     bool same_chain(PdbAtom const& other) const {
         return part == other.part && chain == other.chain && segment == other.segment;
     }
+    /// True if two atoms of one chain belong to one residue.
+    bool same_residue(PdbAtom const& other) const {
+        return number == other.number && insertion == other.insertion && residue == other.residue;
+    }
 };
 
 /// A chain's whole sequence, residues without positions included (SEQRES, `_entity_poly_seq`).

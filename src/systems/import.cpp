@@ -22,7 +22,7 @@ constexpr double same_edge = 1e-6;       // nm; covers edges written in decimals
 /// Imports one chain that begins with particle `first`, and adds its links to `links`.
 ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system,
                            Joinings const& joinings, StiffLinks& links, std::string const& where) {
-    ImportedChain chain{from.name, from.residue, {}, from.position, {}};
+    ImportedChain chain{from.name, from.residue, from.place, {}, from.position, {}};
     for (int k = 0; k < static_cast<int>(from.size()); ++k) {
         int const p = first + k;
         chain.mass.push_back(system.getParticleMass(p));
@@ -159,8 +159,16 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     return links;
 }
 
-std::optional<Screening> read_screening(std::string const& file, std::string const& where) {
-    return screening_of(*read_openmm_system(file, where));
+std::optional<ScreenedChains> read_screened_chains(std::string const& file,
+                                                   std::string const& where) {
+    auto const system = read_openmm_system(file, where);
+    auto screening = screening_of(*system);
+    if (!screening) return std::nullopt;
+    ScreenedChains chains{std::move(*screening), {}};
+    Joinings const joinings(*system, {}, where);
+    for (int p = 0; p < system->getNumParticles(); ++p)
+        chains.joined.push_back(p > 0 && joinings.joins_to_previous(p));
+    return chains;
 }
 
 BondedChains chains_by_bonds(OpenMmSpec const& spec, std::string const& name) {
@@ -170,9 +178,7 @@ BondedChains chains_by_bonds(OpenMmSpec const& spec, std::string const& name) {
     Joinings const joinings(*system, changes_of(spec).links, openmm_key(name, "system"));
     BondedChains chains;
     for (int p = 0; p < system->getNumParticles(); ++p) {
-        bool const joined =
-            p > 0 && (joinings.to_previous(p).holds() || joinings.bond_stays_force(p));
-        if (!joined) chains.sizes.push_back(0);
+        if (p == 0 || !joinings.joins_to_previous(p)) chains.sizes.push_back(0);
         ++chains.sizes.back();
         chains.mass.push_back(system->getParticleMass(p));
     }
@@ -222,6 +228,8 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     imported.box = {{a[0], b[1], c[2]}};
     if (imported.periodic && cell) note_another_box(*cell, spec.topology, imported);
     if (imported.periodic) make_cut_chains_whole(whole, joinings, imported);
+    if (auto note = note_on_short_bonds(whole, joinings, *system, spec.temperature); !note.empty())
+        imported.notes.push_back(std::move(note));
     auto const chains = cut_at_bonds(whole, joinings, &imported.notes);
     StiffLinks links(spec.temperature, where);
     int first = 0;

@@ -19,6 +19,7 @@ struct ImportedChain {
     /// Name of the chain in the topology.
     std::string name;
     std::vector<std::string> residue;  // three letters
+    std::vector<int> place;            // in the residue, from 0
     std::vector<double> mass;          // amu, from the System
     std::vector<Vec3> position;        // nm, with the rounding of the PDB file
     /// Length of the link to the preceding bead, nm; entry 0 is 0.
@@ -96,10 +97,17 @@ struct OpenMmState {
 /// `where` is the place in messages. A build without OpenMM throws "built without OpenMM".
 OpenMmState read_openmm_state(std::string const& file, std::string const& where);
 
-/// Returns the screening of the charges of a serialised System, if that is recognised. Throws
+/// Screened charges of a System, and the particles that follow each other in a chain.
+struct ScreenedChains {
+    Screening screening;
+    /// joined[p] is true if a bond or constraint joins particle p to the preceding one.
+    std::vector<bool> joined;
+};
+/// Reads them off a serialised System; nothing if the screening is not recognised. Throws
 /// InputError for a file that cannot be read; `where` is the place in messages. A build without
 /// OpenMM throws "built without OpenMM".
-std::optional<Screening> read_screening(std::string const& file, std::string const& where);
+std::optional<ScreenedChains> read_screened_chains(std::string const& file,
+                                                   std::string const& where);
 
 /// Names a key in messages: "scene.yaml: forces.openmm.system".
 inline std::string openmm_key(std::string const& scene_file, std::string const& key) {

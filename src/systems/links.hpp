@@ -29,6 +29,12 @@ class Joinings {
     bool bond_stays_force(int p) const {
         return custom_to_previous_[static_cast<std::size_t>(p)] >= 0 && !to_previous(p).holds();
     }
+    /// True if a bond or constraint joins particle p and the preceding one.
+    bool joins_to_previous(int p) const {
+        return to_previous(p).holds() || custom_to_previous_[static_cast<std::size_t>(p)] >= 0;
+    }
+    /// Index of the CustomBondForce whose bond joins particle p and the preceding one; -1: none.
+    int custom_force(int p) const { return custom_to_previous_[static_cast<std::size_t>(p)]; }
     /// Kind of the custom bond between particle p and the preceding one, e.g. "CustomBondForce
     /// (FENE)". Precondition: bond_stays_force(p).
     std::string custom_bond(int p) const;
@@ -50,6 +56,11 @@ class Joinings {
     /// Index of a CustomBondForce that joins each particle to the preceding one; -1: none.
     std::vector<int> custom_to_previous_;
 };
+
+/// Returns a sentence on bonds between neighbours that stay forces and are far shorter than the
+/// thermal mean of such a bond, as in positions in another unit; empty if there are none.
+std::string note_on_short_bonds(std::vector<PdbChain> const&, Joinings const&,
+                                OpenMM::System const&, double temperature);
 
 /// Cuts the chains of a topology where a CustomBondForce alone joins neighbours, which Catena's
 /// chains cannot hold: the bond stays a force between two chains. Further pieces are named A-2,

@@ -35,8 +35,10 @@ std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string con
     std::vector<PdbChain> chains;
     scene::PdbAtom last;
     auto const summary = structure.for_each_atom({}, [&](scene::PdbAtom const& atom) {
-        if (chains.empty() || !atom.same_chain(last))
-            chains.emplace_back().name = scene::shown(chain_of(atom));
+        bool const begins = chains.empty() || !atom.same_chain(last);
+        if (begins) chains.emplace_back().name = scene::shown(chain_of(atom));
+        bool const goes_on = !begins && atom.same_residue(last);
+        chains.back().place.push_back(goes_on ? chains.back().place.back() + 1 : 0);
         last = atom;
         chains.back().residue.push_back(atom.residue.empty() ? "UNK" : scene::shown(atom.residue));
         chains.back().position.push_back(

@@ -14,6 +14,7 @@ struct PdbChain {
     /// Letter, else segment, else number of the chain; unique: A, A-2, ...
     std::string name;
     std::vector<std::string> residue;  // names of the residues
+    std::vector<int> place;            // number of atoms of the residue before this one
     std::vector<Vec3> position;        // nm
 
     std::size_t size() const { return residue.size(); }

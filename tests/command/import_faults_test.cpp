@@ -87,6 +87,14 @@ TEST_F(ToolFolder, AnIntegratorThatIsNotKnownIsRefused) {
           "temperature=\"300\" type=\"FooIntegrator\" version=\"1\"/>\n");
     expect_refused(import(), 2,
                    "`FooIntegrator` is no integrator that is known (mine/integrator.xml)");
+    for (std::string const kind : {"ICLangevinIntegrator", "ConstVLangevinMiddleIntegrator"}) {
+        std::string const attributes = "friction=\".5\" temperature=\"310\" type=\"" + kind + "\"";
+        write("integrator.xml", "<Integrator " + attributes + " stepSize=\".004\"/>\n");
+        expect_noted("(" + kind + "): 310 K, friction 0.5/ps, steps of 0.004 ps.");
+        expect_noted("what else that integrator does is not taken over");
+        write("integrator.xml", "<Integrator " + attributes + "/>\n");
+        expect_refused(import(), 2, "`" + kind + "` is no integrator that is known");
+    }
     serialize(OpenMM::NoseHooverIntegrator(300, 1, 0.001), "Integrator", "integrator.xml");
     expect_noted("what else that integrator does is not taken over");
 }
@@ -208,6 +216,33 @@ TEST_F(ChangedSystem, AMassBelowZeroIsNamed) {
     expect_refused(import(), 2, "particle 3 (from 0) has mass -5 (mine/system.xml)");
 }
 
+/// Ends of chains within a chain of the topology have 2 or 16 amu more.
+TEST_F(ChangedSystem, MassesOfEndsAreNoOtherOrder) {
+    system.setParticleMass(4, 116);
+    system.setParticleMass(5, 102);
+    save();
+    expect_no_note("in the order of the particles");
+    system.setParticleMass(5, 103);
+    save();
+    expect_noted("ASP has the masses 100 and 103 amu in the System (the latter is particle 5");
+}
+
+/// Two beads per residue: the second is lighter.
+TEST_F(ChangedSystem, BeadsOfOneResidueMayHaveDifferentMasses) {
+    std::string text = text_in("mine/start.pdb");
+    for (int p = 0; p < beads; ++p) {
+        system.setParticleMass(p, p % 2 == 0 ? 57.05 : 30);
+        std::size_t const at = text.find(fmt::format("ATOM  {:5d}", p + 1));
+        text.replace(at + 22, 4, fmt::format("{:4d}", p / 2 + 1));
+    }
+    save();
+    write("start.pdb", text);
+    expect_no_note("in the order of the particles");
+    system.setParticleMass(5, 57.05);
+    save();
+    expect_noted("ASP has the masses 30 and 57.05 amu in the System (the latter is particle 5");
+}
+
 /// Glycine and alanine in turn, in the order of the particles and backwards.
 TEST_F(ChangedSystem, AtomsInAnotherOrderThanTheParticlesAreNoted) {
     std::string text = text_in("mine/start.pdb");
@@ -247,6 +282,11 @@ TEST_F(ToolFolder, SettingsThatAreNotReadAreNamed) {
     fs::remove(file("config.yaml"));
     write("components.yaml", "system: {mine: {nmol: 1}}\n");
     expect_noted("components.yaml is not read: the CALVADOS package's config.yaml is not beside");
+}
+
+std::unique_ptr<OpenMM::System> system_in(std::string const& file) {
+    std::ifstream in(file);
+    return std::unique_ptr<OpenMM::System>(OpenMM::XmlSerializer::deserialize<OpenMM::System>(in));
 }
 
 /// A folder of the package that a test damages.
@@ -321,11 +361,16 @@ TEST_F(DamagedPackage, AConfigurationThatWasCutIsRefused) {
     }
     write(folder + "/config.yaml", whole.substr(0, whole.find(".15")));
     expect_refused(import(), 2,
-                   "the configuration ends within its last line, `temp: 293` (idr/config.yaml)");
-    write(folder + "/config.yaml", whole.substr(0, whole.find("000\nslab_eq")));
+                   "the configuration ends with `temp`, where the package's ends with `wfreq`");
+    write(folder + "/config.yaml", whole.substr(0, whole.find(" 7000\nslab_eq")));
     expect_refused(import(), 2,
-                   "the configuration ends within its last line, `wfreq: 7` (idr/config.yaml): "
-                   "write it again with the package's prepare.py, or end that line");
+                   "the configuration ends within its last line, `wfreq:` (idr/config.yaml): "
+                   "write it again with the package's prepare.py, or give that key a value");
+    write(folder + "/config.yaml", whole.substr(0, whole.find("000\nslab_eq")));
+    expect_note(
+        "config.yaml ends with `wfreq: 7` and without a line feed: see that no digit is missing.");
+    write(folder + "/config.yaml", whole.substr(0, whole.size() - 1));
+    expect_note("config.yaml ends with `slab_eq: false` and without a line feed");
     for (std::string const last : {"temp", "topol"}) {
         std::size_t const end = whole.find('\n', whole.find("\n" + last + ":") + 1) + 1;
         write(folder + "/config.yaml", whole.substr(0, end));
@@ -352,6 +397,120 @@ TEST_F(DamagedPackage, AnotherTemperatureOrSaltThanTheSystemsIsRefused) {
     expect_refused(import(), 2, "charges are cut at 3.5 nm, those of idr.xml at 4 nm (idr/config.");
 }
 
+TEST_F(DamagedPackage, ContactsThatAreNotTheSystemsAreRefused) {
+    for (auto const& [line, made] : {std::pair{"eps_lj: 0.8368", "0.2"},
+                                     {"cutoff_lj: 2.5", "2"},
+                                     {"fixed_lambda: 0.5", "0"}}) {
+        std::string const text = line, key = text.substr(0, text.find(':'));
+        write(folder + "/config.yaml", config_of("idr", text + "\n"));
+        expect_refused(import(), 2,
+                       fmt::format("`{}` is {}, and idr.xml was written with {} (idr/config.yaml: "
+                                   "{}",
+                                   key, text.substr(key.size() + 2), made, key));
+    }
+    write(folder + "/config.yaml",
+          config_of("idr", "eps_lj: 0.2\ncutoff_lj: 2.0\nfixed_lambda: 0\n"));
+    EXPECT_EQ(import().status, 0) << import().err;
+    write(folder + "/config.yaml", config_of("idr", "pressure_coupling: true\n"));
+    expect_note("`pressure_coupling` is not taken over: the scene has a constant volume.");
+}
+
+TEST_F(DamagedPackage, ComponentsOfAnotherSystemAreRefused) {
+    std::string const file = folder + "/components.yaml", idr = "system:\n  idr:\n    nmol: 1\n";
+    write(file, idr + "    restraint: true\n");
+    expect_refused(import(), 2,
+                   "the components, their `restraint` and `custom_restraints` of config.yaml make "
+                   "2 HarmonicBondForces and 0 CustomBondForces, and idr.xml has 1 "
+                   "HarmonicBondForce and 0 CustomBondForces (idr/components.yaml)");
+    write(file, idr + "    kb: 4000\n");
+    expect_refused(import(), 2,
+                   "bonds of idr.xml have a stiffness of 8033 kJ/mol/nm2, those of the components "
+                   "(`kb`, `k_harmonic`) 4000");
+    write(file, idr);
+    write(folder + "/config.yaml", config_of("idr", "custom_restraints: true\n"));
+    expect_refused(import(), 2, "make 2 HarmonicBondForces and 0 CustomBondForces, and idr.xml");
+}
+
+TEST_F(DamagedPackage, NetworksThatAreNotTheSystemsAreSaid) {
+    std::string const two = package_folder(here, "two-domains"), file = two + "/components.yaml";
+    auto const imported = [&](std::string const& more) {
+        write(file, "system:\n  two-domains:\n    nmol: 1\n" + more);
+        return catena({"import", "two-domains", "--overwrite"}, here.path());
+    };
+    EXPECT_EQ(imported("    restraint: true\n").status, 0);
+    expect_refused(imported("    restraint: true\n    k_harmonic: 70\n"), 2,
+                   "bonds of two-domains.xml have a stiffness of 700 kJ/mol/nm2");
+    expect_refused(imported("    restraint: true\n    restraint_type: go\n"), 2,
+                   "make 1 HarmonicBondForce and 3 CustomBondForces, and two-domains.xml has 2");
+    Ended const e = imported("    restraint: false\n");
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("make 1 HarmonicBondForce and 0 CustomBondForces: the others act, too."),
+              std::string::npos)
+        << e.out;
+}
+
+TEST_F(DamagedPackage, APullThatIsNotTheSystemsIsRefused) {
+    std::string const slab = package_folder(here, "slab");
+    auto const imported = [&](std::string const& more) {
+        write(slab + "/config.yaml", config_of("slab", more));
+        return catena({"import", "slab", "--overwrite"}, here.path());
+    };
+    expect_refused(imported("ext_force: true\n"), 2,
+                   "`ext_force_expr` is not the CustomExternalForce of slab.xml, "
+                   "`k*abs(periodicdistance(x,y,z,x,y,z0))` (slab/config.yaml: ext_force_expr");
+    expect_refused(imported("slab_eq: true\nk_eq: 0.2\n"), 2,
+                   "`k_eq` is 0.2, and slab.xml was written with 0.02 (slab/config.yaml: k_eq");
+    Ended const e = imported("slab_eq: true\nk_eq: 0.02\n");
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("config.yaml has no `steps_eq`; 1000 is assumed."), std::string::npos)
+        << e.out;
+}
+
+/// Beyond the critical point there is nothing to compare with: the permittivity would be negative.
+TEST_F(DamagedPackage, WaterThatIsHotterThanAnyIsNotCompared) {
+    for (std::string const temperature : {"700", "2000"}) {
+        write(folder + "/config.yaml", config_of("idr", "slab_eq: false\n"));
+        replace("temp: 293.15", "temp: " + temperature);
+        expect_note("temp is " + temperature +
+                    " K, and the permittivity of water is known up to 643 K: whether the charges "
+                    "of idr.xml are those of config.yaml's `temp` and `ionic` is not checked.");
+    }
+}
+
+/// The package writes a complex of two segments as one chain, whose inner ends have no bond between
+/// them and the charges of ends.
+TEST_F(DamagedPackage, HistidinesAtInnerEndsOfAComplexHaveTheirCharges) {
+    double const histidine = calvados2::histidine_charge(7);
+    auto const system = system_in(folder + "/idr.xml");
+    auto& charges = dynamic_cast<OpenMM::CustomNonbondedForce&>(system->getForce(0));
+    charges.setParticleParameters(16, {histidine - 1});
+    charges.setParticleParameters(17, {histidine + 1});
+    system->removeForce(2);
+    auto* const bonds = new OpenMM::HarmonicBondForce;
+    for (int p = 1; p < system->getNumParticles(); ++p)
+        if (p != 17) bonds->addBond(p - 1, p, 0.38, 8033);
+    auto* const network = new OpenMM::HarmonicBondForce;
+    network->addBond(0, 4, 0.76, 700);
+    system->addForce(bonds), system->addForce(network);
+    auto const save = [&] {
+        std::ofstream out(folder + "/idr.xml");
+        OpenMM::XmlSerializer::serialize(system.get(), "System", out);
+    };
+    save();
+    for (char const* const residue : {"GLY A  17", "GLY A  18"})
+        replace_in(folder + "/top.pdb", residue, "HIS" + std::string(residue).substr(3));
+    replace("random_number_seed", "pH: 7\nrandom_number_seed");
+    expect_refused(import(), 2,
+                   "particles 16 and 17 (from 0) are joined by no harmonic bond and no constraint");
+    replace_in(folder + "/top.pdb", "ATOM     18", "TER\nATOM     18");
+    expect_refused(import(), 2, "the components make 1 molecule, and top.pdb has 2 chains");
+    write(folder + "/components.yaml", "system:\n  idr:\n    nmol: 1\n    restraint: true\n");
+    expect_note("2, 34 bodies");
+    bonds->addBond(16, 17, 0.38, 8033);  // no end: the charge is wrong
+    save();
+    expect_refused(import(), 2, "that of particle 16 (from 0) of idr.xml has -0.909 e");
+}
+
 TEST_F(DamagedPackage, HistidinesAtAnotherPhAreRefused) {
     replace_in(folder + "/top.pdb", "GLY A   4", "HIS A   4");  // it has no charge
     replace("random_number_seed", "pH: 14\nrandom_number_seed");
@@ -360,7 +519,8 @@ TEST_F(DamagedPackage, HistidinesAtAnotherPhAreRefused) {
     expect_refused(
         import(), 2,
         "at that pH a histidine has 0.0909 e, that of particle 3 (from 0) of idr.xml has "
-        "0 e: it was written at another pH (idr/config.yaml: pH, line 8)");
+        "0 e: it was written at another pH, or top.pdb has its atoms in another order than the "
+        "particles (idr/config.yaml: pH, line 8)");
 }
 
 TEST_F(DamagedPackage, ForcesAreLeftOutByTheNamesThatCheckShows) {

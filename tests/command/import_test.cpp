@@ -11,6 +11,7 @@
 
 #include "frames/trajectory_file.hpp"
 #include "io/observables_table.hpp"
+#include "systems/pdb_topology.hpp"
 #include "tests/command/package_folder.hpp"
 
 namespace catena::test {
@@ -130,6 +131,43 @@ TEST(Import, ASlabIsEquilibratedFirst) {
                here.path());
     EXPECT_EQ(production.status, 0) << production.err;
     EXPECT_EQ(terms_of(here / "s-run").size(), 2U);
+}
+
+/// Writes the positions of a topology as a State.
+void write_state_of(std::string const& system, std::string const& topology,
+                    std::string const& file) {
+    auto const whole = system_in(system);
+    OpenMM::VerletIntegrator integrator(0.001);
+    OpenMM::Context context(*whole, integrator, OpenMM::Platform::getPlatformByName("Reference"));
+    std::vector<OpenMM::Vec3> x;
+    for (PdbChain const& chain : read_pdb_topology(topology, topology))
+        for (Vec3 const& p : chain.position) x.emplace_back(p[0], p[1], p[2]);
+    context.setPositions(x);
+    write_xml(context.getState(OpenMM::State::Positions), "State", file);
+}
+
+/// Production, which is written last, goes to a full device.
+TEST(Import, TwoScenesAreWrittenOrNone) {
+    TemporaryFolder const here;
+    std::string const folder = package_folder(here, "slab", "slab_eq: true\nsteps_eq: 50\n");
+    write_state_of(folder + "/slab.xml", folder + "/top.pdb", folder + "/state.xml");
+    fs::create_symlink("/dev/full", here / "s.yaml");
+    auto const import = [&] {
+        return catena({"import", "slab", "state.xml", "--output", "s.yaml", "--overwrite"},
+                      here.path());
+    };
+    Ended const none = import();
+    EXPECT_NE(none.status, 0) << none.out;
+    EXPECT_NE(none.err.find("No space left"), std::string::npos) << none.err;
+    EXPECT_FALSE(fs::exists(here / "s-equilibration.yaml"));
+    EXPECT_FALSE(fs::exists(here / "s-start"));
+    write(here / "s-equilibration.yaml", "of an earlier import\n");
+    EXPECT_NE(import().status, 0);
+    Ended const first = catena({"check", "s-equilibration.yaml"}, here.path());
+    EXPECT_EQ(first.status, 0) << first.err;  // it was replaced, and has its start
+    fs::remove(here / "s.yaml");
+    EXPECT_EQ(import().status, 0) << import().err;
+    EXPECT_EQ(catena({"check", "s.yaml"}, here.path()).status, 0);
 }
 
 TEST(Import, ASettingThatIsNoneIsRefusedWithItsLine) {
@@ -296,6 +334,22 @@ TEST_F(OwnScript, AStateWhoseBondsAreTornIsRefused) {
     write_files(false);
     expect_refused(import(), 2, "potential energy not a number, largest force");
     expect_refused(import(), 2, "a force is beyond its range, such as a torn FENE bond");
+}
+
+/// Nothing but their own length tells that bonds are ten times too short.
+TEST_F(OwnScript, BondsInAnotherUnitAreSaid) {
+    std::string const note = "Neighbours that a CustomBondForce (FENE) joins are ";
+    write_files(false);
+    EXPECT_EQ(import().out.find(note), std::string::npos);
+    for (OpenMM::Vec3& x : positions) x *= 0.1;
+    system.removeForce(2);  // pairs: they would push the beads apart
+    write_files(false);
+    Ended const e = import({"--overwrite"});
+    ASSERT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find(note + "0.0"), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find("if the positions are in another unit, multiply them by 10"),
+              std::string::npos)
+        << e.out;
 }
 
 TEST_F(OwnScript, NamedBondsBecomeLinks) {

@@ -198,5 +198,31 @@ TEST_F(Mmcif, positions_may_come_from_mmcif) {
     EXPECT_DOUBLE_EQ(s.chains.at(0).beads.position[2][0], 0.76);
 }
 
+TEST_F(Mmcif, a_chain_whose_name_looks_like_a_range_is_a_chain) {
+    std::vector<std::string> const six{"GLY", "ALA", "SER", "GLY", "ALA", "SER"};
+    auto const bent = [&](std::string const& chain) {
+        std::vector<AtomLine> atoms = strand(six, chain, 1, 0);
+        for (std::size_t k = 0; k < atoms.size(); ++k) atoms[k].y = k % 2 == 0 ? 0 : 1;
+        return cif_text(atoms);
+    };
+    write("a.cif", bent("1-2"));
+    write("b.cif", bent("A"));
+    std::string const range = "\"1-2:1-4\"";
+    for (std::string const& rigid : {range, "[" + range + "]"}) {
+        Scene const scene = read(scene_of("a.cif", "rigid: [" + rigid + "]"));
+        EXPECT_EQ(scene.chains.at(0).carried().residue.size(), 6U);
+    }
+    EXPECT_NE(refusal(scene_of("a.cif", "rigid: [\"1-2:1-3, 4-6\"]"))
+                  .find("write each in quotes of its own: \"1-2:1-3\", \"1-2:4-6\";"),
+              std::string::npos)
+        << refusal(scene_of("a.cif", "rigid: [\"1-2:1-3, 4-6\"]"));
+    EXPECT_NE(refusal(scene_of("a.cif", "rigid: {1-2: 1-4}"))
+                  .find("write [\"1-2:1-4\"], in quotes and without a blank"),
+              std::string::npos)
+        << refusal(scene_of("a.cif", "rigid: {1-2: 1-4}"));
+    EXPECT_NE(refusal(scene_of("b.cif", "rigid: [\"1-2:1-4\"]")).find("holds 2 ranges"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace catena::test
