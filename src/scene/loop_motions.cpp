@@ -14,7 +14,7 @@ namespace catena::scene {
 namespace {
 
 /// Fraction of a unit twist that counts as zero: numbers printed with seven digits.
-double constexpr printed_digits = 1e-6;
+double constexpr negligible_twist = 1e-6;
 /// Most bodies of a loop that is cut at every pair of joints, a cost of n^3.
 std::size_t constexpr longest_cut_everywhere = 32;
 
@@ -47,13 +47,13 @@ class TwistSpace {
     }
 
   private:
-    /// Adds a twist's part across the space if it exceeds `printed_digits`.
+    /// Adds a twist's part across the space if it exceeds `negligible_twist`.
     bool add_part(Twist part) {
         for (int again = 0; again < 2; ++again)
             for (int i = 0; i < dimension_; ++i)
                 part = plus_scaled(part, -dot(basis(i), part), basis(i));
         double const size = std::sqrt(dot(part, part));
-        if (is_full() || !(size > printed_digits)) return false;
+        if (is_full() || !(size > negligible_twist)) return false;
         basis_[static_cast<std::size_t>(dimension_++)] = {(1 / size) * part.angular,
                                                           (1 / size) * part.linear};
         return true;
