@@ -49,7 +49,9 @@ void check_keys(Node const& joint, JointType type, std::vector<std::string_view>
         if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end())
             fail(item,
                  fmt::format("key `{}` does not apply to a {} joint", item.key, name_of(type)),
-                 "leave it out or correct `type`");
+                 item.key == "axes" && type == JointType::revolute
+                     ? "leave it out, or write `type: planar3` for two translations and a rotation"
+                     : "leave it out or correct `type`");
 }
 
 /// Refuses a `length`, which only links have.

@@ -232,9 +232,10 @@ void refuse_printed(Node const& node) {
 void refuse_several_ranges(Node const& node, IsChain const& is_chain) {
     std::vector<std::string> const ranges = ranges_of(text(node), is_chain);
     if (ranges.size() > 1)
-        fail(node, fmt::format("{} holds {} ranges", describe(node), ranges.size()),
-             fmt::format("write each in quotes of its own: {}; [{}] makes one body of them",
-                         quoted(ranges), quoted(ranges)));
+        fail(
+            node, fmt::format("{} holds {} ranges", describe(node), ranges.size()),
+            fmt::format("write each in quotes of its own: {}; rigid: [[{}]] makes one body of them",
+                        quoted(ranges), quoted(ranges)));
 }
 
 std::string likely_range(std::string const& written) {

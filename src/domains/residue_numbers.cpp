@@ -321,6 +321,7 @@ std::size_t Numbering::counted_residue(Node const& node, ResidueName const& end)
 /// Returns whole numbers in plain form ("7" for "7.0"), other labels as written. Without labels of
 /// a file the number must be a whole one from 1 on.
 std::string Numbering::label(Node const& end) const {
+    if (end.kind == Node::Kind::null) fail(end, "an end of the range is missing", remedy());
     if (numbers_.labels.empty()) return std::to_string(whole(end, 1));
     double value = 0;
     refuse_printed(end);

@@ -10,6 +10,7 @@
 #include "generate/cells.hpp"
 #include "generate/link_projection.hpp"
 #include "generate/nearest.hpp"
+#include "scene/force_changes.hpp"
 
 namespace catena::scene {
 
@@ -199,14 +200,15 @@ void StartFit::refuse_unit(Chain const& chain, std::vector<double> const& before
     std::nth_element(ratios.begin(), middle, ratios.end());
     bool const large = std::abs(*middle / 10 - 1) < of_ten,
                small = std::abs(10 * *middle - 1) < of_ten;
-    if (large || small)
-        fail(from_,
-             fmt::format("neighbours in chain `{}` are {:.3g} times as far apart as their links "
-                         "are long: the positions seem to be in another unit",
-                         shown(chain.name), *middle),
-             fmt::format("multiply them by {}: PDB and mmCIF files hold angstrom, tables and "
-                         "OpenMM's States nm",
-                         large ? "0.1" : "10"));
+    if (!large && !small) return;
+    bool const named = scene_.forces.openmm && !changes_of(*scene_.forces.openmm).links.empty();
+    fail(from_,
+         fmt::format("neighbours in chain `{}` are {:.3g} times as far apart as their links are "
+                     "long: the positions {}seem to be in another unit",
+                     shown(chain.name), *middle, named ? "or the lengths of `links` " : ""),
+         fmt::format("{}multiply the positions by {}: PDB and mmCIF files hold angstrom, tables "
+                     "and OpenMM's States nm",
+                     named ? "correct these lengths, nm, or " : "", large ? "0.1" : "10"));
 }
 
 void StartFit::refuse(Chain const& chain, Change const& worst,

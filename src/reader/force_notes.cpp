@@ -39,8 +39,10 @@ double constexpr shown_mass = 57.05, shown_link = 0.38;
 double constexpr similar = 0.1;
 
 /// Permittivities that are taken for water's, and the largest difference in K between the run's
-/// temperature and that of water with the System's permittivity that needs no note.
-double constexpr least_water = 40, most_water = 100, noted_difference = 10;
+/// temperature and that of water with the System's permittivity that needs no note. Models with a
+/// fixed permittivity have whole or half numbers, and may be used at other temperatures.
+double constexpr least_water = 40, most_water = 100, noted_difference = 2,
+                 noted_difference_of_fixed = 10, fixed_within = 0.01;
 
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
     return chain.is_beads() ? chain.beads.residue : chain.carried().residue;
@@ -167,6 +169,17 @@ void note_step(Scene& scene) {
     if (!note.empty()) scene.note(note);
 }
 
+namespace {
+
+/// Largest difference of temperatures in K that needs no note at that permittivity of the System.
+double unnoted_difference(double permittivity) {
+    double const halves = 2 * permittivity;
+    return std::abs(halves - std::round(halves)) <= 2 * fixed_within ? noted_difference_of_fixed
+                                                                     : noted_difference;
+}
+
+}  // namespace
+
 void note_screening(Scene& scene, std::optional<Screening> const& screening) {
     if (!screening) return;
     calvados2::Yukawa const usual = calvados2::yukawa(DynamicsSpec{}.temperature, 0);
@@ -174,7 +187,7 @@ void note_screening(Scene& scene, std::optional<Screening> const& screening) {
                  temperature = scene.forces.openmm->temperature;
     if (!(permittivity >= least_water && permittivity <= most_water)) return;
     double const water = water_of(permittivity);
-    if (is_warm(scene.dynamics) && std::abs(water - temperature) > noted_difference)
+    if (is_warm(scene.dynamics) && std::abs(water - temperature) > unnoted_difference(permittivity))
         scene.note(fmt::format(
             "the System's charges act as in water at {:.4g} K (permittivity {:.4g}), the run is at "
             "{:.6g} K: serialise the System for that temperature, unless this is meant.",

@@ -155,8 +155,11 @@ TEST_F(ChangedSystem, LongStepsAreNotedAsThoseOfBuiltModels) {
 
 TEST_F(ChangedSystem, WaterOfAnotherTemperatureIsNoted) {
     add_yukawa(293);
-    save_integrator(298, 0.01);
+    save_integrator(294.9, 0.01);
     expect_no_note("water");
+    fs::remove(file("integrator.xml"));
+    expect_noted(
+        "the System's charges act as in water at 293 K (permittivity 80.31), the run is at 300 K");
     save_integrator(340, 0.01);
     expect_noted(
         "the System's charges act as in water at 293 K (permittivity 80.31), the run is at 340 K");
@@ -178,7 +181,7 @@ TEST_F(ChangedSystem, PositionsInAnotherUnitAreSaid) {
     expect_refused(import(), 2,
                    "neighbours in chain `A` are 10 times as far apart as their links are long: the "
                    "positions seem to be in another unit (mine/start.pdb");
-    expect_refused(import(), 2, "multiply them by 0.1: PDB and mmCIF files hold angstrom");
+    expect_refused(import(), 2, "multiply the positions by 0.1: PDB and mmCIF files hold angstrom");
     write_pdb("start.pdb", beads, 0.38);
     expect_refused(import(), 2, "are 0.1 times as far apart as their links are long");
 }
@@ -191,10 +194,10 @@ TEST_F(ChangedSystem, AStateInAnotherUnitIsSaidAndLeavesNoFolder) {
     for (int p = 0; p < beads; ++p) positions.emplace_back(3.8 * p, 0, 0);
     context.setPositions(positions);
     serialize(context.getState(OpenMM::State::Positions), "State", "state.xml");
-    expect_refused(import(), 2, "multiply them by 0.1");
+    expect_refused(import(), 2, "multiply the positions by 0.1");
     EXPECT_FALSE(fs::exists(here / "mine-start"));
     fs::create_directories(here / "mine-start");  // of an earlier import
-    expect_refused(import(), 2, "multiply them by 0.1");
+    expect_refused(import(), 2, "multiply the positions by 0.1");
     EXPECT_TRUE(fs::exists(here / "mine-start"));
 }
 

@@ -366,6 +366,9 @@ TEST_F(OwnScript, NamedBondsBecomeLinks) {
               std::string::npos)
         << check.out;
     expect_openmms_energies(here, "mine.yaml", here / "mine/system.xml", {1, 2, 3});
+    Ended const wrong = import({"--overwrite", "--links", "CustomBondForce=9.7"});
+    expect_refused(wrong, 2, "the positions or the lengths of `links` seem to be in another unit");
+    expect_refused(wrong, 2, "correct these lengths, nm, or multiply the positions by 10");
     expect_refused(import({"--overwrite", "--links", "Bonds=0.97"}), 2,
                    "the System has no CustomBondForce `Bonds`");
     expect_refused(import({"--overwrite", "--links", "CustomBondForce"}), 2,

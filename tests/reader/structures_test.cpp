@@ -286,17 +286,19 @@ TEST_F(Structures, ranges_in_another_form_are_told_what_was_meant) {
     EXPECT_EQ(all("[{first: 1, last: 3}]"), "a map is not a range of residues" + at +
                                                 "write ranges in quotes, such as \"A:1-95\"");
     for (std::string const two : {"A:1-3, A:4-6", "A:1-3;A:4-6", "A:1-3 A:4-6"})
-        EXPECT_EQ(
-            all("[\"" + two + "\"]"),
-            "`" + two + "` in quotes holds 2 ranges" + at +
-                "write each in quotes of its own: \"A:1-3\", \"A:4-6\"; [\"A:1-3\", \"A:4-6\"] "
-                "makes one body of them");
+        EXPECT_EQ(all("[\"" + two + "\"]"),
+                  "`" + two + "` in quotes holds 2 ranges" + at +
+                      "write each in quotes of its own: \"A:1-3\", \"A:4-6\"; rigid: [[\"A:1-3\", "
+                      "\"A:4-6\"]] makes one body of them");
     EXPECT_EQ(all("[\"A:1\u20133\"]"),
               "`A:1\u20133` in quotes has a dash that is no hyphen" + at + "write \"A:1-3\"");
     for (char const* const blank : {"A:\u00a01-3", "A:1-\u00a03"})
         EXPECT_EQ(all("[\"" + std::string(blank) + "\"]"),
                   "`" + std::string(blank) + "` in quotes has a non-breaking space" + at +
                       "write \"A:1-3\"");
+    EXPECT_EQ(all("[[1, null]]"),
+              "an end of the range is missing (s.yaml: chains[0].rigid[0][1], line 1): write "
+              "\"CHAIN:FIRST-LAST\" within \"A:1-6\", \"B:1-6\"");
     EXPECT_EQ(all("[\"\"]"), "an empty text is no range of residues" + at +
                                  "write \"CHAIN:FIRST-LAST\" within \"A:1-6\", \"B:1-6\"");
 }
