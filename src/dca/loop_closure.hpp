@@ -135,7 +135,8 @@ struct ClosingJoint {
     /// the pseudo-inverse, which is zero otherwise.
     JointMatrix<Real, K> joint;
     /// True if the joint was nearly singular, but not indefinite. The pseudo-inverse of a joint
-    /// that is wholly redundant is zero.
+    /// that is wholly redundant is zero. Of one direction alone, zero may also mean that all digits
+    /// were lost (beads with mass ratios of 1e8), so such a joint does not count.
     bool has_least_norm = false;
 };
 /// Returns the joint that closes a loop.
@@ -148,7 +149,8 @@ CATENA_HD ClosingJoint<Real, K> closing_joint(Symmetric<Real, K> const& z,
     if (!is_nearly_singular(joint.factor, size, restricted)) return closing;
     joint.inboard = least_norm_inverse(z, size, restricted);
     joint.factor = Symmetric<Real, K>::zero();
-    closing.has_least_norm = has_diagonal_of_squares(joint.inboard);
+    closing.has_least_norm =
+        has_diagonal_of_squares(joint.inboard) && (restricted > 1 || joint.inboard(0, 0) > Real(0));
     return closing;
 }
 /// Returns the closing joint's force. It cancels `apart`, the acceleration of the joint's inboard
