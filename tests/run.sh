@@ -185,7 +185,7 @@ only=(public_headers no_mpi communicator launcher io_text_test io_no_hdf5_test i
       scene_refusals_test force_without_openmm command_program command_files command_without_hdf5 command_without_mpi command_without_openmm command_units
       integrate at_once plan plan_free_memory analysis_program frames)
 presets=(minimal)
-without_scripts=(-LE python)
+without_scripts=(-LE 'python|long')
 if [ $long = yes ]; then only=() without_scripts=() presets=(no-mpi minimal); fi
 for preset in "${presets[@]}"; do
     if build "$preset"; then ctests "$preset-tests" --preset "$preset" "${without_scripts[@]}"; fi
