@@ -191,12 +191,17 @@ struct ChainSpec {
     BeadArrays beads;
     BodyArrays bodies;
     LinkedArrays linked;
+    /// Inboard body of each body, counted from 0 within the chain; -1 for the first one, and always
+    /// smaller than the body's own number. Empty for an unbranched chain, where it is the body
+    /// before.
+    std::vector<std::int64_t> parent = {};
     /// Chain identifiers and residue numbers of the beads, for topology files; empty unless a
     /// structure file gives them.
     Members members = {};
 
     bool is_beads() const { return beads.size() > 0; }
     bool is_linked() const { return linked.size() > 0; }
+    bool is_branched() const { return !parent.empty(); }
     bool is_ring() const { return tip == Tip::jointed && tip_joint.ring; }
     std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
     CarriedBeads const& carried() const { return is_linked() ? linked.carried : bodies.carried; }
