@@ -108,6 +108,7 @@ void ForceContext::find_energies(std::span<double> of_group, int groups) {
     for (int i = 0; i < system_->getNumForces(); ++i) {
         int const group = system_->getForce(i).getForceGroup();
         if ((groups & 1 << group) == 0) continue;
+        groups &= ~(1 << group);  // several forces of a group have one energy
         of_group[static_cast<std::size_t>(group)] =
             context_->getState(OpenMM::State::Energy, false, 1 << group).getPotentialEnergy();
     }

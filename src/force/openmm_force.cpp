@@ -175,8 +175,10 @@ std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem 
     double const most = most_pairs(spec);
     if (most == 0) return {};
     std::vector<ForceLayer> taken = take_layers(model_, beads, most);
-    for (ForceLayer const& layer : taken)
+    for (ForceLayer& layer : taken) {
         model_.notes.insert(model_.notes.begin(), text_of(layer, beads));
+        if (path_.on_device()) hold_chains_together(layer);
+    }
     return taken;
 }
 

@@ -155,6 +155,20 @@ std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads,
     return layers;
 }
 
+void hold_chains_together(ForceLayer& layer) {
+    OpenMM::System& system = *layer.model.system;
+    auto bonds = std::make_unique<OpenMM::CustomBondForce>("0");
+    bonds->setForceGroup(system.getForce(0).getForceGroup());
+    bonds->setUsesPeriodicBoundaryConditions(system.usesPeriodicBoundaryConditions());
+    std::vector<int> const particle = particles_of_beads(layer.model.bead_of_particle);
+    std::vector<std::int64_t> const& offset = layer.beads.chain_offset;
+    for (std::size_t chain = 0; chain + 1 < offset.size(); ++chain)
+        for (std::int64_t bead = offset[chain] + 1; bead < offset[chain + 1]; ++bead)
+            bonds->addBond(particle[static_cast<std::size_t>(bead - 1)],
+                           particle[static_cast<std::size_t>(bead)]);
+    system.addForce(bonds.release());
+}
+
 std::vector<std::int64_t> own_places(ForceLayer const& layer, BeadSystem const& all, int rank) {
     std::vector<std::int64_t> places;
     std::vector<std::int64_t> const own = all.beads_of(rank);
