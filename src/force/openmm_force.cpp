@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -68,7 +69,8 @@ class OpenMmForces final : public OpenMmForce {
     bool shares_one_list() const {
         return path_.on_device() && communicator_.size() > 1 && !by_pairs_;
     }
-    double most_pairs(OpenMmSpec const& spec) const;
+    double pairs_of_one_list(BeadSystem const& beads) const;
+    double most_pairs(OpenMmSpec const& spec, BeadSystem const& beads) const;
     /// Moves forces out of the model into layers, if that pays on this platform and path.
     std::vector<ForceLayer> layers(OpenMmSpec const& spec, BeadSystem const& beads);
     std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec,
@@ -160,19 +162,30 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads,
     if (path_.on_device()) device_ = rank_->device_path(spec.overlap);
 }
 
+/// Returns the number of pairs within the longest cutoff, per rank, if beads had a uniform density;
+/// 0 without a box. Precondition: every force can be split.
+double OpenMmForces::pairs_of_one_list(BeadSystem const& beads) const {
+    std::optional<Vec3> const box = box_of(model_, beads);
+    if (!box) return 0;
+    double const count = static_cast<double>(beads.size()), reach = reach_of(*model_.system),
+                 sphere = 4.0 / 3.0 * std::numbers::pi * reach * reach * reach;
+    return count * count / 2 * sphere / ((*box)[0] * (*box)[1] * (*box)[2]) / communicator_.size();
+}
+
 /// Returns the largest part of the pairs of a single Context with which layers pay; 0: no layers.
-/// `auto` gives GPUs none. On path `device` a million beads of CALVADOS 2 took 2.72 ms a step with
-/// layers and 2.79 without, 100,000 beads 0.342 and 0.326 ms (H200, src/force/README.md). Path
-/// `host` on a GPU waits for every Context.
-double OpenMmForces::most_pairs(OpenMmSpec const& spec) const {
-    double constexpr few = 0.6, all = 1;
+/// With `auto`, GPUs have layers on path `device` from many_pairs on. There 20,000 beads of
+/// CALVADOS 2 at 330 mg/ml took 0.95 times as long with layers, 10,000 beads 1.25 times (H200).
+/// Path `host` on a GPU waits for every Context.
+double OpenMmForces::most_pairs(OpenMmSpec const& spec, BeadSystem const& beads) const {
+    double constexpr few = 0.6, all = 1, many_pairs = 5e6;
     if (spec.layers == "none" || spec.replicate || shares_one_list()) return 0;
     if (spec.layers == "all") return all;
-    return platform_.on_cpu() ? few : 0;
+    if (platform_.on_cpu()) return few;
+    return path_.on_device() && pairs_of_one_list(beads) >= many_pairs ? few : 0;
 }
 
 std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem const& beads) {
-    double const most = most_pairs(spec);
+    double const most = most_pairs(spec, beads);
     if (most == 0) return {};
     std::vector<ForceLayer> taken = take_layers(model_, beads, most);
     for (ForceLayer& layer : taken) {

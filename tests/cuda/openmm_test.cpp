@@ -282,13 +282,13 @@ TEST_P(OpenMmOnGpu, TheSameBitsAgain) {
 
 class LayersOnGpu : public OpenMmOnGpu {};
 
-/// On GPUs, layers have not been faster than one Context.
-TEST_F(LayersOnGpu, AreThereWhereTheSceneAsksForThem) {
-    for (char const* const layers : {"auto", "none", "all"}) {
+/// `auto` takes layers in large, dense systems.
+TEST_F(LayersOnGpu, AreThereWhereTheyPayAndWhereTheSceneAsksForThem) {
+    auto const expect = [&](int chains, char const* layers, bool taken) {
         Scene scene = parse_scene(
-            openmm_scene("{name: a, count: 20, sequence: SEQ, model: calvados2, conformation: "
-                         "self_avoiding}",
-                         "box: {periodic: [30, 30, 30]}"),
+            openmm_scene("{name: a, count: " + std::to_string(chains) +
+                             ", sequence: SEQ, model: calvados2, conformation: self_avoiding}",
+                         "box: {periodic: [32, 32, 32]}"),
             "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->layers = layers;
@@ -296,11 +296,15 @@ TEST_F(LayersOnGpu, AreThereWhereTheSceneAsksForThem) {
         EXPECT_EQ(system.openmm()->path(), "device");
         std::string said;
         for (std::string const& line : system.openmm()->description()) said += line + "\n";
-        bool const all = scene.forces.openmm->layers == "all";
         EXPECT_EQ(said.find("yukawa in a Context of its own: it acts on ") != std::string::npos,
-                  all);
-        EXPECT_EQ(system.openmm()->contexts(), all ? 2 : 1) << layers;
-    }
+                  taken);
+        EXPECT_EQ(system.openmm()->contexts(), taken ? 2 : 1) << layers << ", " << chains;
+    };
+    expect(20, "auto", false);
+    expect(20, "none", false);
+    expect(20, "all", true);
+    expect(520, "auto", true);
+    expect(520, "none", false);
 }
 
 INSTANTIATE_TEST_SUITE_P(
