@@ -160,7 +160,7 @@ void check_components(PackageFile const& config, PackageFile const& file, MadeSy
     compare_bonds(config, components, made.text, notes);
     if (components.comparable()) {
         refuse_other_termini(config, components, made);
-        refuse_other_pulled(components, made);
+        refuse_other_pulled(config, components, made);
     }
     compare_tables(config, &components, files.folder, made, notes);
     if (components.restrained())

@@ -136,7 +136,9 @@ void compare_pull(PackageFile const& config, SystemText const& system,
     }
 }
 
-void refuse_other_pulled(CalvadosComponents const& components, MadeSystem const& made) {
+void refuse_other_pulled(PackageFile const& config, CalvadosComponents const& components,
+                         MadeSystem const& made) {
+    if (!config.truth("slab_eq") && !config.truth("ext_force")) return;
     auto const owners = components.of_chains(made.chains.size());
     if (owners.empty()) return;
     for (ForceText const& force : made.text.forces()) {

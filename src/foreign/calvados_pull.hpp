@@ -16,7 +16,8 @@ namespace catena::foreign {
 void compare_pull(PackageFile const& config, SystemText const& system,
                   std::vector<std::string>& notes);
 
-/// Throws InputError if the external force acts on other molecules than `ext_restraint` says.
-void refuse_other_pulled(CalvadosComponents const&, MadeSystem const&);
+/// Throws InputError if the external force that the configuration asks for acts on other molecules
+/// than `ext_restraint` says.
+void refuse_other_pulled(PackageFile const& config, CalvadosComponents const&, MadeSystem const&);
 
 }  // namespace catena::foreign

@@ -107,8 +107,9 @@ class TableCheck {
         std::error_code ignored;
         fs::path const path = written, copy = fs::path(folder_) / path.filename(),
                        relative = fs::path(folder_) / path;
-        bool const inside = fs::is_regular_file(copy, ignored) ||
-                            (path.is_relative() && fs::is_regular_file(relative, ignored));
+        bool const below = path.is_relative() && *path.lexically_normal().begin() != "..",
+                   inside = fs::is_regular_file(copy, ignored) ||
+                            (below && fs::is_regular_file(relative, ignored));
         fs::path const file = fs::is_regular_file(copy, ignored) ? copy : relative;
         if (!fs::is_regular_file(file, ignored)) {
             missing_.emplace(key, shown(path));
