@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <regex>
 #include <string>
 
 #include "error.hpp"
@@ -66,6 +68,27 @@ void refuse_cutoff(PackageFile const& config, std::string const& system, Screeni
                     run_again);
 }
 
+/// Throws InputError if the energy of charges is not shifted to 0 at their cutoff.
+void refuse_shift(SystemText const& system) {
+    static std::regex const form(R"([^(]*\(exp\(-([^*]+)\*r\)/r-([^)]+)\);.*)");
+    for (ForceText const& force : system.forces()) {
+        std::smatch parts;
+        double kappa = 0, shift = 0;
+        bool const is_read =
+            force.kind == "CustomNonbondedForce" && force.cutoff > 0 &&
+            std::regex_match(force.energy, parts, form) &&
+            scene::parse_number(parts[1].str(), kappa) == scene::NumberFault::none &&
+            scene::parse_number(parts[2].str(), shift) == scene::NumberFault::none;
+        double const asked = std::exp(-kappa * force.cutoff) / force.cutoff;
+        if (!is_read || std::abs(shift - asked) <= most_difference * asked) continue;
+        throw InputError(
+            fmt::format("the energy of charges is shifted by {:.6g}/nm, and is 0 at the cutoff of "
+                        "{:.6g} nm with {:.6g}/nm",
+                        shift, force.cutoff, asked),
+            scene::shown_path(system.file()), run_again);
+    }
+}
+
 /// True for a particle within a chain: its charge is that of its residue. The package writes a
 /// complex as one chain of the topology, so that the System's bonds tell the ends.
 bool is_inner(std::vector<bool> const& joined, std::size_t p) {
@@ -109,8 +132,8 @@ void note_histidines(MadeSystem const& made, std::vector<std::string>& notes) {
                                 made.name()));
 }
 
-/// Charges of residues within chains, by name: those of the System itself, else those of the
-/// CALVADOS models.
+/// Charges of residues within chains, by name: the System's own, of which the most frequent counts,
+/// else those of the CALVADOS models.
 class InnerCharges {
   public:
     explicit InnerCharges(MadeSystem const& made) {
@@ -118,11 +141,15 @@ class InnerCharges {
         auto const& [screening, joined] = *made.charges;
         for (PdbChain const& chain : made.chains)
             for (std::size_t k = 0; k < chain.size() && p < joined.size(); ++k, ++p)
-                if (is_inner(joined, p)) found_.emplace(chain.residue[k], screening.charges[p]);
+                if (is_inner(joined, p)) ++found_[chain.residue[k]][screening.charges[p]];
     }
     /// Returns nothing for a residue that neither has.
     std::optional<double> of(std::string const& residue, Node const* ph) const {
-        if (auto const own = found_.find(residue); own != found_.end()) return own->second;
+        if (auto const own = found_.find(residue); own != found_.end())
+            return std::max_element(
+                       own->second.begin(), own->second.end(),
+                       [](auto const& a, auto const& b) { return a.second < b.second; })
+                ->first;
         ResidueType const* const known = find_calvados2(residue);
         if (known == nullptr || (known->letter == 'H' && ph == nullptr)) return std::nullopt;
         return known->letter == 'H' ? calvados2::histidine_charge(scene::number(*ph))
@@ -130,7 +157,7 @@ class InnerCharges {
     }
 
   private:
-    std::map<std::string, double> found_;
+    std::map<std::string, std::map<double, std::size_t>> found_;  // numbers of particles
 };
 
 /// An end of a chain in the System.
@@ -166,6 +193,7 @@ void compare_charges(PackageFile const& config, MadeSystem const& made,
             made.name()));
     refuse_water(config, made.name(), made.charges->screening, notes);
     refuse_cutoff(config, made.name(), made.charges->screening);
+    refuse_shift(made.text);
     if (Node const* const ph = config.find("pH"))
         refuse_ph(*ph, made);
     else

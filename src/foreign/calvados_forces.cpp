@@ -98,7 +98,7 @@ class BondCheck {
 
     void refuse_stiffness(CalvadosComponent const& component, ForceText const& force,
                           char const* key, double asked) const {
-        for (auto const& [length, k] : force.bonds)
+        for (auto const& [length, k, i, j] : force.bonds)
             if (!are_equal(k, asked))
                 throw InputError(
                     fmt::format("bonds of {} have a stiffness of {:.6g} kJ/mol/nm2, those of `{}` "
@@ -111,7 +111,7 @@ class BondCheck {
     /// its component allows.
     void refuse_beyond(CalvadosComponent const& component, ForceText const& force,
                        double strongest) const {
-        for (auto const& [length, k] : force.bonds) {
+        for (auto const& [length, k, i, j] : force.bonds) {
             if (length > component.cutoff_restr * with_rounding)
                 throw InputError(fmt::format("the network of `{}` joins pairs up to {:.6g} nm "
                                              "(`cutoff_restr`), and {} has one of {:.6g} nm",
@@ -153,6 +153,7 @@ void compare_contacts(PackageFile const& config, SystemText const& system,
         std::smatch parts;
         if (!match_contacts(force, parts)) continue;
         found = true;
+        refuse_another(config, "cutoff_lj", force.cutoff, 1, system.name());
         for (Number const& number :
              {Number{"eps_lj", 1, kilocalorie}, {"fixed_lambda", 2, 1}, {"cutoff_lj", 3, 1}}) {
             double made = 0;

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -28,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using scene::Node;
 
+constexpr double most_charge = 1e-3;  // e
 constexpr char const* put_right =
     "start the package's run.py again, which writes the System, or put the right file there";
 
@@ -42,17 +45,21 @@ Node named(std::string const& text) {
 /// Compares tables one after the other.
 class TableCheck {
   public:
-    TableCheck(std::string folder, MadeSystem const& made, std::vector<std::string>& notes)
+    TableCheck(PackageFile const& config, std::string folder, MadeSystem const& made,
+               std::vector<std::string>& notes)
         : folder_(std::move(folder)),
           made_(made),
           notes_(notes),
           contacts_(contacts_of(made.text)),
-          masses_(made.text.masses()) {}
+          masses_(made.text.masses()) {
+        if (config.find("pH") != nullptr) ph_ = config.number("pH", 7);
+    }
 
     /// Compares the particles of each chain with the tables of its component.
     void compare_chains(CalvadosComponents const& components) {
         std::size_t first = 0;
         auto const owners = components.of_chains(made_.chains.size());
+        index_bonds();
         for (std::size_t c = 0; c < owners.size(); ++c) {
             std::size_t const next = first + made_.chains[c].size();
             if (!owners[c]->residues.empty())
@@ -68,8 +75,11 @@ class TableCheck {
         with_file("fcustom_restraints", written, [&](std::string const& file) {
             Pairs asked = restraints_in(file), found;
             for (ForceText const& force : made_.text.forces())
-                if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce"))
-                    found = force.bonds;
+                if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce")) {
+                    found.clear();
+                    for (BondText const& bond : force.bonds)
+                        found.push_back({bond.length, bond.stiffness});
+                }
             std::sort(asked.begin(), asked.end()), std::sort(found.begin(), found.end());
             bool const same = std::equal(asked.begin(), asked.end(), found.begin(), found.end(),
                                          [](auto const& a, auto const& b) {
@@ -127,6 +137,12 @@ class TableCheck {
         }
     }
 
+    struct Particle {
+        std::size_t index;
+        ResidueType const& type;
+        std::string const& table;
+    };
+
     ResidueTable const& table_in(std::string const& file) {
         auto const known = tables_.find(file);
         if (known != tables_.end()) return known->second;
@@ -154,22 +170,33 @@ class TableCheck {
             double const mass = type->mass + (n ? calvados2::first_bead_mass : 0) +
                                 (e ? calvados2::last_bead_mass : 0);
             refuse_unequal({p, *type, table.name()}, "a mass", masses_[p], mass, "amu");
+            if (made_.charges && p < made_.charges->screening.charges.size())
+                compare_charge({p, *type, table.name()}, n, e);
             if (contacts_ == nullptr || p >= contacts_->parameters.size()) continue;
-            auto const& [sigma, lambda] = contacts_->parameters[p];
+            auto const& [sigma, lambda, id] = contacts_->parameters[p];
             refuse_unequal({p, *type, table.name()}, "a diameter", sigma, type->sigma, "nm");
             refuse_unequal({p, *type, table.name()}, "a stickiness", lambda, type->lambda, "");
+            refuse_unequal({p, *type, table.name()}, "an `id`", id, protein ? 1 : -1, "");
         }
+        if (!component.restrained) compare_bonds_of(table, chain, first);
         if (!component.sequences.empty() && !component.restrained)
             with_file("ffasta", component.sequences, [&](std::string const& file) {
                 compare_sequence(component, table, chain, file);
             });
     }
 
-    struct Particle {
-        std::size_t index;
-        ResidueType const& type;
-        std::string const& table;
-    };
+    /// Compares the charge of a particle that is a charged N (`n`) or C (`c`) end, or neither. That
+    /// of histidine needs a pH.
+    void compare_charge(Particle const& particle, bool n, bool c) const {
+        bool const histidine = particle.type.letter == 'H';
+        if (histidine && !ph_) return;
+        double const inner = histidine ? calvados2::histidine_charge(ph_) : particle.type.charge,
+                     asked = inner + (n ? calvados2::first_bead_charge : 0) +
+                             (c ? calvados2::last_bead_charge : 0),
+                     found = made_.charges->screening.charges[particle.index];
+        if (std::abs(found - asked) > most_charge)
+            refuse_unequal(particle, "a charge", found, asked, "e");
+    }
 
     void refuse_unequal(Particle const& particle, char const* what, double made, double asked,
                         char const* unit) const {
@@ -180,6 +207,31 @@ class TableCheck {
                         particle.type.name, what, asked, space, unit, particle.index, made_.name(),
                         made, space, unit),
             particle.table, put_right);
+    }
+
+    /// Finds the harmonic bond of each particle to the preceding one.
+    void index_bonds() {
+        to_previous_.assign(masses_.size(), 0);
+        for (ForceText const& force : made_.text.forces()) {
+            if (force.kind != "HarmonicBondForce") continue;
+            for (BondText const& bond : force.bonds)
+                if (bond.second == bond.first + 1 && bond.first >= 0 &&
+                    bond.second < std::ssize(to_previous_))
+                    to_previous_[static_cast<std::size_t>(bond.second)] = bond.length;
+        }
+    }
+
+    /// Compares bonds of a chain without a network with the mean of its residues' bonds.
+    void compare_bonds_of(ResidueTable const& table, PdbChain const& chain,
+                          std::size_t first) const {
+        for (std::size_t k = 1; k < chain.size() && first + k < to_previous_.size(); ++k) {
+            ResidueType const *const here = table.find(chain.residue[k]),
+                                     *const before = table.find(chain.residue[k - 1]);
+            double const made = to_previous_[first + k];
+            if (here == nullptr || before == nullptr || made == 0) continue;
+            refuse_unequal({first + k, *here, table.name()}, "a bond to the preceding residue",
+                           made, (here->bond + before->bond) / 2, "nm");
+        }
     }
 
     std::string const& sequence_in(std::string const& file, std::string const& record) {
@@ -237,6 +289,8 @@ class TableCheck {
     std::vector<std::string>& notes_;
     ForceText const* contacts_;
     std::vector<double> masses_;
+    std::vector<double> to_previous_;  // lengths of bonds, nm; 0 without one
+    std::optional<double> ph_;
     std::map<std::string, ResidueTable> tables_;
     std::map<std::pair<std::string, std::string>, std::string> sequences_;
     std::map<std::string, std::string> missing_;
@@ -248,7 +302,7 @@ class TableCheck {
 void compare_tables(PackageFile const& config, CalvadosComponents const* components,
                     std::string const& folder, MadeSystem const& made,
                     std::vector<std::string>& notes) {
-    TableCheck check(folder, made, notes);
+    TableCheck check(config, folder, made, notes);
     if (components != nullptr && components->comparable()) check.compare_chains(*components);
     if (config.truth("custom_restraints"))
         check.compare_restraints(config.text("fcustom_restraints", "custom_restraints.txt"),

@@ -49,16 +49,29 @@ void each_tag(std::string const& text, char const* name, std::size_t at, std::si
     for (at = text.find(name, at); at < end; at = text.find(name, at + 1)) visit(at);
 }
 
-/// Reads two attributes of each tag in [at, end) that begins with `name`.
-std::vector<std::array<double, 2>> pairs_of(std::string const& text, char const* name,
-                                            std::size_t at, std::size_t end, char const* first,
-                                            char const* second) {
-    std::vector<std::array<double, 2>> pairs;
-    each_tag(text, name, at, end, [&](std::size_t tag) {
-        auto const a = attribute_of(text, tag, first), b = attribute_of(text, tag, second);
-        if (a && b) pairs.push_back({*a, *b});
+/// Reads the bonds in [at, end), whose length and stiffness have these attributes.
+std::vector<BondText> bonds_of(std::string const& text, std::size_t at, std::size_t end,
+                               char const* length, char const* stiffness) {
+    std::vector<BondText> bonds;
+    each_tag(text, "<Bond ", at, end, [&](std::size_t tag) {
+        auto const d = attribute_of(text, tag, length), k = attribute_of(text, tag, stiffness),
+                   i = attribute_of(text, tag, "p1"), j = attribute_of(text, tag, "p2");
+        if (d && k && i && j)
+            bonds.push_back({*d, *k, static_cast<std::int64_t>(*i), static_cast<std::int64_t>(*j)});
     });
-    return pairs;
+    return bonds;
+}
+
+/// Reads the parameters of the particles in [at, end).
+std::vector<std::array<double, 3>> parameters_of(std::string const& text, std::size_t at,
+                                                 std::size_t end) {
+    std::vector<std::array<double, 3>> parameters;
+    each_tag(text, "<Particle ", at, end, [&](std::size_t tag) {
+        parameters.push_back({attribute_of(text, tag, "param1").value_or(0),
+                              attribute_of(text, tag, "param2").value_or(0),
+                              attribute_of(text, tag, "param3").value_or(0)});
+    });
+    return parameters;
 }
 
 /// Reads the force whose tag begins at `at` and that ends before `next`.
@@ -66,6 +79,7 @@ ForceText force_of(std::string const& text, std::size_t at, std::size_t next) {
     ForceText force;
     force.kind = attribute_text(text, at, "type");
     force.energy = unescaped(attribute_text(text, at, "energy"));
+    force.cutoff = attribute_of(text, at, "cutoff").value_or(0);
     std::size_t const globals = text.find("<GlobalParameters>", at);
     if (globals < next)
         each_tag(text, "<Parameter ", globals, std::min(next, text.find("</GlobalP", at)),
@@ -73,12 +87,9 @@ ForceText force_of(std::string const& text, std::size_t at, std::size_t next) {
                      if (auto const value = attribute_of(text, tag, "default"))
                          force.globals[attribute_text(text, tag, "name")] = *value;
                  });
-    if (force.kind == "HarmonicBondForce")
-        force.bonds = pairs_of(text, "<Bond ", at, next, "d", "k");
-    if (force.kind == "CustomBondForce")
-        force.bonds = pairs_of(text, "<Bond ", at, next, "param1", "param2");
-    if (force.kind == "CustomNonbondedForce")
-        force.parameters = pairs_of(text, "<Particle ", at, next, "param1", "param2");
+    if (force.kind == "HarmonicBondForce") force.bonds = bonds_of(text, at, next, "d", "k");
+    if (force.kind == "CustomBondForce") force.bonds = bonds_of(text, at, next, "param1", "param2");
+    if (force.kind == "CustomNonbondedForce") force.parameters = parameters_of(text, at, next);
     if (force.kind == "CustomExternalForce")
         each_tag(text, "<Particle ", at, next, [&](std::size_t tag) {
             if (auto const index = attribute_of(text, tag, "index"))

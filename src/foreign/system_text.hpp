@@ -13,19 +13,27 @@
 
 namespace catena::foreign {
 
+/// A bond in the text of a System.
+struct BondText {
+    /// Length in nm and stiffness in kJ/mol/nm2 of a harmonic bond, or the first two parameters of
+    /// a custom one.
+    double length, stiffness;
+    std::int64_t first, second;  // particles
+};
+
 /// One force in the text of a System.
 struct ForceText {
     std::string kind;    // such as CustomBondForce
     std::string energy;  // its expression; empty without one
     /// Defaults of its global parameters.
     std::map<std::string, double> globals;
-    /// Length in nm and stiffness in kJ/mol/nm2 of its harmonic bonds, or the first two parameters
-    /// of its custom bonds.
-    std::vector<std::array<double, 2>> bonds;
+    double cutoff = 0;  // nm
+    std::vector<BondText> bonds;
     /// Particles on which a CustomExternalForce acts.
     std::vector<std::int64_t> pulled;
-    /// First two parameters of the particles of a CustomNonbondedForce.
-    std::vector<std::array<double, 2>> parameters;
+    /// First three parameters of the particles of a CustomNonbondedForce; 0 for those that it does
+    /// not have.
+    std::vector<std::array<double, 3>> parameters;
 };
 
 /// Text of a serialised System. It is not checked: damage is found by refuse_damaged().

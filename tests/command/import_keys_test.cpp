@@ -346,6 +346,28 @@ TEST_F(WholePackage, MoleculesOfOtherKindsAreNotCompared) {
     expect_note("Not compared from components.yaml: rna_ka, rna_kb1, rna_kb2");
 }
 
+/// What of the System a table or the configuration tells.
+TEST_F(WholePackage, NumbersOfTheSystemThatWereChangedAreRefused) {
+    std::string const system = folder + "/slab.xml", whole = text_in(system);
+    auto const refused = [&](std::string const& part, std::string const& by,
+                             std::string const& message) {
+        write(system, whole);
+        ASSERT_NE(whole.find(part), std::string::npos) << part;
+        replace_in(system, part, by);
+        refuse(message);
+    };
+    refused("r)/r-0.00", "r)/r-0.01", "the energy of charges is shifted by 0.01");
+    refused("cutoff=\"2\"", "cutoff=\"1.5\"",
+            "`cutoff_lj` is 2, and slab.xml was written with 1.5");
+    refused("d=\".38\"", "d=\".37\"",
+            "has a bond to the preceding residue of 0.38 nm, and particle 1");
+    refused("<Particle param1=\"1\"/>\n\t\t\t\t<Particle param1=\"0\"/>",
+            "<Particle param1=\"1\"/>\n\t\t\t\t<Particle param1=\"-1\"/>",
+            "SER has a charge of 0 e, and particle 1 (from 0) of slab.xml has -1 e");
+    refused("param3=\"1\"", "param3=\"-1\"", "GLY has an `id` of 1, and particle 0");
+    refused("param1=\".45\"", "param1=\".54\"", "GLY has a diameter of 0.45 nm");
+}
+
 /// Limits of an elastic network.
 TEST(PackageNetworks, ReachAndDepthAreThoseOfTheSystem) {
     TemporaryFolder const here;
