@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "bodies/hdf5_table.hpp"
 #include "bodies/joint_entry.hpp"
@@ -226,7 +227,7 @@ class Hdf5Bodies {
         });
     }
 
-    /// Reads a dataset [n, 4] of joint positions. Entries that the joint does not use become 0.
+    /// Reads a dataset [n, 4] of joint positions. Joints without coordinates may have an identity.
     void positions(char const* name, std::vector<std::array<double, 4>>& into) {
         into.resize(table_.rows());
         for (std::size_t k = 0; k < table_.rows(); ++k) into[k] = rest_position(bodies_.joint[k]);
@@ -236,33 +237,41 @@ class Hdf5Bodies {
                 std::copy(v, v + 4, into[k].begin());
                 refuse(name, k, make_unit(into[k]));
             } else {
-                std::copy(v, v + numbers_of(bodies_.joint[k]), into[k].begin());
+                std::copy(v, v + count(k), into[k].begin());
+                refuse(name, k, check_range(into[k]));
+                if (count(k) > 0 || v[0] != 1) refuse_unused(name, k, {v, 4}, count(k));
             }
         });
     }
     /// True if the position of joint k is a quaternion.
     bool turns(std::size_t k) const { return has_quaternion(bodies_.joint[k]); }
 
-    /// Reads `q` [n, 4], `qd` [n, 3], `free_position` [3] and `free_velocity` [3]. Rates that a
-    /// joint does not have become 0.
+    /// Reads `q` [n, 4], `qd` [n, 3], `free_position` [3] and `free_velocity` [3].
     void read_state() {
         positions("q", bodies_.q);
-        vectors("qd", bodies_.qd,
-                [&](std::size_t k, Vec3& v) { keep(v, rates_of_joint(bodies_.joint[k])); });
+        vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
+            refuse_unused("qd", k, v.data, rates_of_joint(bodies_.joint[k]));
+        });
         table_.vector("free_position", bodies_.free_position.data);
         table_.vector("free_velocity", bodies_.free_velocity.data);
     }
     /// Number of coordinates of joint k; 0 for a free joint.
     int count(std::size_t k) const { return numbers_of(bodies_.joint[k]); }
-    /// Sets the components from `count` on to zero.
-    static void keep(Vec3& v, int count) {
-        for (int i = count; i < 3; ++i) v[i] = 0;
+    /// Throws InputError for a number other than 0 beyond the `count` that joint k has.
+    void refuse_unused(char const* name, std::size_t k, std::span<double const> v,
+                       int count) const {
+        for (std::size_t i = static_cast<std::size_t>(count); i < v.size(); ++i)
+            if (v[i] != 0)
+                table_.refuse(name, k,
+                              fmt::format("number {} of {} is {:.6g}, and a {} joint has {}", i + 1,
+                                          name, v[i], name_of(bodies_.joint[k]), count),
+                              "write 0 there");
     }
 
     /// Reads a dataset of stiffness or damping and refuses negative numbers.
     void resistances(char const* name, std::vector<Vec3>& into) {
         vectors(name, into, [&](std::size_t k, Vec3& v) {
-            keep(v, count(k));
+            refuse_unused(name, k, v.data, count(k));
             for (double const x : v.data)
                 if (!(x >= 0))
                     table_.refuse(name, k, fmt::format("{} {} is negative", name, x),
@@ -271,11 +280,13 @@ class Hdf5Bodies {
     }
 
     /// Reads `torque`, `stiffness`, `damping` [n, 3], `rest` [n, 4], `wrench` [n, 6] (torque,
-    /// force) and `drag` [n, 2]. All are optional; a spring needs `stiffness` or `rest`.
+    /// force) and `drag` [n, 2]. All are optional; `rest` needs `stiffness`.
     void read_forces() {
         if (table_.has("torque"))
-            vectors("torque", bodies_.torque, [&](std::size_t k, Vec3& v) { keep(v, count(k)); });
-        if (table_.has("stiffness") || table_.has("rest")) {
+            vectors("torque", bodies_.torque,
+                    [&](std::size_t k, Vec3& v) { refuse_unused("torque", k, v.data, count(k)); });
+        if (table_.has("rest")) need("stiffness", "springs that are relaxed at `rest` have one");
+        if (table_.has("stiffness")) {
             resistances("stiffness", bodies_.stiffness);
             positions("rest", bodies_.rest);
         }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "bodies/physics.hpp"
@@ -117,7 +118,9 @@ Vec3 resistance(Node const& node, JointType type) {
 Four position(Node const& node, JointType type, bool alike) {
     if (has_quaternion(type)) return unit_quaternion(node);
     Vec3 const v = components(node, type, alike);
-    return {v[0], v[1], v[2], 0};
+    Four const q{v[0], v[1], v[2], 0};
+    if (auto const fault = check_range(q)) fail(node, fault->what, fault->remedy);
+    return q;
 }
 
 /// Reads pose and rates of a free joint: position and velocity in W, omega in B.
@@ -200,6 +203,7 @@ void read_motion(Fields const& joint, Node const& motion, JointEntry& entry) {
         entry.q[i] = value_at(entry.motion[i], 0);
         entry.qd[static_cast<int>(i)] = rate_at(entry.motion[i], 0);
     }
+    if (auto const fault = check_range(entry.q)) fail(motion, fault->what, fault->remedy);
 }
 
 /// Reads position, rates, torque, spring and damper.
@@ -211,18 +215,31 @@ void read_state(Fields const& joint, JointEntry& entry) {
     if (Node const* const qd = joint.find("qd")) entry.qd = components(*qd, type, false);
     if (Node const* const torque = joint.find("torque"))
         entry.torque = components(*torque, type, turns_twice(type));
-    if (Node const* const stiffness = joint.find("stiffness"))
-        entry.stiffness = resistance(*stiffness, type);
+    Node const* const stiffness = joint.find("stiffness");
+    if (stiffness != nullptr) entry.stiffness = resistance(*stiffness, type);
+    if (Node const* const rest = joint.find("rest"); rest != nullptr && stiffness == nullptr)
+        fail(*rest, "`rest` of a joint without `stiffness`, which has no spring",
+             "give the spring's `stiffness`, or leave `rest` out");
     if (Node const* const damping = joint.find("damping"))
         entry.damping = resistance(*damping, type);
     entry.loaded = joint.find("torque");
-    entry.sprung = joint.find("stiffness") || joint.find("rest");
+    entry.sprung = stiffness != nullptr;
     entry.damped = joint.find("damping");
 }
 
 }  // namespace
 
 int numbers_of(JointType type) { return numbers_of_joint(type); }
+
+std::optional<Fault> check_range(std::array<double, 4> const& q) {
+    for (double const x : q)
+        if (std::abs(x) > farthest_coordinate)
+            return Fault{fmt::format("a joint's position of {:.6g} is beyond the range of "
+                                     "coordinates",
+                                     x),
+                         fmt::format("correct it: the largest is {:g}", farthest_coordinate)};
+    return std::nullopt;
+}
 
 std::optional<Fault> check_axes(JointType type, Vec3& first, Vec3 const& axis) {
     return glides(type) ? check_plane(first, axis) : check_two_axes(first, axis);

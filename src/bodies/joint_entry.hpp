@@ -53,6 +53,11 @@ TipEntry read_tip_joint(Node const& joint, bool ring);
 /// Number of components of the joint's torque, stiffness or damping: 1, 2 or 3. It is 0 for links,
 /// welds and free joints.
 int numbers_of(JointType type);
+/// Largest coordinate of a joint, in radians or the scene's lengths, and largest coordinate of
+/// positions. A double resolves an angle of that size to 1e-7.
+inline constexpr double farthest_coordinate = 1e9;
+/// Returns a fault for a position of a joint with a coordinate beyond that.
+std::optional<Fault> check_range(std::array<double, 4> const& q);
 /// Returns a fault if a joint of this type cannot have these two unit axes; makes those of a
 /// planar3 joint perpendicular to rounding.
 std::optional<Fault> check_axes(JointType type, Vec3& first, Vec3 const& axis);

@@ -10,6 +10,7 @@
 #include "command/commands.hpp"
 #include "command/run_text.hpp"
 #include "command/stop_signals.hpp"
+#include "generate/start_fit.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "measure/run_start.hpp"
 #include "page/run_facts.hpp"
@@ -48,6 +49,7 @@ std::string complaint_of(Json const& s, bool whole) {
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     StopSignals const signals;
     look_before_run(given, communicator);
+    if (!request.restart.empty()) scene::forget_fits(given);  // said at the first start
     if (auto const lacking = lacking_memory(given, communicator)) given.note(lacking->note());
     for (std::string const& note : given.notes) spdlog::warn("{}", note);
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator)

@@ -3,18 +3,23 @@
 #include "foreign/calvados_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <optional>
 
 #include "error.hpp"
 #include "foreign/calvados_charges.hpp"
+#include "foreign/calvados_components.hpp"
 #include "foreign/calvados_forces.hpp"
-#include "foreign/system_text.hpp"
+#include "foreign/calvados_keys.hpp"
+#include "foreign/calvados_pull.hpp"
+#include "foreign/calvados_tables.hpp"
+#include "foreign/contents.hpp"
+#include "foreign/made_system.hpp"
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
-#include "systems/pdb_topology.hpp"
 
 namespace catena::foreign {
 
@@ -27,12 +32,6 @@ constexpr double most_box_difference = 1e-4;  // nm
 constexpr char const* last_key = "wfreq";
 /// Number of keys in alphabetical order from which a file is taken for the package's own.
 constexpr std::ptrdiff_t least_keys = 5;
-constexpr char const* write_again = "write it again with the package's prepare.py";
-
-/// Name of a file without its folder, for messages.
-std::string bare_name(std::string const& file) {
-    return scene::shown_path(std::filesystem::path(file).filename().string());
-}
 
 /// Throws InputError if the configuration's box is not the System's.
 void refuse_another_size(PackageFile const& config, SystemText const& system) {
@@ -45,8 +44,8 @@ void refuse_another_size(PackageFile const& config, SystemText const& system) {
             scene::fail(*node,
                         fmt::format("the box is {:.6g} x {:.6g} x {:.6g} nm, that of {} {:.6g} x "
                                     "{:.6g} x {:.6g} nm",
-                                    asked[0], asked[1], asked[2], bare_name(system.file()),
-                                    (*made)[0], (*made)[1], (*made)[2]),
+                                    asked[0], asked[1], asked[2], system.name(), (*made)[0],
+                                    (*made)[1], (*made)[2]),
                         "start the package's run.py again, which writes the System, or correct "
                         "`box`");
 }
@@ -62,68 +61,23 @@ struct ForceKey {
 void refuse_lost_forces(PackageFile const& config, SystemText const& system, bool is_continued) {
     for (ForceKey const& force : {ForceKey{"slab_eq", "CustomExternalForce", true},
                                   {"ext_force", "CustomExternalForce", false},
-                                  {"box_eq", "MonteCarloAnisotropicBarostat", false},
+                                  {"box_eq", "MonteCarloAnisotropicBarostat", true},
                                   {"bilayer_eq", "MonteCarloMembraneBarostat", true}}) {
         bool const may_lack = force.of_equilibration && is_continued;
         if (!config.truth(force.key) || may_lack || system.holds(force.kind)) continue;
-        scene::fail(*config.find(force.key),
-                    fmt::format("`{}` is true, but {} has no {}", force.key,
-                                bare_name(system.file()), force.kind),
-                    fmt::format("start the package's run.py again, which writes the System, or "
-                                "write `{}: false`",
-                                force.key));
+        scene::fail(
+            *config.find(force.key),
+            fmt::format("`{}` is true, but {} has no {}", force.key, system.name(), force.kind),
+            fmt::format("start the package's run.py again, which writes the System, or "
+                        "write `{}: false`",
+                        force.key));
     }
-}
-
-/// Notes an external force that the configuration does not ask for: a pull towards a slab, say,
-/// would act throughout.
-void note_unasked_force(PackageFile const& config, SystemText const& system, Settings& settings) {
-    char const* const kind = "CustomExternalForce";
-    if (!system.holds(kind) || config.truth("slab_eq") || config.truth("ext_force")) return;
-    settings.notes.push_back(fmt::format(
-        "{} has a {} that config.yaml does not ask for (slab_eq, ext_force): it acts throughout. "
-        "If it should not, import with --leave-out {}.",
-        bare_name(system.file()), kind, kind));
 }
 
 /// Last line of a text that does not end with a line feed; empty for others.
 std::string open_line(std::string const& text) {
     std::size_t const feed = text.rfind('\n');
     return feed == std::string::npos ? text : text.substr(feed + 1);
-}
-
-/// Adds one component. Its properties override the defaults.
-void add_component(Node const& component, PackageFile const& file, Node const* defaults,
-                   CalvadosComponents& sum) {
-    if (component.kind != Node::Kind::map)
-        throw InputError(
-            fmt::format("component `{}` has no properties", scene::shown(component.key)),
-            scene::shown_path(file.root().text),
-            std::string(write_again) + ", or move it out of the folder");
-    auto const property = [&](char const* key) -> Node const* {
-        Node const* const own = component.find(key);
-        return own != nullptr || defaults == nullptr ? own : defaults->find(key);
-    };
-    Node const* const copies = valued(property("nmol"));
-    sum.molecules += copies == nullptr ? 1 : whole_of(*copies, 0);
-    auto const word = [&](char const* key, char const* otherwise) {
-        Node const* const node = valued(property(key));
-        return node == nullptr ? std::string(otherwise) : scene::text(*node);
-    };
-    auto const stiffness = [&](char const* key, double otherwise) {
-        Node const* const node = valued(property(key));
-        sum.stiffness.insert(node == nullptr ? otherwise : scene::number(*node));
-    };
-    sum.proteins = sum.proteins && word("molecule_type", "protein") == "protein";
-    ++sum.harmonic_forces;
-    stiffness("kb", 8033);
-    Node const* const restraint = valued(property("restraint"));
-    if (restraint == nullptr || !scene::truth(*restraint)) return;
-    sum.restrained = true;
-    if (word("restraint_type", "harmonic") == "go")
-        sum.custom_forces += 3;  // contacts, scaled contacts and scaled charges
-    else
-        ++sum.harmonic_forces, stiffness("k_harmonic", 700);
 }
 
 }  // namespace
@@ -151,49 +105,104 @@ void refuse_cut(PackageFile const& config, std::vector<std::string>& notes) {
             scene::shown(line)));
 }
 
-void check_configuration(PackageFile const& config, Files const& files, bool is_continued,
-                         Settings& settings) {
-    SystemText const system(files.system);
-    refuse_another_size(config, system);
-    refuse_other_charges(config, files, settings.notes);
-    refuse_lost_forces(config, system, is_continued);
-    refuse_other_forces(config, system);
+namespace {
+
+/// Notes what the package does with the box and the scene does not.
+void note_barostat(PackageFile const& config, std::vector<std::string>& notes) {
     if (config.truth("pressure_coupling"))
-        settings.notes.push_back(
-            "`pressure_coupling` is not taken over: the scene has a constant volume.");
-    note_unasked_force(config, system, settings);
+        notes.push_back("`pressure_coupling` is not taken over: the scene has a constant volume.");
+    for (char const* const key : {"box_eq", "bilayer_eq"})
+        if (config.truth(key))
+            notes.push_back(
+                fmt::format("`{}` is true: the package's equilibration changes the box, and the "
+                            "scene keeps the one it starts with.",
+                            key));
+}
+
+/// Notes compared keys that the configuration lacks, so that the System's values count.
+void note_absent(PackageFile const& config, std::string const& system,
+                 std::vector<std::string>& notes) {
+    std::vector<std::string> absent;
+    for (char const* const key :
+         {"box", "cutoff_lj", "cutoff_yu", "eps_lj", "fixed_lambda", "ionic"})
+        if (config.find(key) == nullptr) absent.emplace_back(key);
+    if (!absent.empty())
+        notes.push_back(
+            fmt::format("config.yaml has no {}: {} decides.", fmt::join(absent, ", "), system));
+}
+
+/// Throws InputError if the topology does not have one chain for each molecule. It may have more if
+/// molecules may be complexes of several chains.
+void refuse_other_molecules(CalvadosComponents const& components, MadeSystem const& made,
+                            std::vector<std::string>& notes) {
+    auto const chains = std::ssize(made.chains);
+    std::int64_t const molecules = components.molecules();
+    if (chains == 0 || chains == molecules) return;
+    if (!components.restrained() || chains < molecules)
+        throw InputError(
+            fmt::format("the components make {} molecule{}, and {} has {} chain{}", molecules,
+                        molecules == 1 ? "" : "s", made.topology, chains, chains == 1 ? "" : "s"),
+            components.file,
+            std::string(write_again) + ", or move it out of the folder if it is of another System");
+    // A complex, which only structures give, has several chains once its ends have a TER.
+    if (components.all.size() > 1)
+        notes.push_back(
+            fmt::format("{} has {} chains for {} molecules: whether `charge_termini`, "
+                        "`ext_restraint`, `ffasta` and `fresidues` are those of {} is not checked.",
+                        made.topology, chains, molecules, made.name()));
+}
+
+/// Compares components with the System and the topology.
+void check_components(PackageFile const& config, PackageFile const& file, MadeSystem const& made,
+                      Files const& files, std::vector<std::string>& notes) {
+    CalvadosComponents const components = read_components(file);
+    refuse_other_molecules(components, made, notes);
+    compare_bonds(config, components, made.text, notes);
+    if (components.comparable()) {
+        refuse_other_termini(config, components, made);
+        refuse_other_pulled(config, components, made);
+    }
+    compare_tables(config, &components, files.folder, made, notes);
+    if (components.restrained())
+        notes.push_back(
+            "The package's elastic networks stay forces. To move domains as rigid bodies, write "
+            "`chains` with `rigid`.");
+}
+
+}  // namespace
+
+MadeSystem read_made_system(Files const& files) {
+    MadeSystem made{SystemText(files.system),
+                    read_screened_chains(files.system, scene::shown_path(files.system)),
+                    {},
+                    bare_names({files.topology})};
+    if (!files.topology.empty()) made.chains = read_pdb_topology(files.topology, files.topology);
+    return made;
+}
+
+void check_package(PackageFile const& config, Files const& files, bool is_continued,
+                   Settings& settings) {
+    std::vector<std::string>& notes = settings.notes;
+    MadeSystem const made = read_made_system(files);
+    refuse_another_size(config, made.text);
+    compare_charges(config, made, notes);
+    refuse_lost_forces(config, made.text, is_continued);
+    compare_contacts(config, made.text, notes);
+    compare_pull(config, made.text, notes);
+    note_barostat(config, notes);
+    note_absent(config, made.name(), notes);
     if (settings.steps > 0 && settings.every > settings.steps)
-        settings.notes.push_back(
+        notes.push_back(
             fmt::format("config.yaml has wfreq {} and {} steps: the package would write no frame, "
                         "the scene writes one at its end.",
                         settings.every, settings.steps));
-}
-
-CalvadosComponents read_components(std::string const& file) {
-    PackageFile const components(file);
-    Node const* const system = components.find("system");
-    if (system == nullptr || system->kind != Node::Kind::map || system->items.empty())
-        throw InputError("the file has no components under `system`", scene::shown_path(file),
-                         std::string(write_again) + ", or move it out of the folder");
-    Node const* const defaults = components.find("defaults");
-    CalvadosComponents sum;
-    for (Node const& component : system->items) add_component(component, components, defaults, sum);
-    return sum;
-}
-
-void refuse_other_molecules(CalvadosComponents const& components, Files const& files) {
-    if (files.topology.empty()) return;
-    auto const chains =
-        static_cast<std::int64_t>(read_pdb_topology(files.topology, files.topology).size());
-    // A complex, which only structures give, has several chains once its ends have a TER.
-    if (chains == components.molecules || (components.restrained && chains > components.molecules))
-        return;
-    throw InputError(
-        fmt::format("the components make {} molecule{}, and {} has {} chain{}",
-                    components.molecules, components.molecules == 1 ? "" : "s",
-                    bare_name(files.topology), chains, chains == 1 ? "" : "s"),
-        scene::shown_path(files.components),
-        std::string(write_again) + ", or move it out of the folder if it is of another System");
+    std::optional<PackageFile> components;
+    if (!files.components.empty()) components.emplace(files.components);
+    if (components)
+        check_components(config, *components, made, files, notes);
+    else
+        compare_tables(config, nullptr, files.folder, made, notes);
+    note_keys(config, components ? &*components : nullptr, made.name(), notes);
 }
 
 }  // namespace catena::foreign

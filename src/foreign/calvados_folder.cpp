@@ -9,7 +9,6 @@
 
 #include "error.hpp"
 #include "foreign/calvados_checks.hpp"
-#include "foreign/calvados_forces.hpp"
 #include "foreign/package_file.hpp"
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
@@ -138,11 +137,11 @@ bool take_calvados_start(Files& files) {
     fs::path const given = folder / config.text("frestart", "restart.chk");
     std::vector<fs::path> starts;
     std::string const restart = config.text("restart", "checkpoint");
-    if (restart != "checkpoint" && restart != "pdb")
+    if (restart != "checkpoint" && restart != "pdb" && restart != "cif")
         throw InputError(fmt::format("`restart` is `{}`", scene::shown(restart)),
-                         config.place("restart"), "write checkpoint, pdb or null");
-    bool const lost = restart == "pdb" && !is_file(given);
-    if (restart == "pdb") starts.push_back(given);
+                         config.place("restart"), "write checkpoint, pdb, cif or null");
+    bool const named = restart != "checkpoint", lost = named && !is_file(given);
+    if (named) starts.push_back(given);
     for (char const* const name : {"checkpoint.pdb", "equilibration_final.pdb", "top.pdb"})
         starts.push_back(folder / name);
     for (fs::path const& start : starts) {
@@ -190,17 +189,8 @@ Settings calvados_settings(Files const& files) {
             fmt::format("config.yaml ends the run after {:.6g} hours; the scene has steps instead.",
                         config.number("runtime", 0)));
     bool const is_first = files.state.empty() && settings.minimises;
-    check_configuration(config, files, !is_first, settings);
+    check_package(config, files, !is_first, settings);
     read_slab(config, files, settings);
-    if (files.components.empty()) return settings;
-    CalvadosComponents const components = read_components(files.components);
-    refuse_other_molecules(components, files);
-    refuse_other_bonds(config, components, SystemText(files.system), files.components,
-                       settings.notes);
-    if (components.restrained)
-        settings.notes.push_back(
-            "The package's elastic networks stay forces. To move domains as rigid bodies, write "
-            "`chains` with `rigid`.");
     return settings;
 }
 

@@ -3,14 +3,10 @@
 #include "foreign/calvados_forces.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
+#include <cstdint>
+#include <map>
 #include <regex>
-#include <set>
 
 #include "error.hpp"
 #include "scene/fields.hpp"
@@ -19,82 +15,22 @@ namespace catena::foreign {
 
 namespace {
 
-using scene::Node;
-
-constexpr double most_part = 1e-6;  // relative difference of numbers that are written in full
 constexpr double kilocalorie = 4.184;
 constexpr std::size_t longest_energy = 1000;  // characters of an expression of contacts
+constexpr double with_rounding = 1 + 1e-6;    // factor for limits that are written in full
 
-std::string name_of(SystemText const& system) {
-    return scene::shown_path(std::filesystem::path(system.file()).filename().string());
-}
-
-bool are_equal(double a, double b) {
-    return std::abs(a - b) <= most_part * std::max(std::abs(a), std::abs(b));
-}
-
-/// Throws InputError if the key has another value than the System.
-void refuse_another(PackageFile const& config, char const* key, double made, double unit,
-                    SystemText const& system) {
-    Node const* const node = config.find(key);
-    if (node == nullptr || are_equal(scene::number(*node) * unit, made)) return;
-    scene::fail(*node,
-                fmt::format("`{}` is {:.6g}, and {} was written with {:.6g}", key,
-                            scene::number(*node), name_of(system), made / unit),
-                run_again);
-}
-
-/// Compares the numbers in the expression of contacts.
-void refuse_other_contacts(PackageFile const& config, SystemText const& system) {
+/// Matches the expression of contacts in the package's form.
+bool match_contacts(ForceText const& force, std::smatch& parts) {
     static std::regex const form(
         R"(([^*]+)\*select\(step\(r-2\^\(1/6\)\*s\).*)"
         R"(l=select\(id1\+id2,\(id1\*id2\)\*0\.5\*\(l1\+l2\),([^)]+)\);\s*shift=\(s/([^)]+)\)\^12.*)");
-    struct Number {
-        char const* key;
-        std::size_t group;
-        double unit;
-    };
-    for (ForceText const& force : system.forces()) {
-        std::smatch parts;
-        bool const is_contact = force.kind == "CustomNonbondedForce" &&
-                                force.energy.size() < longest_energy &&
-                                std::regex_match(force.energy, parts, form);
-        if (!is_contact) continue;
-        for (Number const& number :
-             {Number{"eps_lj", 1, kilocalorie}, {"fixed_lambda", 2, 1}, {"cutoff_lj", 3, 1}}) {
-            double made = 0;
-            if (scene::parse_number(parts[number.group].str(), made) == scene::NumberFault::none)
-                refuse_another(config, number.key, made, number.unit, system);
-        }
-    }
+    return force.kind == "CustomNonbondedForce" && force.energy.size() < longest_energy &&
+           std::regex_match(force.energy, parts, form);
 }
 
-std::string without_spaces(std::string text) {
-    std::erase_if(text, [](char c) { return c == ' ' || c == '\n' || c == '\t'; });
-    return text;
-}
-
-/// Compares the external force with the one that the configuration asks for.
-void refuse_another_pull(PackageFile const& config, SystemText const& system) {
-    bool const slab = config.truth("slab_eq"), own = config.truth("ext_force");
-    Node const* const expression = config.find("ext_force_expr");
-    for (ForceText const& force : system.forces()) {
-        if (force.kind != "CustomExternalForce" || slab == own) continue;
-        auto const k = force.globals.find("k");
-        if (slab && k != force.globals.end()) refuse_another(config, "k_eq", k->second, 1, system);
-        if (own && expression != nullptr &&
-            without_spaces(scene::text(*expression)) != without_spaces(force.energy))
-            scene::fail(*expression,
-                        fmt::format("`ext_force_expr` is not the CustomExternalForce of {}, `{}`",
-                                    name_of(system), scene::shown(force.energy)),
-                        run_again);
-    }
-}
-
-/// Numbers of forces of bonds, and the stiffnesses of their harmonic bonds, kJ/mol/nm2.
+/// Forces of bonds that components and custom restraints make, or that a System has.
 struct BondForces {
     std::int64_t harmonic = 0, custom = 0;
-    std::set<double> stiffness;
 };
 
 BondForces bond_forces_of(SystemText const& system) {
@@ -102,9 +38,22 @@ BondForces bond_forces_of(SystemText const& system) {
     for (ForceText const& force : system.forces()) {
         found.custom += force.kind == "CustomBondForce" ? 1 : 0;
         found.harmonic += force.kind == "HarmonicBondForce" ? 1 : 0;
-        found.stiffness.insert(force.stiffness.begin(), force.stiffness.end());
     }
     return found;
+}
+
+BondForces bond_forces_of(PackageFile const& config, CalvadosComponents const& components) {
+    BondForces made;
+    for (CalvadosComponent const& component : components.all) {
+        ++made.harmonic;
+        if (component.is_go())
+            made.custom += 3;  // contacts, scaled contacts and scaled charges
+        else if (component.restrained)
+            ++made.harmonic;
+    }
+    if (config.truth("custom_restraints"))
+        ++(config.text("custom_restraint_type", "harmonic") == "go" ? made.custom : made.harmonic);
+    return made;
 }
 
 /// "1 HarmonicBondForce and 0 CustomBondForces".
@@ -114,42 +63,131 @@ std::string counted(BondForces const& forces) {
                        forces.custom == 1 ? "" : "s");
 }
 
+/// Compares bonds with components. The package writes one component after the other: its bonds,
+/// then its network.
+class BondCheck {
+  public:
+    BondCheck(CalvadosComponents const& components, SystemText const& system)
+        : components_(components), system_(system) {}
+
+    void compare() {
+        for (CalvadosComponent const& component : components_.all) {
+            if (ForceText const* const bonds = next("HarmonicBondForce"))
+                refuse_stiffness(component, *bonds, "kb", component.kb);
+            if (component.is_go()) {
+                if (ForceText const* const contacts = next("CustomBondForce"))
+                    refuse_beyond(component, *contacts, component.k_go);
+                next("CustomBondForce"), next("CustomBondForce");
+            } else if (component.restrained) {
+                ForceText const* const network = next("HarmonicBondForce");
+                if (network == nullptr) continue;
+                refuse_stiffness(component, *network, "k_harmonic", component.k_harmonic);
+                refuse_beyond(component, *network, component.k_harmonic);
+            }
+        }
+    }
+
+  private:
+    /// Next force of that kind.
+    ForceText const* next(std::string const& kind) {
+        std::vector<ForceText> const& forces = system_.forces();
+        for (std::size_t& at = next_[kind]; at < forces.size();)
+            if (ForceText const& force = forces[at++]; force.kind == kind) return &force;
+        return nullptr;
+    }
+
+    void refuse_stiffness(CalvadosComponent const& component, ForceText const& force,
+                          char const* key, double asked) const {
+        for (auto const& [length, k, i, j] : force.bonds)
+            if (!are_equal(k, asked))
+                throw InputError(
+                    fmt::format("bonds of {} have a stiffness of {:.6g} kJ/mol/nm2, those of `{}` "
+                                "(`{}`) {:.6g}",
+                                system_.name(), k, scene::shown(component.name), key, asked),
+                    components_.place(component, key), run_again);
+    }
+
+    /// Throws InputError for a pair of a network that is farther apart or bound more strongly than
+    /// its component allows.
+    void refuse_beyond(CalvadosComponent const& component, ForceText const& force,
+                       double strongest) const {
+        for (auto const& [length, k, i, j] : force.bonds) {
+            if (length > component.cutoff_restr * with_rounding)
+                throw InputError(fmt::format("the network of `{}` joins pairs up to {:.6g} nm "
+                                             "(`cutoff_restr`), and {} has one of {:.6g} nm",
+                                             scene::shown(component.name), component.cutoff_restr,
+                                             system_.name(), length),
+                                 components_.place(component, "cutoff_restr"), run_again);
+            if (k > strongest * with_rounding)
+                throw InputError(
+                    fmt::format("contacts of `{}` have a depth of at most {:.6g} "
+                                "kJ/mol (`k_go`), and {} has one of {:.6g}",
+                                scene::shown(component.name), strongest, system_.name(), k),
+                    components_.place(component, "k_go"), run_again);
+        }
+    }
+
+    CalvadosComponents const& components_;
+    SystemText const& system_;
+    std::map<std::string, std::size_t> next_;
+};
+
 }  // namespace
 
-void refuse_other_forces(PackageFile const& config, SystemText const& system) {
-    refuse_other_contacts(config, system);
-    refuse_another_pull(config, system);
+ForceText const* contacts_of(SystemText const& system) {
+    std::smatch parts;
+    for (ForceText const& force : system.forces())
+        if (match_contacts(force, parts)) return &force;
+    return nullptr;
 }
 
-void refuse_other_bonds(PackageFile const& config, CalvadosComponents const& components,
-                        SystemText const& system, std::string const& components_file,
-                        std::vector<std::string>& notes) {
-    if (!components.proteins) return;
-    BondForces made{components.harmonic_forces, components.custom_forces, {}};
-    bool const own = config.truth("custom_restraints");
-    if (own)
-        ++(config.text("custom_restraint_type", "harmonic") == "go" ? made.custom : made.harmonic);
-    BondForces const found = bond_forces_of(system);
-    std::string const where = scene::shown_path(components_file);
+void compare_contacts(PackageFile const& config, SystemText const& system,
+                      std::vector<std::string>& notes) {
+    struct Number {
+        char const* key;
+        std::size_t group;
+        double unit;
+    };
+    bool found = false;
+    for (ForceText const& force : system.forces()) {
+        std::smatch parts;
+        if (!match_contacts(force, parts)) continue;
+        found = true;
+        refuse_another(config, "cutoff_lj", force.cutoff, 1, system.name());
+        for (Number const& number :
+             {Number{"eps_lj", 1, kilocalorie}, {"fixed_lambda", 2, 1}, {"cutoff_lj", 3, 1}}) {
+            double made = 0;
+            if (scene::parse_number(parts[number.group].str(), made) == scene::NumberFault::none)
+                refuse_another(config, number.key, made, number.unit, system.name());
+        }
+    }
+    if (!found)
+        notes.push_back(fmt::format(
+            "No contacts of the package's form are found in {}: whether `eps_lj`, `cutoff_lj` and "
+            "`fixed_lambda` are those of its run is not checked.",
+            system.name()));
+}
+
+void compare_bonds(PackageFile const& config, CalvadosComponents const& components,
+                   SystemText const& system, std::vector<std::string>& notes) {
+    if (!components.comparable())
+        return notes.push_back(fmt::format(
+            "{} has molecules other than proteins and crowders (`molecule_type`): whether the "
+            "other properties of components are those of {} is not checked.",
+            "components.yaml", system.name()));
+    BondForces const made = bond_forces_of(config, components), found = bond_forces_of(system);
     if (found.harmonic < made.harmonic || found.custom < made.custom)
         throw InputError(
             fmt::format("the components, their `restraint` and `custom_restraints` of config.yaml "
                         "make {}, and {} has {}",
-                        counted(made), name_of(system), counted(found)),
-            where, run_again);
+                        counted(made), system.name(), counted(found)),
+            components.file, run_again);
     if (found.harmonic > made.harmonic || found.custom > made.custom)
         return notes.push_back(fmt::format(
             "{} has {}, where the components, their `restraint` and `custom_restraints` make {}: "
             "the others act, too.",
-            name_of(system), counted(found), counted(made)));
-    for (double const k : found.stiffness)
-        if (!own && std::none_of(components.stiffness.begin(), components.stiffness.end(),
-                                 [&](double known) { return are_equal(k, known); }))
-            throw InputError(
-                fmt::format("bonds of {} have a stiffness of {:.6g} kJ/mol/nm2, those of the "
-                            "components (`kb`, `k_harmonic`) {:.6g}",
-                            name_of(system), k, fmt::join(components.stiffness, ", ")),
-                where, run_again);
+            system.name(), counted(found), counted(made)));
+    BondCheck(components, system).compare();
 }
 
 }  // namespace catena::foreign

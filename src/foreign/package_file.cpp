@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
@@ -16,6 +17,7 @@ namespace {
 using scene::Node;
 
 constexpr double most_whole = 1e15;
+constexpr double most_part = 1e-6;  // relative difference of numbers that are written in full
 
 /// Parses a file of keys and values. Throws InputError for other contents.
 std::unique_ptr<Node> parsed(std::string const& text, std::string const& file) {
@@ -31,6 +33,20 @@ Node const* valued(Node const* entry) {
     bool const none = entry == nullptr || entry->kind == Node::Kind::null ||
                       entry->text == "null" || entry->text == "~";
     return none ? nullptr : entry;
+}
+
+bool are_equal(double a, double b) {
+    return std::abs(a - b) <= most_part * std::max(std::abs(a), std::abs(b));
+}
+
+void refuse_another(PackageFile const& config, char const* key, double made, double unit,
+                    std::string const& system) {
+    Node const* const node = config.find(key);
+    if (node == nullptr || are_equal(scene::number(*node) * unit, made)) return;
+    scene::fail(*node,
+                fmt::format("`{}` is {:.6g}, and {} was written with {:.6g}", key,
+                            scene::number(*node), system, made / unit),
+                run_again);
 }
 
 std::int64_t whole_of(Node const& node, std::int64_t least) {

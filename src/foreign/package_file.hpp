@@ -14,6 +14,11 @@ namespace catena::foreign {
 inline constexpr char const* run_again =
     "start the package's run.py again, which writes the System, or correct the value";
 
+/// Advice for a file that was cut or changed.
+inline constexpr char const* write_again = "write it again with the package's prepare.py";
+inline constexpr char const* write_again_or_move =
+    "write it again with the package's prepare.py, or move it out of the folder";
+
 /// Holds the keys of config.yaml or components.yaml.
 class PackageFile {
   public:
@@ -39,6 +44,14 @@ class PackageFile {
   private:
     std::unique_ptr<scene::Node> root_;
 };
+
+/// Throws InputError if the key has another number than the System, which has `made` in units of
+/// `unit`. `system` is the System's name.
+void refuse_another(PackageFile const& config, char const* key, double made, double unit,
+                    std::string const& system);
+
+/// True if two numbers that were written in full agree.
+bool are_equal(double a, double b);
 
 /// Returns the value of an entry unless it is empty or null, else nullptr.
 scene::Node const* valued(scene::Node const* entry);

@@ -2,6 +2,8 @@
 #include "foreign/system_text.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "io/output_file.hpp"
@@ -15,10 +17,11 @@ namespace {
 
 /// Text of an attribute of the tag that begins at `tag`; empty without it.
 std::string attribute_text(std::string const& text, std::size_t tag, std::string const& name) {
-    std::size_t const end = text.find('>', tag), at = text.find(' ' + name + "=\"", tag);
-    if (at == std::string::npos || at > end) return "";
-    std::size_t const first = at + name.size() + 3, last = text.find('"', first);
-    return last == std::string::npos ? "" : text.substr(first, last - first);
+    std::string_view const inside = std::string_view(text).substr(tag, text.find('>', tag) - tag);
+    std::size_t const at = inside.find(' ' + name + "=\"");
+    if (at == std::string_view::npos) return "";
+    std::size_t const first = at + name.size() + 3, last = inside.find('"', first);
+    return last == std::string_view::npos ? "" : std::string(inside.substr(first, last - first));
 }
 
 /// Number of such an attribute; nothing if it is no number.
@@ -39,6 +42,62 @@ std::string unescaped(std::string text) {
     return text;
 }
 
+/// Calls `visit` for the tags in [at, end) that begin with `name`, such as "<Bond ".
+template <class Visit>
+void each_tag(std::string const& text, char const* name, std::size_t at, std::size_t end,
+              Visit const& visit) {
+    for (at = text.find(name, at); at < end; at = text.find(name, at + 1)) visit(at);
+}
+
+/// Reads the bonds in [at, end), whose length and stiffness have these attributes.
+std::vector<BondText> bonds_of(std::string const& text, std::size_t at, std::size_t end,
+                               char const* length, char const* stiffness) {
+    std::vector<BondText> bonds;
+    each_tag(text, "<Bond ", at, end, [&](std::size_t tag) {
+        auto const d = attribute_of(text, tag, length), k = attribute_of(text, tag, stiffness),
+                   i = attribute_of(text, tag, "p1"), j = attribute_of(text, tag, "p2");
+        if (d && k && i && j)
+            bonds.push_back({*d, *k, static_cast<std::int64_t>(*i), static_cast<std::int64_t>(*j)});
+    });
+    return bonds;
+}
+
+/// Reads the parameters of the particles in [at, end).
+std::vector<std::array<double, 3>> parameters_of(std::string const& text, std::size_t at,
+                                                 std::size_t end) {
+    std::vector<std::array<double, 3>> parameters;
+    each_tag(text, "<Particle ", at, end, [&](std::size_t tag) {
+        parameters.push_back({attribute_of(text, tag, "param1").value_or(0),
+                              attribute_of(text, tag, "param2").value_or(0),
+                              attribute_of(text, tag, "param3").value_or(0)});
+    });
+    return parameters;
+}
+
+/// Reads the force whose tag begins at `at` and that ends before `next`.
+ForceText force_of(std::string const& text, std::size_t at, std::size_t next) {
+    ForceText force;
+    force.kind = attribute_text(text, at, "type");
+    force.energy = unescaped(attribute_text(text, at, "energy"));
+    force.cutoff = attribute_of(text, at, "cutoff").value_or(0);
+    std::size_t const globals = text.find("<GlobalParameters>", at);
+    if (globals < next)
+        each_tag(text, "<Parameter ", globals, std::min(next, text.find("</GlobalP", at)),
+                 [&](std::size_t tag) {
+                     if (auto const value = attribute_of(text, tag, "default"))
+                         force.globals[attribute_text(text, tag, "name")] = *value;
+                 });
+    if (force.kind == "HarmonicBondForce") force.bonds = bonds_of(text, at, next, "d", "k");
+    if (force.kind == "CustomBondForce") force.bonds = bonds_of(text, at, next, "param1", "param2");
+    if (force.kind == "CustomNonbondedForce") force.parameters = parameters_of(text, at, next);
+    if (force.kind == "CustomExternalForce")
+        each_tag(text, "<Particle ", at, next, [&](std::size_t tag) {
+            if (auto const index = attribute_of(text, tag, "index"))
+                force.pulled.push_back(static_cast<std::int64_t>(*index));
+        });
+    return force;
+}
+
 }  // namespace
 
 SystemText::SystemText(std::string file) : file_(std::move(file)), text_(read_text_file(file_)) {}
@@ -49,6 +108,10 @@ std::size_t SystemText::particles() const {
     for (auto at = text_.find("<Particle "); at < end; at = text_.find("<Particle ", at + 1))
         ++count;
     return count;
+}
+
+std::string SystemText::name() const {
+    return scene::shown_path(std::filesystem::path(file_).filename().string());
 }
 
 std::optional<Vec3> SystemText::box() const {
@@ -65,25 +128,23 @@ std::optional<Vec3> SystemText::box() const {
     return edges;
 }
 
-std::vector<ForceText> SystemText::forces() const {
-    std::vector<ForceText> forces;
+std::vector<double> SystemText::masses() const {
+    std::vector<double> masses;
+    each_tag(text_, "<Particle ", 0, text_.find("</Particles>"), [&](std::size_t tag) {
+        if (auto const mass = attribute_of(text_, tag, "mass")) masses.push_back(*mass);
+    });
+    return masses;
+}
+
+std::vector<ForceText> const& SystemText::forces() const {
+    if (forces_) return *forces_;
+    forces_.emplace();
     std::size_t next = 0;
     for (std::size_t at = text_.find("<Force "); at != std::string::npos; at = next) {
         next = text_.find("<Force ", at + 1);
-        ForceText& force = forces.emplace_back();
-        force.kind = attribute_text(text_, at, "type");
-        force.energy = unescaped(attribute_text(text_, at, "energy"));
-        std::size_t const end = std::min(next, text_.find("</GlobalParameters>", at));
-        for (auto p = text_.find("<GlobalParameters>", at); end != std::string::npos && p < end;
-             p = text_.find("<Parameter ", p + 1))
-            if (auto const value = attribute_of(text_, p, "default"))
-                force.globals[attribute_text(text_, p, "name")] = *value;
-        if (force.kind != "HarmonicBondForce") continue;
-        for (auto bond = text_.find("<Bond ", at); bond < next && bond != std::string::npos;
-             bond = text_.find("<Bond ", bond + 1))
-            if (auto const k = attribute_of(text_, bond, "k")) force.stiffness.insert(*k);
+        forces_->push_back(force_of(text_, at, std::min(next, text_.size())));
     }
-    return forces;
+    return *forces_;
 }
 
 bool SystemText::holds(std::string const& kind) const {

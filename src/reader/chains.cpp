@@ -284,6 +284,7 @@ class ChainReader {
         join_tip(chain, tip_, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
+        note_lost_rates(chain, request_);
         return chain;
     }
 

@@ -201,7 +201,26 @@ void refuse_too_many(ChainSpec const& chain, Node const& node) {
          "give the tip a joint that restricts less, or the chain more joints");
 }
 
+/// True if a joint without a prescribed motion has a rate at the start.
+bool has_given_rates(ChainSpec const& chain) {
+    std::vector<bool> driven(chain.bodies.qd.size());
+    for (DrivenJoint const& joint : chain.bodies.driven)
+        driven[static_cast<std::size_t>(joint.body)] = true;
+    for (std::size_t k = 0; k < driven.size(); ++k)
+        if (Vec3 const& rate = chain.bodies.qd[k]; !driven[k] && dot(rate, rate) > 0) return true;
+    return false;
+}
+
 }  // namespace
+
+void note_lost_rates(ChainSpec const& chain, ChainRequest const& request) {
+    if (chain.is_beads() || chain.is_linked() || chain.tip == Tip::free) return;
+    if (degrees_of_freedom(chain) > 0 || !has_given_rates(chain)) return;
+    request.scene.note(fmt::format(
+        "the loop of chain `{}` has no degrees of freedom by the count of its joints: given rates "
+        "(`qd`) that it cannot follow vanish at the start",
+        shown(request.name())));
+}
 
 ReadTip read_tip(Fields const& chain) {
     ReadTip read;

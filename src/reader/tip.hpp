@@ -26,4 +26,7 @@ ReadTip read_tip(Fields const& chain);
 /// constraint projection, with a note. Throws InputError that names error and remedy.
 void join_tip(ChainSpec& chain, ReadTip const& tip, ChainRequest const& request);
 
+/// Notes given rates of joints in a loop that has no degrees of freedom.
+void note_lost_rates(ChainSpec const& chain, ChainRequest const& request);
+
 }  // namespace catena::scene

@@ -27,9 +27,9 @@ class Hdf5Bodies : public testing::Test {
         {"first_axis", {{3, 3}, {1, 0, 0, 0, 0, 0, 0, 0, 0}}},
         {"pitch", {{3}, {0, 0.5, 0}}},
         {"translation", {{3, 3}, {0, 0, 0, 1, 0, 0, 0, 1, 0}}},
-        {"q", {{3, 4}, {0.1, 0.2, 7, 7, 0.3, 7, 7, 7, 0.6, 0, 0.8, 0}}},
-        {"qd", {{3, 3}, {1, 2, 7, 3, 7, 7, 4, 5, 6}}},
-        {"stiffness", {{3, 3}, {1, 2, 7, 3, 7, 7, 4, 5, 6}}},
+        {"q", {{3, 4}, {0.1, 0.2, 0, 0, 0.3, 0, 0, 0, 0.6, 0, 0.8, 0}}},
+        {"qd", {{3, 3}, {1, 2, 0, 3, 0, 0, 4, 5, 6}}},
+        {"stiffness", {{3, 3}, {1, 2, 0, 3, 0, 0, 4, 5, 6}}},
         {"wrench", {{3, 6}, {0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 0, 0, 0, 0, 0, 0}}},
     };
     std::vector<std::string> types_{"universal", "helical", "spherical"};
@@ -83,7 +83,9 @@ TEST_F(Hdf5Bodies, are_those_of_the_list) {
 TEST_F(Hdf5Bodies, cylindrical_and_planar3_are_those_of_the_list) {
     type_numbers_ = {9, 8, 2};
     data_.erase("pitch");
-    data_["q"] = {{3, 4}, {0.1, 0.2, 0.3, 7, 0.3, 0.4, 7, 7, 0.6, 0, 0.8, 0}};
+    data_["q"] = {{3, 4}, {0.1, 0.2, 0.3, 0, 0.3, 0.4, 0, 0, 0.6, 0, 0.8, 0}};
+    data_["qd"] = {{3, 3}, {1, 2, 7, 3, 7, 0, 4, 5, 6}};
+    data_["stiffness"] = {{3, 3}, {1, 2, 7, 3, 7, 0, 4, 5, 6}};
     data_["wrench"].second.assign(18, 0);
     Scene const from_file = parse_scene(write(), "s.yaml");
     Scene const from_list = parse_scene(
@@ -215,6 +217,21 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
                                    "normalise it: divide its four numbers by their norm");
     EXPECT_EQ(with("stiffness", 3, -1),
               "stiffness -1 is negative" + at("stiffness", 2) + "give 0 or positive numbers");
+    EXPECT_EQ(with("stiffness", 5, 2), "number 3 of stiffness is 2, and a helical joint has 1" +
+                                           at("stiffness", 2) + "write 0 there");
+    EXPECT_EQ(with("qd", 2, 7),
+              "number 3 of qd is 7, and a universal joint has 2" + at("qd", 1) + "write 0 there");
+    EXPECT_EQ(with("q", 3, 7),
+              "number 4 of q is 7, and a universal joint has 2" + at("q", 1) + "write 0 there");
+    EXPECT_EQ(with("q", 4, 1e30), "a joint's position of 1e+30 is beyond the range of coordinates" +
+                                      at("q", 2) + "correct it: the largest is 1e+09");
+    data_["rest"] = data_["q"];
+    EXPECT_EQ(refusal(), "accepted");
+    auto const stiffness = data_["stiffness"];
+    data_.erase("stiffness");
+    EXPECT_EQ(refusal(), "the dataset is missing" + at("stiffness") +
+                             "add it: springs that are relaxed at `rest` have one");
+    data_["stiffness"] = stiffness;
     data_["rotation"] = {{3, 3, 3}, Numbers(27, 0)};
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i : {0, 4, 8}) data_["rotation"].second[9 * k + i] = 1;

@@ -317,5 +317,24 @@ TEST(Dynamics, velocity_verlet) {
               Integrator::velocity_verlet);
 }
 
+/// Three revolute joints about parallel axes, closed by a weld: nothing can move.
+TEST(Tips, rates_that_a_loop_loses_are_noted) {
+    std::string const revolute = "{type: revolute, axis: [0, 0, 1], q: 1, translation: [1, 0, 0]",
+                      note = "the loop of chain `chain` has no degrees of freedom";
+    auto const notes = [&](std::string const& rate, std::string const& chain) {
+        std::string text;
+        std::string const scene = list_of({revolute + "}", revolute + rate + "}", revolute + "}"},
+                                          "name: chain, " + chain);
+        for (std::string const& one : parse_scene(scene, "s.yaml").notes) text += one + "\n";
+        return text;
+    };
+    std::string const weld = "tip: {joint: {type: weld}}",
+                      hinge = "tip: {joint: {type: revolute, axis: [0, 0, 1]}}";
+    EXPECT_NE(notes(", qd: 2", weld).find(note), std::string::npos) << notes(", qd: 2", weld);
+    EXPECT_EQ(notes("", weld).find(note), std::string::npos);
+    EXPECT_EQ(notes(", qd: 2", hinge).find(note), std::string::npos);
+    EXPECT_EQ(notes(", qd: 2", weld + ", velocities: zero").find(note), std::string::npos);
+}
+
 }  // namespace
 }  // namespace catena::test

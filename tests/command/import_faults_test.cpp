@@ -426,9 +426,10 @@ TEST_F(DamagedPackage, ComponentsOfAnotherSystemAreRefused) {
                    "2 HarmonicBondForces and 0 CustomBondForces, and idr.xml has 1 "
                    "HarmonicBondForce and 0 CustomBondForces (idr/components.yaml)");
     write(file, idr + "    kb: 4000\n");
-    expect_refused(import(), 2,
-                   "bonds of idr.xml have a stiffness of 8033 kJ/mol/nm2, those of the components "
-                   "(`kb`, `k_harmonic`) 4000");
+    expect_refused(
+        import(), 2,
+        "bonds of idr.xml have a stiffness of 8033 kJ/mol/nm2, those of `idr` (`kb`) 4000 "
+        "(idr/components.yaml: system.idr.kb, line 4)");
     write(file, idr);
     write(folder + "/config.yaml", config_of("idr", "custom_restraints: true\n"));
     expect_refused(import(), 2, "make 2 HarmonicBondForces and 0 CustomBondForces, and idr.xml");

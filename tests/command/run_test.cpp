@@ -199,5 +199,22 @@ TEST(Run, MechanismsWithoutAThermostatHaveNoTemperature) {
     EXPECT_EQ(lines_of(folder / "b/observables.csv").at(0), "step,time [s],temperature [K]");
 }
 
+/// A link of 0.4 nm in the positions that is 0.37 nm long.
+TEST(Run, AMovedStartIsNotedAtTheFirstStartOnly) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "moved.yaml")
+        << "chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, {mass: 1, position: [0.4, 0, 0], "
+           "joint: {type: link, length: 0.37}}]}]\n"
+           "dynamics: {integrator: g-baoab, step: 0.01, steps: 2, temperature: 300, friction: 1}\n";
+    std::string const note = "the start's positions were moved so that links have their lengths";
+    Ended const first = catena({"run", "moved.yaml", "--output", "a"}, folder.path());
+    EXPECT_EQ(first.status, 0) << first.err;
+    EXPECT_NE(first.err.find(note), std::string::npos) << first.err;
+    Ended const next = catena({"run", "moved.yaml", "--restart", "a/checkpoint.h5", "--steps", "4"},
+                              folder.path());
+    EXPECT_EQ(next.status, 0) << next.err;
+    EXPECT_EQ((next.out + next.err).find(note), std::string::npos) << next.err;
+}
+
 }  // namespace
 }  // namespace catena::test

@@ -1,0 +1,61 @@
+// components.yaml of a CALVADOS folder: what its molecules are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "foreign/package_file.hpp"
+
+namespace catena::foreign {
+
+/// One component of the package. Its own properties override the defaults.
+struct CalvadosComponent {
+    std::string name, type;  // type: protein, crowder, rna, lipid, ...
+    std::int64_t molecules = 1;
+    /// Charged ends: both, N, C; any other word means none.
+    std::string termini;
+    /// True if external forces act on its particles.
+    bool pulled = true;
+    bool restrained = false;
+    std::string network;  // harmonic or go
+    /// Stiffness of its bonds and of its harmonic network, kJ/mol/nm2; depth of its Go contacts,
+    /// kJ/mol; distance up to which a network joins pairs, nm.
+    double kb = 8033, k_harmonic = 700, k_go = 15, cutoff_restr = 0.9;
+    /// Files of residues and sequences as they are written; empty without one.
+    std::string residues, sequences;
+    /// Places of its properties in messages: "FILE: system.A.kb, line 3".
+    std::map<std::string, std::string> places;
+
+    bool is_protein() const { return type == "protein"; }
+    bool is_go() const { return restrained && network == "go"; }
+    /// True for a charged terminus at the first (N) or the last (C) bead.
+    bool charges(char end) const { return termini == "both" || termini == std::string(1, end); }
+};
+
+/// Holds what the package's components say.
+struct CalvadosComponents {
+    std::string file;  // its name in messages
+    /// The components in the order of the System's particles: proteins first.
+    std::vector<CalvadosComponent> all;
+
+    /// Number of molecules of all components.
+    std::int64_t molecules() const;
+    /// True if a component has restraints within its domains.
+    bool restrained() const;
+    /// True if all are proteins or crowders: other kinds are not compared with the System.
+    bool comparable() const;
+    /// Returns the component of each of `chains` chains of the topology. Empty if these are no
+    /// molecules and several components share them.
+    std::vector<CalvadosComponent const*> of_chains(std::size_t chains) const;
+    /// Returns the place of a property of the component, or the file where it has a default.
+    std::string place(CalvadosComponent const&, std::string const& property) const;
+};
+
+/// Reads components.yaml. Throws InputError for one without components and for values of the wrong
+/// kind.
+CalvadosComponents read_components(PackageFile const& file);
+
+}  // namespace catena::foreign

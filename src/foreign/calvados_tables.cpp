@@ -1,0 +1,313 @@
+// Implements the comparison of tables. The package (version 0.8, calvados/components.py) reads them
+// by the paths in config.yaml and components.yaml, which may be those of another machine.
+#include "foreign/calvados_tables.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "error.hpp"
+#include "foreign/calvados_forces.hpp"
+#include "io/output_file.hpp"
+#include "scene/fields.hpp"
+#include "structure/calvados2.hpp"
+#include "structure/fasta.hpp"
+#include "structure/residue_table.hpp"
+
+namespace catena::foreign {
+
+namespace {
+
+namespace fs = std::filesystem;
+using scene::Node;
+
+constexpr double most_charge = 1e-3;  // e
+constexpr char const* put_right =
+    "start the package's run.py again, which writes the System, or put the right file there";
+
+/// A node that names a file in messages.
+Node named(std::string const& text) {
+    Node node;
+    node.kind = Node::Kind::scalar;
+    node.text = text;
+    return node;
+}
+
+/// Compares tables one after the other.
+class TableCheck {
+  public:
+    TableCheck(PackageFile const& config, std::string folder, MadeSystem const& made,
+               std::vector<std::string>& notes)
+        : folder_(std::move(folder)),
+          made_(made),
+          notes_(notes),
+          contacts_(contacts_of(made.text)),
+          masses_(made.text.masses()) {
+        if (config.find("pH") != nullptr) ph_ = config.number("pH", 7);
+    }
+
+    /// Compares the particles of each chain with the tables of its component.
+    void compare_chains(CalvadosComponents const& components) {
+        std::size_t first = 0;
+        auto const owners = components.of_chains(made_.chains.size());
+        index_bonds();
+        for (std::size_t c = 0; c < owners.size(); ++c) {
+            std::size_t const next = first + made_.chains[c].size();
+            if (!owners[c]->residues.empty())
+                with_file("fresidues", owners[c]->residues, [&](std::string const& file) {
+                    compare_chain(*owners[c], table_in(file), c, first);
+                });
+            first = next;
+        }
+    }
+
+    /// Compares lengths and stiffnesses of the last bonds with a file of custom restraints.
+    void compare_restraints(std::string const& written, bool go) {
+        with_file("fcustom_restraints", written, [&](std::string const& file) {
+            Pairs asked = restraints_in(file), found;
+            for (ForceText const& force : made_.text.forces())
+                if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce")) {
+                    found.clear();
+                    for (BondText const& bond : force.bonds)
+                        found.push_back({bond.length, bond.stiffness});
+                }
+            std::sort(asked.begin(), asked.end()), std::sort(found.begin(), found.end());
+            bool const same = std::equal(asked.begin(), asked.end(), found.begin(), found.end(),
+                                         [](auto const& a, auto const& b) {
+                                             return are_equal(a[0], b[0]) && are_equal(a[1], b[1]);
+                                         });
+            if (!same)
+                throw InputError(
+                    fmt::format("the {} custom restraints are not the {} bonds of the last force "
+                                "of bonds of {}",
+                                asked.size(), found.size(), made_.name()),
+                    shown(file), put_right);
+        });
+    }
+
+    /// Notes the files that are not there.
+    void note_missing() const {
+        if (missing_.empty()) return;
+        std::vector<std::string> parts;
+        for (auto const& [key, file] : missing_) parts.push_back(fmt::format("{} ({})", key, file));
+        notes_.push_back(
+            fmt::format("Not compared with {}, because the files are not there: {}. Copies in the "
+                        "folder would be read.",
+                        made_.name(), fmt::join(parts, ", ")));
+    }
+
+  private:
+    using Pairs = std::vector<std::array<double, 2>>;
+
+    static std::string shown(fs::path const& path) { return scene::shown_path(path.string()); }
+
+    /// Calls `compare` with the file of that name: a copy in the folder, or where it is written. A
+    /// refusal is a note, the first one alone, for a file elsewhere.
+    template <class Compare>
+    void with_file(char const* key, std::string const& written, Compare const& compare) {
+        std::error_code ignored;
+        fs::path const path = written, copy = fs::path(folder_) / path.filename(),
+                       relative = fs::path(folder_) / path;
+        bool const below = path.is_relative() && *path.lexically_normal().begin() != "..",
+                   inside = fs::is_regular_file(copy, ignored) ||
+                            (below && fs::is_regular_file(relative, ignored));
+        fs::path const file = fs::is_regular_file(copy, ignored) ? copy : relative;
+        if (!fs::is_regular_file(file, ignored)) {
+            missing_.emplace(key, shown(path));
+            return;
+        }
+        if (inside) return compare(file.string());
+        if (differing_.contains(file.string())) return;
+        try {
+            compare(file.string());
+        } catch (InputError const& error) {
+            differing_.insert(file.string());
+            std::string const what = error.what();
+            notes_.push_back(fmt::format("{}. The System is simulated as it is.",
+                                         what.substr(0, what.find("): ") + 1)));
+        }
+    }
+
+    struct Particle {
+        std::size_t index;
+        ResidueType const& type;
+        std::string const& table;
+    };
+
+    ResidueTable const& table_in(std::string const& file) {
+        auto const known = tables_.find(file);
+        if (known != tables_.end()) return known->second;
+        return tables_.emplace(file, read_residue_table(file, named(file))).first->second;
+    }
+
+    /// True if a particle begins (or ends) a chain of bonds.
+    bool is_end(std::size_t p, bool is_border) const {
+        return is_border || (made_.charges && !made_.charges->joined[p]);
+    }
+
+    void compare_chain(CalvadosComponent const& component, ResidueTable const& table, std::size_t c,
+                       std::size_t first) {
+        PdbChain const& chain = made_.chains[c];
+        for (std::size_t k = 0; k < chain.size() && first + k < masses_.size(); ++k) {
+            ResidueType const* const type = table.find(chain.residue[k]);
+            if (type == nullptr)
+                throw InputError(fmt::format("residue `{}` of {} is not in the table",
+                                             scene::shown(chain.residue[k]), made_.topology),
+                                 table.name(), put_right);
+            std::size_t const p = first + k;
+            bool const last = k + 1 == chain.size(), protein = component.is_protein();
+            bool const n = protein && component.charges('N') && is_end(p, k == 0),
+                       e = protein && component.charges('C') && (last || is_end(p + 1, false));
+            double const mass = type->mass + (n ? calvados2::first_bead_mass : 0) +
+                                (e ? calvados2::last_bead_mass : 0);
+            refuse_unequal({p, *type, table.name()}, "a mass", masses_[p], mass, "amu");
+            if (made_.charges && p < made_.charges->screening.charges.size())
+                compare_charge({p, *type, table.name()}, n, e);
+            if (contacts_ == nullptr || p >= contacts_->parameters.size()) continue;
+            auto const& [sigma, lambda, id] = contacts_->parameters[p];
+            refuse_unequal({p, *type, table.name()}, "a diameter", sigma, type->sigma, "nm");
+            refuse_unequal({p, *type, table.name()}, "a stickiness", lambda, type->lambda, "");
+            refuse_unequal({p, *type, table.name()}, "an `id`", id, protein ? 1 : -1, "");
+        }
+        if (!component.restrained) compare_bonds_of(table, chain, first);
+        if (!component.sequences.empty() && !component.restrained)
+            with_file("ffasta", component.sequences, [&](std::string const& file) {
+                compare_sequence(component, table, chain, file);
+            });
+    }
+
+    /// Compares the charge of a particle that is a charged N (`n`) or C (`c`) end, or neither. That
+    /// of histidine needs a pH.
+    void compare_charge(Particle const& particle, bool n, bool c) const {
+        bool const histidine = particle.type.letter == 'H';
+        if (histidine && !ph_) return;
+        double const inner = histidine ? calvados2::histidine_charge(ph_) : particle.type.charge,
+                     asked = inner + (n ? calvados2::first_bead_charge : 0) +
+                             (c ? calvados2::last_bead_charge : 0),
+                     found = made_.charges->screening.charges[particle.index];
+        if (std::abs(found - asked) > most_charge)
+            refuse_unequal(particle, "a charge", found, asked, "e");
+    }
+
+    void refuse_unequal(Particle const& particle, char const* what, double made, double asked,
+                        char const* unit) const {
+        if (are_equal(made, asked)) return;
+        std::string const space = *unit == '\0' ? "" : " ";
+        throw InputError(
+            fmt::format("{} has {} of {:.9g}{}{}, and particle {} (from 0) of {} has {:.9g}{}{}",
+                        particle.type.name, what, asked, space, unit, particle.index, made_.name(),
+                        made, space, unit),
+            particle.table, put_right);
+    }
+
+    /// Finds the harmonic bond of each particle to the preceding one.
+    void index_bonds() {
+        to_previous_.assign(masses_.size(), 0);
+        for (ForceText const& force : made_.text.forces()) {
+            if (force.kind != "HarmonicBondForce") continue;
+            for (BondText const& bond : force.bonds)
+                if (bond.second == bond.first + 1 && bond.first >= 0 &&
+                    bond.second < std::ssize(to_previous_))
+                    to_previous_[static_cast<std::size_t>(bond.second)] = bond.length;
+        }
+    }
+
+    /// Compares bonds of a chain without a network with the mean of its residues' bonds.
+    void compare_bonds_of(ResidueTable const& table, PdbChain const& chain,
+                          std::size_t first) const {
+        for (std::size_t k = 1; k < chain.size() && first + k < to_previous_.size(); ++k) {
+            ResidueType const *const here = table.find(chain.residue[k]),
+                                     *const before = table.find(chain.residue[k - 1]);
+            double const made = to_previous_[first + k];
+            if (here == nullptr || before == nullptr || made == 0) continue;
+            refuse_unequal({first + k, *here, table.name()}, "a bond to the preceding residue",
+                           made, (here->bond + before->bond) / 2, "nm");
+        }
+    }
+
+    std::string const& sequence_in(std::string const& file, std::string const& record) {
+        auto const [entry, is_new] = sequences_.try_emplace({file, record});
+        if (is_new) {
+            Node const at = named(file), name = named(record);
+            entry->second = scene::read_fasta(file, at, {&name, nullptr});
+            std::erase_if(entry->second, [](char c) { return c == '\n' || c == '\r' || c == ' '; });
+        }
+        return entry->second;
+    }
+
+    void compare_sequence(CalvadosComponent const& component, ResidueTable const& table,
+                          PdbChain const& chain, std::string const& file) {
+        std::string const& sequence = sequence_in(file, component.name);
+        if (sequence.size() != chain.size())
+            throw InputError(fmt::format("`{}` has {} residues, and chain {} of {} has {}",
+                                         scene::shown(component.name), sequence.size(),
+                                         scene::shown(chain.name), made_.topology, chain.size()),
+                             shown(file), put_right);
+        for (std::size_t k = 0; k < chain.size(); ++k) {
+            ResidueType const* const type = table.find(sequence[k]);
+            if (type == nullptr || type->name != chain.residue[k])
+                throw InputError(fmt::format("`{}` has {} as residue {}, and {} has {}",
+                                             scene::shown(component.name), sequence[k], k + 1,
+                                             made_.topology, scene::shown(chain.residue[k])),
+                                 shown(file), put_right);
+        }
+    }
+
+    /// Reads lines such as "A 1 72 | A 1 157 | 0.559 700.0": length in nm and stiffness last.
+    static Pairs restraints_in(std::string const& file) {
+        Pairs pairs;
+        std::istringstream lines(read_text_file(file));
+        std::size_t number = 0;
+        for (std::string line; std::getline(lines, line);) {
+            ++number;
+            if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+            std::istringstream words(line.substr(line.rfind('|') + 1));
+            std::array<std::string, 2> text;
+            std::array<double, 2> value{};
+            words >> text[0] >> text[1];
+            for (std::size_t i = 0; i < 2; ++i)
+                if (scene::parse_number(text[i], value[i]) != scene::NumberFault::none)
+                    throw InputError(fmt::format("the line holds no length and stiffness: `{}`",
+                                                 scene::shown(line)),
+                                     fmt::format("{}: line {}", shown(file), number), put_right);
+            pairs.push_back(value);
+        }
+        return pairs;
+    }
+
+    std::string folder_;
+    MadeSystem const& made_;
+    std::vector<std::string>& notes_;
+    ForceText const* contacts_;
+    std::vector<double> masses_;
+    std::vector<double> to_previous_;  // lengths of bonds, nm; 0 without one
+    std::optional<double> ph_;
+    std::map<std::string, ResidueTable> tables_;
+    std::map<std::pair<std::string, std::string>, std::string> sequences_;
+    std::map<std::string, std::string> missing_;
+    std::set<std::string> differing_;
+};
+
+}  // namespace
+
+void compare_tables(PackageFile const& config, CalvadosComponents const* components,
+                    std::string const& folder, MadeSystem const& made,
+                    std::vector<std::string>& notes) {
+    TableCheck check(config, folder, made, notes);
+    if (components != nullptr && components->comparable()) check.compare_chains(*components);
+    if (config.truth("custom_restraints"))
+        check.compare_restraints(config.text("fcustom_restraints", "custom_restraints.txt"),
+                                 config.text("custom_restraint_type", "harmonic") == "go");
+    check.note_missing();
+}
+
+}  // namespace catena::foreign
