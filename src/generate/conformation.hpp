@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/linear.hpp"
+#include "scene/branches.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::scene {
@@ -27,10 +28,10 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
 
 /// Sets each link's `length` to the distance of its ends (entry 0: to the anchor of a fixed base,
 /// else 0).
-void take_lengths(BeadArrays& beads, Base base);
+void take_lengths(BeadArrays& beads, Base base, Parents parents = {});
 
 /// Returns the first bead (from 0) that coincides with its inboard neighbour within rounding. Entry
 /// 0 is compared with the anchor of a fixed base. Returns -1 if no bead coincides.
-std::int64_t coincident_bead(BeadArrays const& beads, Base base);
+std::int64_t coincident_bead(BeadArrays const& beads, Base base, Parents parents = {});
 
 }  // namespace catena::scene
