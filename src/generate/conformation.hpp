@@ -14,6 +14,9 @@ namespace catena::scene {
 /// Excluded distance of self-avoiding chains. Closer pairs of CALVADOS beads repel each other by
 /// several kT (mean diameters are 0.45 to 0.68 nm).
 inline constexpr double excluded_distance = 0.56;  // nm
+/// Largest excluded distance of self-avoiding chains, relative to their links: bond angles are then
+/// above 97 degrees.
+inline constexpr double widest_exclusion = 1.5;
 
 /// Planar zig-zag along x with bond angles of 120 degrees, from the origin. A straight chain is
 /// avoided: under forces along itself it would never bend without noise. Its link matrix is also

@@ -27,10 +27,21 @@ constexpr Key turn{"turn",     "number", "0.3", "radians", "Every joint stands a
 constexpr Key excluded{
     "excluded",
     "number >= 0",
-    "the mean `length`",
+    "the mean `length`; with a `model` its bead diameter",
     "length",
     "Beads that no link joins start at least this far apart, where there is room.",
     "excluded: 0.9"};
+constexpr Key tree_mass{
+    "mass", drawn, "1, or that of the `model`", "mass", "A bead has this mass.", "mass: 12"};
+constexpr Key tree_length{
+    "length",      drawn, "required without a `model`", "length", "A link is this long.",
+    "length: 0.97"};
+constexpr Key tree_residue{"residue",
+                           "text",
+                           "`UNK`, or the only one of the `model`",
+                           "",
+                           "Topology and force field know all beads by this name.",
+                           "residue: KGB"};
 constexpr Key only_mass{"mass",    "number > 0", "1", "mass", "A rod or bead has this mass.",
                         "mass: 12"};
 
@@ -160,8 +171,9 @@ constexpr Key star_keys[] = {
     {"arms", "integer >= 1", "required", "", "This number of arms hangs on bead 1.", "arms: 6"},
     {"arm_length", "integer >= 1", "required", "",
      "An arm has this number of beads, numbered outward, arm by arm.", "arm_length: 50"},
-    link_length,
-    mass,
+    tree_length,
+    tree_mass,
+    tree_residue,
     excluded,
     seed,
 };
@@ -174,8 +186,9 @@ constexpr Key brush_keys[] = {
      "side_length: 20"},
     {"every", "integer >= 1", "1", "",
      "Side chains hang on every so many beads of the backbone, from bead 1 on.", "every: 2"},
-    link_length,
-    mass,
+    tree_length,
+    tree_mass,
+    tree_residue,
     excluded,
     seed,
 };
@@ -187,8 +200,9 @@ constexpr Key dendrimer_keys[] = {
      "This number of segments meets at bead 1 and at each branch point.", "functionality: 4"},
     {"spacer", "integer >= 0", "0", "",
      "A segment has this number of beads between two branch points.", "spacer: 3"},
-    link_length,
-    mass,
+    tree_length,
+    tree_mass,
+    tree_residue,
     excluded,
     seed,
 };
@@ -198,8 +212,9 @@ constexpr Key random_tree_keys[] = {
     {"max_children", "integer >= 1", "2", "",
      "A bead carries at most this number of others; all that carry fewer are equally likely.",
      "max_children: 3"},
-    link_length,
-    mass,
+    tree_length,
+    tree_mass,
+    tree_residue,
     excluded,
     seed,
 };

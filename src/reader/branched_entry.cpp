@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 
+#include "generate/conformation.hpp"
 #include "keys/maps.hpp"
+#include "reader/models.hpp"
 
 namespace catena::scene {
 
@@ -49,7 +52,7 @@ bool makes_branches(std::string_view generator) {
            generator == "random_tree";
 }
 
-BranchedEntry::BranchedEntry(ChainRequest const& request, Node const& entry) : request_(request) {
+BranchedEntry::BranchedEntry(ChainRequest& request, Node const& entry) : request_(request) {
     Fields const fields(entry, keys_of(entry.key));
     shape_ = read_shape(fields, entry.key);
     double const beads = beads_of(shape_);
@@ -57,12 +60,36 @@ BranchedEntry::BranchedEntry(ChainRequest const& request, Node const& entry) : r
         fail(entry, fmt::format("the {} has {:.3g} beads", entry.key, beads), "make it smaller");
     walk_.beads = static_cast<std::int64_t>(beads);
     walk_.base = request.base;
-    if (Node const* const mass = fields.find("mass")) walk_.mass = read_distribution(*mass);
-    walk_.length = read_distribution(fields.need("length", "length: 1.0"));
-    if (Node const* const excluded = fields.find("excluded")) excluded_ = non_negative(*excluded);
     request.allow(fmt::format("generator `{}`", entry.key).c_str(),
-                  {"positions", "links", "anchor"});
+                  {"positions", "links", "anchor", "model"});
+    read_beads(fields, request);
     walk_.anchor = request.anchor();
+}
+
+void BranchedEntry::read_beads(Fields const& fields, ChainRequest& request) {
+    Node const* const residue = fields.find("residue");
+    if (residue) residue_ = text(*residue);
+    request.protein_ends = {false, false};
+    if (Node const* const model = request.fields.find("model")) {
+        if (request.scene.si)
+            fail(*model, "a residue table in SI units",
+                 "write `units: md`: its parameters are in nm, amu and kJ/mol");
+        ResidueTable const& table = table_of(request);
+        if (!residue && table.types().size() == 1) residue_ = table.types().front().name;
+        ResidueType const* const type = table.find(std::string_view(residue_));
+        if (!type)
+            fail(residue ? *residue : *model,
+                 fmt::format("residue `{}` is not in {}", shown(residue_), table.name()),
+                 "give the beads a `residue` of that table");
+        hand_to_forces(request, {type});
+        walk_.mass = type->mass, walk_.length = type->bond;
+        excluded_ = std::min(type->sigma, widest_exclusion * type->bond);
+    }
+    if (Node const* const mass = fields.find("mass")) walk_.mass = read_distribution(*mass);
+    Node const* const length = fields.find("length");
+    if (length || !request.fields.find("model"))
+        walk_.length = read_distribution(fields.need("length", "length: 1.0"));
+    if (Node const* const excluded = fields.find("excluded")) excluded_ = non_negative(*excluded);
 }
 
 void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
@@ -78,6 +105,7 @@ void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
                                    : std::accumulate(length.begin(), length.end(), 0.0) /
                                          static_cast<double>(links);
     if (!positions) chain.beads = grown_tree(walk, inboard, excluded_.value_or(mean), crowding);
+    chain.beads.residue.assign(chain.beads.size(), residue_);
     chain.parent = as_parents(std::move(inboard));
     if (positions)
         request_.place(chain.beads, request_.positions_from(*positions, chain.size()), *positions,

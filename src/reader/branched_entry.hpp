@@ -11,8 +11,9 @@ namespace catena::scene {
 /// Parameters of one of these generators.
 class BranchedEntry {
   public:
-    /// Reads the map of the generator's parameters, whose key is its name. Throws InputError.
-    BranchedEntry(ChainRequest const& request, Node const& entry);
+    /// Reads the map of the generator's parameters, whose key is its name, and the residue of the
+    /// chain's `model`. Throws InputError.
+    BranchedEntry(ChainRequest& request, Node const& entry);
 
     std::int64_t size() const { return walk_.beads; }
     /// Makes the chain of a seed, grown or at the request's `positions`. Adds a note if beads
@@ -20,11 +21,14 @@ class BranchedEntry {
     void make(ChainSpec& chain, std::uint64_t seed) const;
 
   private:
+    /// Reads `residue`, `mass`, `length` and `excluded`, with defaults of the chain's model.
+    void read_beads(Fields const& fields, ChainRequest& request);
     void note(Crowding const& crowding) const;
 
     ChainRequest const& request_;
     BranchedShape shape_;
     Walk walk_;
+    std::string residue_ = "UNK";
     /// Distance that beads keep; without a value the mean length of the links.
     std::optional<double> excluded_;
 };

@@ -283,6 +283,8 @@ class ChainReader {
             chain.bodies = std::move(made.bodies);
             if (made.planar) planar = made.planar;
         }
+        // No bead of a branched chain is known to be the end of a protein.
+        if (chain.is_branched()) request_.protein_ends = {false, false};
         join_tip(chain, tip_, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);

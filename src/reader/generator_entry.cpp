@@ -53,7 +53,7 @@ bool stands_fixed(Node const& generator) {
     return generator.find("pendulum") || generator.find("coil") || generator.find("dill");
 }
 
-GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
+GeneratorEntry::GeneratorEntry(ChainRequest& request, Node const& node)
     : request_(request), entry_(single_entry(node)) {
     if (entry_.key == "random")
         read_random();

@@ -12,7 +12,7 @@ namespace catena::scene {
 class GeneratorEntry {
   public:
     /// Reads the entry. Throws InputError for a generator that is unknown or incomplete.
-    GeneratorEntry(ChainRequest const& request, Node const& node);
+    GeneratorEntry(ChainRequest& request, Node const& node);
 
     /// Number of bodies or beads per chain.
     std::int64_t size() const { return size_; }
@@ -36,7 +36,7 @@ class GeneratorEntry {
     /// Seed of a copy: that of the entry's own `seed`, or of the scene.
     std::uint64_t seed(std::int64_t copy) const;
 
-    ChainRequest const& request_;
+    ChainRequest& request_;
     /// Map of the generator's parameters.
     Node const& entry_;
     std::int64_t size_ = 0;
