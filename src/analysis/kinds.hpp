@@ -15,8 +15,8 @@ struct Kind {
     std::string name;  // unique among the kinds of a trajectory
     std::int64_t sites = 0;
     bool ring = false;
-    bool branched = false;
     std::vector<std::size_t> chains;  // indices in the topology, ascending
+    bool branched = false;
 
     std::size_t copies() const { return chains.size(); }
 };

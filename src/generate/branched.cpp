@@ -27,13 +27,13 @@ std::int64_t add_row(Inboard& inboard, std::int64_t from, std::int64_t beads) {
     return from;
 }
 
-Inboard inboard_of(Star const& star, std::uint64_t) {
+Inboard inboard_for(Star const& star, std::uint64_t) {
     Inboard inboard{-1};
     for (std::int64_t arm = 0; arm < star.arms; ++arm) add_row(inboard, 0, star.arm_length);
     return inboard;
 }
 
-Inboard inboard_of(Brush const& brush, std::uint64_t) {
+Inboard inboard_for(Brush const& brush, std::uint64_t) {
     Inboard inboard;
     add_row(inboard, -1, brush.backbone);
     for (std::int64_t bead = 0; bead < brush.backbone; bead += brush.every)
@@ -41,7 +41,7 @@ Inboard inboard_of(Brush const& brush, std::uint64_t) {
     return inboard;
 }
 
-Inboard inboard_of(Dendrimer const& tree, std::uint64_t) {
+Inboard inboard_for(Dendrimer const& tree, std::uint64_t) {
     Inboard inboard{-1}, ends{0};
     for (std::int64_t g = 0; g < tree.generations; ++g) {
         Inboard further;
@@ -53,7 +53,7 @@ Inboard inboard_of(Dendrimer const& tree, std::uint64_t) {
     return inboard;
 }
 
-Inboard inboard_of(RandomTree const& tree, std::uint64_t seed) {
+Inboard inboard_for(RandomTree const& tree, std::uint64_t seed) {
     Inboard inboard{-1}, open{0};
     std::vector<std::int64_t> children{0};
     for (std::int64_t k = 1; k < tree.beads; ++k) {
@@ -169,7 +169,7 @@ double beads_of(BranchedShape const& shape) {
 }
 
 std::vector<std::int64_t> inboard_beads(BranchedShape const& shape, std::uint64_t seed) {
-    return std::visit([&](auto const& of) { return inboard_of(of, seed); }, shape);
+    return std::visit([&](auto const& of) { return inboard_for(of, seed); }, shape);
 }
 
 BeadArrays grown_tree(Walk const& walk, std::vector<std::int64_t> const& inboard, double excluded,
