@@ -1,6 +1,6 @@
-// Leaf of point beads in branched chains, at the places of their paths (tree/branches.hpp). To its
-// path, a bead with side paths is a bead with another inverse mass, a matrix E, and another force
-// (src/dca/README.md, "Branched chains").
+// Point beads in branched chains, at the places of their paths (tree/branches.hpp), for the sweeps
+// of matrices and biases and for the fused sweep. To its path, a bead with side paths is a bead
+// with another inverse mass, a matrix E, and another force (src/dca/README.md, "Branched chains").
 #pragma once
 
 #include <vector>
@@ -45,7 +45,7 @@ class BranchedLeaf {
     SegmentMatrix<double, 1> matrix(std::int64_t place) const {
         Vec3 const u1 = inboard(place), u2 = outboard(place);
         if (fork_[place] < 0) return bead_matrix(inverse_mass(place), u1, u2, Vector<double, 1>{});
-        Mat3 const e = full(forks_->inverse_mass[at(fork_[place])]);
+        Sym3 const& e = forks_->inverse_mass[at(fork_[place])];
         Vec3 const by_inboard = e * u1;
         SegmentMatrix<double, 1> s;
         s.z11(0, 0) = dot(u1, by_inboard);
@@ -63,7 +63,8 @@ class BranchedLeaf {
         return b;
     }
     /// Writes the acceleration and the joint force of the bead at a place from the forces at the
-    /// two links of its path. Of a fork, keeps the force of both links and of the loads.
+    /// two links of its path. Of a fork, keeps the force of both links and of the loads instead of
+    /// the acceleration.
     void accelerate(LoadsView const& loads, std::int64_t place,
                     Vector<double, 1> const& inboard_force, Vector<double, 1> const& outboard_force,
                     AccelerationsView const& out) const {
@@ -93,8 +94,7 @@ class BranchedLeaf {
     /// side paths.
     Vec3 accelerated(std::int64_t place, Vec3 const& force) const {
         if (fork_[place] < 0) return inverse_mass(place) * force;
-        return full(forks_->inverse_mass[at(fork_[place])]) *
-               (force + forks_->push[at(fork_[place])]);
+        return forks_->inverse_mass[at(fork_[place])] * (force + forks_->push[at(fork_[place])]);
     }
 
     GroupView group_;

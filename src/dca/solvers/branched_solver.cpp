@@ -8,17 +8,16 @@
 namespace catena::dca {
 namespace {
 
-/// Returns the sum of term(i) for i in [begin, end), in pairs of an order that depends on the range
-/// alone.
-template <class T, class Term>
-T sum_of(std::int64_t begin, std::int64_t end, Term const& term) {
-    std::int64_t constexpr few = 4;
-    if (end - begin > few) {
-        std::int64_t const middle = begin + (end - begin) / 2;
-        return sum_of<T>(begin, middle, term) + sum_of<T>(middle, end, term);
+/// Returns the sum of term(item), in pairs of an order that depends on the number of items alone.
+template <class T, class Item, class Term>
+T sum_of(std::span<Item> items, Term const& term) {
+    std::size_t constexpr few = 4;
+    if (items.size() > few) {
+        std::size_t const half = items.size() / 2;
+        return sum_of<T>(items.first(half), term) + sum_of<T>(items.subspan(half), term);
     }
-    T sum = term(begin);
-    for (std::int64_t i = begin + 1; i < end; ++i) sum = sum + term(i);
+    T sum = term(items[0]);
+    for (Item& item : items.subspan(1)) sum = sum + term(item);
     return sum;
 }
 
@@ -35,11 +34,11 @@ Sym3 inverse_of(Sym3 const& m) {
     return inverse;
 }
 
-/// Returns mu u u^T.
-Sym3 inertia_along(double mu, Vec3 const& u) {
-    Sym3 m;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j <= i; ++j) m(i, j) = mu * u[i] * u[j];
+/// Returns the triangle of mu u u^T.
+Vector<double, 6> inertia_along(double mu, Vec3 const& u) {
+    Vector<double, 6> m;
+    for (int i = 0, at = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j) m[at++] = mu * u[i] * u[j];
     return m;
 }
 
@@ -79,6 +78,8 @@ class BranchedSolver final : public ChainSolver {
         for (std::int64_t place = 0; place < group.size; ++place)
             restricted_[at(place)] = group.restricted_of_joint[at(branches_.body[at(place)])];
         sweeps_.restricted = restricted_.data();
+        if (branches_.phases() > 1)
+            side_.resize(at(branches_.paths() - branches_.first_of_phase[1]));
         for (PhaseLists const& lists : branches_.lists)
             tree_.emplace_back(lists.runs, lists.levels, lists.roots, branches_.slots, restricted_,
                                Sweeps::in_stage);
@@ -126,9 +127,10 @@ class BranchedSolver final : public ChainSolver {
         Schedule sizes;
         sizes.slots = branches_.slots;
         sizes.joints = branches_.joints;
-        r.memory_bytes =
-            Sweeps::bytes(sizes) + std::ssize(branches_.forks) *
-                                       static_cast<std::int64_t>(sizeof(Sym3) + 2 * sizeof(Vec3));
+        r.memory_bytes = Sweeps::bytes(sizes) +
+                         std::ssize(branches_.forks) *
+                             static_cast<std::int64_t>(sizeof(Sym3) + 2 * sizeof(Vec3)) +
+                         std::ssize(side_) * static_cast<std::int64_t>(sizeof(SideLink));
         return r;
     }
 
@@ -145,57 +147,66 @@ class BranchedSolver final : public ChainSolver {
     }
     /// Returns the place of the first bead of a path.
     std::int64_t head(std::int64_t path) const { return branches_.first_of_path[at(path)]; }
-    /// Returns the effective mass at the inboard link of a path; 0 after a pivot failure.
-    double mass_of(std::int64_t path) const { return sweeps_.joints.load(head(path)).factor(0, 0); }
+    /// The inboard link of a side path.
+    struct SideLink {
+        Vec3 direction;
+        double mass = 0;   // effective mass of the path at this link, mu; 0 after a pivot failure
+        double force = 0;  // on the path
+    };
+    /// Returns the inboard links of a fork's side paths.
+    std::span<SideLink> links_of(Fork const& fork) {
+        return std::span(side_).subspan(at(fork.first_path - branches_.first_of_phase[1]),
+                                        at(fork.paths()));
+    }
+    std::int64_t bead(Fork const& fork) const { return branches_.body[at(fork.place)]; }
+    double mass(Fork const& fork) const { return group_.mass[bead(fork)][0]; }
+    /// Returns the sum of the forces on side paths.
+    static Vec3 given(std::span<SideLink const> links) {
+        return sum_of<Vec3>(links, [](SideLink const& l) { return l.force * l.direction; });
+    }
+    /// Adds to the forces on side paths what an acceleration of the fork's bead contributes.
+    static void give(std::span<SideLink> links, Vec3 const& acceleration) {
+        for (SideLink& l : links) l.force = fused(l.mass, dot(l.direction, acceleration), l.force);
+    }
     /// Sets the inverse mass of a fork: E^-1 = m 1 + sum mu u u^T.
     void fold_matrices(std::int64_t f) {
         Fork const& fork = branches_.forks[at(f)];
-        auto const held =
-            sum_of<Vector<double, 6>>(fork.first_path, fork.end_path, [&](std::int64_t path) {
-                Sym3 const m = inertia_along(mass_of(path), sweeps_.leaf.inboard(head(path)));
-                return Vector<double, 6>{
-                    {m.data[0], m.data[1], m.data[2], m.data[3], m.data[4], m.data[5]}};
-            });
-        Sym3 m = as_symmetric(held);
-        for (int i = 0; i < 3; ++i) m(i, i) += mass(f);
+        std::span<SideLink> const links = links_of(fork);
+        std::int64_t path = fork.first_path;
+        for (SideLink& l : links) {
+            std::int64_t const place = head(path++);
+            l.direction = sweeps_.leaf.inboard(place);
+            l.mass = sweeps_.joints.load(place).factor(0, 0);
+        }
+        Sym3 m = as_symmetric(sum_of<Vector<double, 6>>(
+            links, [](SideLink const& l) { return inertia_along(l.mass, l.direction); }));
+        for (int i = 0; i < 3; ++i) m(i, i) += mass(fork);
         forks_.inverse_mass[at(f)] = inverse_of(m);
     }
     /// Sets the force that the side paths of a fork exert on its bead at rest. The bias sweep has
     /// closed each of them as a chain on the ground.
-    void fold_biases(std::int64_t f) { forks_.push[at(f)] = -given(f); }
+    void fold_biases(std::int64_t f) {
+        Fork const& fork = branches_.forks[at(f)];
+        std::span<SideLink> const links = links_of(fork);
+        std::int64_t path = fork.first_path;
+        for (SideLink& l : links) l.force = sweeps_.forces.load(head(path++))[0];
+        forks_.push[at(f)] = -given(links);
+    }
     /// Computes the acceleration of a fork's bead and the forces at the inboard links of its side
     /// paths.
     void unfold(std::int64_t f, View<3> acceleration) {
-        Vec3 const a = forks_.inverse_mass[at(f)] * (forks_.force[at(f)] + forks_.push[at(f)]);
-        give(f, a);
+        Fork const& fork = branches_.forks[at(f)];
+        std::span<SideLink> const links = links_of(fork);
+        Sym3 const& e = forks_.inverse_mass[at(f)];
+        Vec3 const force = forks_.force[at(f)], a = e * (force + forks_.push[at(f)]);
+        give(links, a);
         // These forces have the rounding errors of mu a, which exceed the forces if the side paths
         // are heavy. What they leave unbalanced is found from the forces themselves.
-        Vec3 const change =
-            forks_.inverse_mass[at(f)] * plus_scaled(forks_.force[at(f)] - given(f), -mass(f), a);
-        give(f, change);
-        if (acceleration.origin)
-            acceleration.store(branches_.body[at(branches_.forks[at(f)].place)], a + change);
-    }
-    double mass(std::int64_t f) const {
-        return group_.mass[branches_.body[at(branches_.forks[at(f)].place)]][0];
-    }
-    /// Adds to the forces at the inboard links of a fork's side paths what an acceleration of its
-    /// bead contributes.
-    void give(std::int64_t f, Vec3 const& acceleration) {
-        Fork const& fork = branches_.forks[at(f)];
-        for (std::int64_t path = fork.first_path; path < fork.end_path; ++path) {
-            double const along = dot(sweeps_.leaf.inboard(head(path)), acceleration);
-            Vector<double, 1> force = sweeps_.forces.load(head(path));
-            force[0] = fused(mass_of(path), along, force[0]);
-            sweeps_.forces.store(head(path), force);
-        }
-    }
-    /// Returns the sum of the forces on the side paths of a fork.
-    Vec3 given(std::int64_t f) const {
-        Fork const& fork = branches_.forks[at(f)];
-        return sum_of<Vec3>(fork.first_path, fork.end_path, [&](std::int64_t path) {
-            return sweeps_.forces.load(head(path))[0] * sweeps_.leaf.inboard(head(path));
-        });
+        Vec3 const change = e * plus_scaled(force - given(links), -mass(fork), a);
+        give(links, change);
+        if (acceleration.origin) acceleration.store(bead(fork), a + change);
+        std::int64_t path = fork.first_path;
+        for (SideLink const& l : links) sweeps_.forces.store(head(path++), {{l.force}});
     }
 
     ChainGroup const& group_;
@@ -206,6 +217,8 @@ class BranchedSolver final : public ChainSolver {
     std::vector<std::int32_t> fork_;
     std::vector<std::uint8_t> ends_, restricted_;
     ForkBeads forks_;
+    // Inboard links of side paths, in the order of the paths.
+    std::vector<SideLink> side_;
     // Trees of the phases.
     std::vector<HostSpace::Tree> tree_;
     // As in TreeSolver; joints have the numbers of places.
