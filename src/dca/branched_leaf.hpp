@@ -15,11 +15,11 @@ struct ForkBeads {
     explicit ForkBeads(std::int64_t forks)
         : inverse_mass(static_cast<std::size_t>(forks)),
           push(static_cast<std::size_t>(forks), Vec3::zero()),
-          acceleration(static_cast<std::size_t>(forks), Vec3::zero()) {}
+          force(static_cast<std::size_t>(forks), Vec3::zero()) {}
     /// Inverse of the bead's mass and of what its side links hold, E; W.
     std::vector<Sym3> inverse_mass;
-    /// Force of the side paths on the bead at rest, and acceleration of the bead; W.
-    std::vector<Vec3> push, acceleration;
+    /// Force of the side paths on the bead at rest, and all other forces on the bead; W.
+    std::vector<Vec3> push, force;
 };
 
 /// Leaf of beads on projected handles. Places are the indices that sweeps pass; the views that they
@@ -63,7 +63,7 @@ class BranchedLeaf {
         return b;
     }
     /// Writes the acceleration and the joint force of the bead at a place from the forces at the
-    /// two links of its path.
+    /// two links of its path. Of a fork, keeps the force of both links and of the loads.
     void accelerate(LoadsView const& loads, std::int64_t place,
                     Vector<double, 1> const& inboard_force, Vector<double, 1> const& outboard_force,
                     AccelerationsView const& out) const {
@@ -72,9 +72,10 @@ class BranchedLeaf {
         Vec3 const pushed =
             plus_scaled(plus_scaled(force(loads, place), inboard_force[0], inboard(place)),
                         -outboard_force[0], outboard(place));
-        Vec3 const a = accelerated(place, pushed);
-        if (out.acceleration.origin) out.acceleration.store(body_[place], a);
-        if (fork_[place] >= 0) forks_->acceleration[at(fork_[place])] = a;
+        if (fork_[place] >= 0)
+            forks_->force[at(fork_[place])] = pushed;
+        else
+            out.acceleration.store(body_[place], inverse_mass(place) * pushed);
     }
 
   private:

@@ -105,7 +105,8 @@ class BranchedSolver final : public ChainSolver {
             if (phase > 0) each_fork(phase - 1, [this](std::int64_t f) { fold_biases(f); });
         }
         for (std::int64_t phase = 0; phase < branches_.phases(); ++phase) {
-            if (phase > 0) each_fork(phase - 1, [this](std::int64_t f) { unfold(f); });
+            if (phase > 0)
+                each_fork(phase - 1, [&](std::int64_t f) { unfold(f, out.acceleration); });
             space_.descend(tree_[at(phase)], sweep);
         }
         ++report_.bias_sweeps;
@@ -156,28 +157,45 @@ class BranchedSolver final : public ChainSolver {
                     {m.data[0], m.data[1], m.data[2], m.data[3], m.data[4], m.data[5]}};
             });
         Sym3 m = as_symmetric(held);
-        double const own = group_.mass[branches_.body[at(fork.place)]][0];
-        for (int i = 0; i < 3; ++i) m(i, i) += own;
+        for (int i = 0; i < 3; ++i) m(i, i) += mass(f);
         forks_.inverse_mass[at(f)] = inverse_of(m);
     }
     /// Sets the force that the side paths of a fork exert on its bead at rest. The bias sweep has
     /// closed each of them as a chain on the ground.
-    void fold_biases(std::int64_t f) {
-        Fork const& fork = branches_.forks[at(f)];
-        forks_.push[at(f)] = sum_of<Vec3>(fork.first_path, fork.end_path, [&](std::int64_t path) {
-            return -sweeps_.forces.load(head(path))[0] * sweeps_.leaf.inboard(head(path));
-        });
+    void fold_biases(std::int64_t f) { forks_.push[at(f)] = -given(f); }
+    /// Computes the acceleration of a fork's bead and the forces at the inboard links of its side
+    /// paths.
+    void unfold(std::int64_t f, View<3> acceleration) {
+        Vec3 const a = forks_.inverse_mass[at(f)] * (forks_.force[at(f)] + forks_.push[at(f)]);
+        give(f, a);
+        // These forces have the rounding errors of mu a, which exceed the forces if the side paths
+        // are heavy. What they leave unbalanced is found from the forces themselves.
+        Vec3 const change =
+            forks_.inverse_mass[at(f)] * plus_scaled(forks_.force[at(f)] - given(f), -mass(f), a);
+        give(f, change);
+        if (acceleration.origin)
+            acceleration.store(branches_.body[at(branches_.forks[at(f)].place)], a + change);
     }
-    /// Adds to the forces at the inboard links of a fork's side paths what its bead's acceleration
-    /// contributes.
-    void unfold(std::int64_t f) {
+    double mass(std::int64_t f) const {
+        return group_.mass[branches_.body[at(branches_.forks[at(f)].place)]][0];
+    }
+    /// Adds to the forces at the inboard links of a fork's side paths what an acceleration of its
+    /// bead contributes.
+    void give(std::int64_t f, Vec3 const& acceleration) {
         Fork const& fork = branches_.forks[at(f)];
         for (std::int64_t path = fork.first_path; path < fork.end_path; ++path) {
-            double const along = dot(sweeps_.leaf.inboard(head(path)), forks_.acceleration[at(f)]);
+            double const along = dot(sweeps_.leaf.inboard(head(path)), acceleration);
             Vector<double, 1> force = sweeps_.forces.load(head(path));
             force[0] = fused(mass_of(path), along, force[0]);
             sweeps_.forces.store(head(path), force);
         }
+    }
+    /// Returns the sum of the forces on the side paths of a fork.
+    Vec3 given(std::int64_t f) const {
+        Fork const& fork = branches_.forks[at(f)];
+        return sum_of<Vec3>(fork.first_path, fork.end_path, [&](std::int64_t path) {
+            return sweeps_.forces.load(head(path))[0] * sweeps_.leaf.inboard(head(path));
+        });
     }
 
     ChainGroup const& group_;
