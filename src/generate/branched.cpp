@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "generate/cell_stack.hpp"
+#include "generate/crowd.hpp"
+#include "generate/link_projection.hpp"
 #include "generate/random.hpp"
 
 namespace catena::scene {
@@ -15,6 +17,13 @@ namespace {
 std::uint64_t constexpr shape_stream = std::uint64_t{1} << 62;
 /// Number of places that are tried for each bead.
 int constexpr trials = 64;
+/// Largest number of relaxation steps, times the number of beads; at least `least_relaxed` steps.
+std::int64_t constexpr most_relaxed = 10'000'000, least_relaxed = 20;
+/// Overlaps are relaxed if at most one bead in this number has one: denser trees have no start
+/// without overlaps nearby.
+std::int64_t constexpr most_crowded = 4;
+/// Room beside a tree in its relaxation, in excluded distances.
+double constexpr room = 10;
 
 using Inboard = std::vector<std::int64_t>;
 
@@ -93,74 +102,86 @@ double count_of(RandomTree const& tree) { return static_cast<double>(tree.beads)
 /// Grows one tree. Points are the beads, after the anchor of a fixed base.
 class TreeGrowth {
   public:
-    TreeGrowth(BeadArrays& beads, Walk const& walk, Inboard const& inboard, double excluded)
-        : beads_(beads),
-          inboard_(inboard),
-          seed_(walk.seed),
-          anchored_(walk.base == Base::fixed ? 1 : 0),
+    /// `parent`, `length`: of each point; those of the first one are not used.
+    TreeGrowth(Inboard const& parent, std::vector<double> const& length, double excluded,
+               std::uint64_t seed)
+        : parent_(parent),
+          length_(length),
           excluded_(excluded),
+          seed_(seed),
           grown_(excluded > 0 ? excluded : 1),
-          allowance_(walk.beads) {
-        grown_.push(walk.anchor);  // the anchor itself, or bead 1 of a free base
-    }
+          allowance_(std::ssize(parent)) {}
 
-    void run(Crowding& crowding) {
-        auto const points = std::ssize(inboard_) + anchored_;
-        while (grown_.size() < points)
-            if (!extend(crowding)) step_back();
-        std::vector<Vec3> const points_grown = grown_.take();
-        beads_.position.assign(points_grown.begin() + anchored_, points_grown.end());
+    /// Returns the points, the first one at `start`.
+    std::vector<Vec3> run(Vec3 const& start) {
+        grown_.push(start);
+        while (grown_.size() < std::ssize(parent_))
+            if (!extend()) step_back();
+        return grown_.take();
     }
+    Overlaps const& overlaps() const { return overlaps_; }
 
   private:
-    /// Adds the next bead at a free place. Without one it returns false or, if the tree may not
+    /// Adds the next point at a free place. Without one it returns false or, if the tree may not
     /// step back any more, takes the place with the least overlap.
-    bool extend(Crowding& crowding) {
-        auto const bead = static_cast<std::size_t>(grown_.size() - anchored_);
-        std::int64_t const on = bead == 0 ? 0 : inboard_[bead] + anchored_;
-        CellStack::Nearest best{-1, -1};
+    bool extend() {
+        auto const next = static_cast<std::size_t>(grown_.size());
+        std::int64_t const on = parent_[next];
+        double clear = -1;
         Vec3 place = Vec3::zero();
-        for (int trial = 0; trial < trials && best.distance < excluded_; ++trial) {
+        for (int trial = 0; trial < trials && clear < excluded_; ++trial) {
             Draws draws(seed_, grown_.size(), attempt_++);
-            Vec3 const candidate =
-                plus_scaled(grown_.at(on), beads_.length[bead], draws.on_sphere());
-            CellStack::Nearest const found = grown_.nearest(candidate, on);
-            if (found.distance > best.distance) best = found, place = candidate;
+            Vec3 const candidate = plus_scaled(grown_.at(on), length_[next], draws.on_sphere());
+            double const found = excluded_ > 0 ? grown_.clearance(candidate, on, clear) : excluded_;
+            if (found > clear) clear = found, place = candidate;
         }
-        if (best.distance < excluded_) {
+        if (clear < excluded_) {
             if (allowance_ > 0) return false;
-            note(crowding, best, static_cast<std::int64_t>(bead));
+            overlaps_.nearest = overlaps_.count++ == 0 ? clear : std::min(overlaps_.nearest, clear);
         }
         grown_.push(place);
         if (grown_.size() > furthest_) furthest_ = grown_.size(), retreat_ = 1;
         return true;
     }
 
-    /// Removes the last beads. Their number doubles with each failure, so that the tree leaves any
+    /// Removes the last points. Their number doubles with each failure, so that the tree leaves any
     /// dead end.
     void step_back() {
         std::int64_t const back = std::min({retreat_, grown_.size() - 1, allowance_});
         for (std::int64_t i = 0; i < back; ++i) grown_.pop();
-        // Without a bead to remove, new attempts count instead.
+        // Without a point to remove, new attempts count instead.
         allowance_ -= std::max<std::int64_t>(back, 1);
         retreat_ *= 2;
     }
 
-    void note(Crowding& crowding, CellStack::Nearest const& near, std::int64_t bead) const {
-        if (crowding.beads++ > 0 && !(near.distance < crowding.distance)) return;
-        crowding.first = near.point - anchored_;
-        crowding.second = bead;
-        crowding.distance = near.distance;
-    }
-
-    BeadArrays& beads_;
-    Inboard const& inboard_;
-    std::uint64_t seed_, attempt_ = 0;
-    std::int64_t anchored_;
+    Inboard const& parent_;
+    std::vector<double> const& length_;
     double excluded_;
+    std::uint64_t seed_, attempt_ = 0;
     CellStack grown_;
     std::int64_t allowance_, furthest_ = 0, retreat_ = 1;
+    Overlaps overlaps_;
 };
+
+/// Pushes overlapping points apart at constant lengths of the links; returns what is left.
+Overlaps relaxed(std::vector<Vec3>& points, Inboard const& parent, std::vector<double> length,
+                 double excluded) {
+    Vec3 low = points[0], high = low;
+    for (Vec3 const& p : points)
+        for (int i = 0; i < 3; ++i)
+            low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+    Crowd crowd;
+    for (int i = 0; i < 3; ++i) crowd.box[i] = high[i] - low[i] + room * excluded;
+    crowd.excluded = excluded;
+    crowd.at = points;
+    crowd.length = std::move(length);
+    crowd.first = {0, points.size()};
+    crowd.parent = parent;
+    Relaxed const found = relax(crowd, std::max(least_relaxed, most_relaxed / std::ssize(points)));
+    for (std::size_t k = 0; k < points.size(); ++k)
+        points[k] = points[0] + (crowd.at[k] - crowd.at[0]);
+    return {found.overlaps, found.nearest};
+}
 
 }  // namespace
 
@@ -173,9 +194,18 @@ std::vector<std::int64_t> inboard_beads(BranchedShape const& shape, std::uint64_
 }
 
 BeadArrays grown_tree(Walk const& walk, std::vector<std::int64_t> const& inboard, double excluded,
-                      Crowding& crowding) {
+                      Overlaps& left) {
     BeadArrays beads = drawn_sizes(walk);
-    TreeGrowth(beads, walk, inboard, excluded).run(crowding);
+    Inboard const parent = unit_parents(inboard, walk.base);
+    std::ptrdiff_t const anchors = walk.base == Base::fixed ? 1 : 0;
+    std::vector<double> length(static_cast<std::size_t>(anchors), 0.0);
+    length.insert(length.end(), beads.length.begin(), beads.length.end());
+    TreeGrowth growth(parent, length, excluded, walk.seed);
+    std::vector<Vec3> points = growth.run(walk.anchor);
+    left = growth.overlaps();
+    if (left.count > 0 && left.count <= walk.beads / most_crowded)
+        left = relaxed(points, parent, std::move(length), excluded);
+    beads.position.assign(points.begin() + anchors, points.end());
     return beads;
 }
 

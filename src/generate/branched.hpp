@@ -36,21 +36,18 @@ double beads_of(BranchedShape const& shape);
 /// decides random trees alone.
 std::vector<std::int64_t> inboard_beads(BranchedShape const& shape, std::uint64_t seed);
 
-/// Places where a grown chain is too dense.
-struct Crowding {
-    /// Number of beads nearer than the excluded distance to an earlier bead.
-    std::int64_t beads = 0;
-    /// The nearest such pair, from 0, and its distance.
-    std::int64_t first = -1, second = -1;
-    double distance = 0;
+/// What a start leaves of overlaps: their number, and the smallest distance of two beads.
+struct Overlaps {
+    std::int64_t count = 0;
+    double nearest = 0;
 };
 
 /// Random start of the beads of `walk`, each at its link's length from the bead that `inboard`
 /// names. Beads that no link joins keep the distance `excluded` (0: any). The tree grows bead by
 /// bead and steps back where no place is free. After as many steps back as it has beads, it takes
-/// the places with the least overlap, which `crowding` receives. The result depends on the
-/// arguments alone.
+/// the places with the least overlap. Such overlaps are relaxed if at most a quarter of the beads
+/// has one; `left` receives the others. The result depends on the arguments alone.
 BeadArrays grown_tree(Walk const& walk, std::vector<std::int64_t> const& inboard, double excluded,
-                      Crowding& crowding);
+                      Overlaps& left);
 
 }  // namespace catena::scene

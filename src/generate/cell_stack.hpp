@@ -1,6 +1,7 @@
 // A stack of points that finds neighbours by cells.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -42,20 +43,15 @@ class CellStack {
     }
     /// Point k, in the order of pushing.
     Vec3 const& at(std::int64_t k) const { return points_[static_cast<std::size_t>(k)]; }
-    /// A point near another place, and its distance.
-    struct Nearest {
-        std::int64_t point = -1;
-        double distance = std::numeric_limits<double>::infinity();
-    };
-    /// Returns the point nearest to a place among those nearer than the width, except point
-    /// `passed_over`; an infinite distance if there is none.
-    Nearest nearest(Vec3 const& place, std::int64_t passed_over) const {
-        Nearest found;
+    /// Returns the distance of the nearest point among those nearer than the width, except point
+    /// `passed_over`; infinite if there is none. The search ends early once the result is at most
+    /// `least`; it then returns any such value.
+    double clearance(Vec3 const& place, std::int64_t passed_over, double least) const {
+        double found = std::numeric_limits<double>::infinity();
         for_each_around(place, [&](std::int64_t k) {
             double const distance = norm(at(k) - place);
-            if (k != passed_over && distance < width_ && distance < found.distance)
-                found = {k, distance};
-            return false;
+            if (k != passed_over && distance < width_) found = std::min(found, distance);
+            return found <= least;
         });
         return found;
     }

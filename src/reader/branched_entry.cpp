@@ -97,28 +97,30 @@ void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
     walk.seed = seed;
     std::vector<std::int64_t> inboard = inboard_beads(shape_, seed);
     Node const* const positions = request_.fields.find("positions");
-    Crowding crowding;
+    Overlaps left;
     chain.beads = drawn_sizes(walk);
     std::vector<double> const& length = chain.beads.length;
     std::size_t const links = length.size() - (request_.base == Base::fixed ? 0 : 1);
     double const mean = links == 0 ? 0
                                    : std::accumulate(length.begin(), length.end(), 0.0) /
                                          static_cast<double>(links);
-    if (!positions) chain.beads = grown_tree(walk, inboard, excluded_.value_or(mean), crowding);
+    double const excluded = excluded_.value_or(mean);
+    if (!positions) chain.beads = grown_tree(walk, inboard, excluded, left);
     chain.beads.residue.assign(chain.beads.size(), residue_);
     chain.parent = as_parents(std::move(inboard));
     if (positions)
         request_.place(chain.beads, request_.positions_from(*positions, chain.size()), *positions,
                        chain.parent);
-    note(crowding);
+    note(left, excluded);
 }
 
-void BranchedEntry::note(Crowding const& crowding) const {
-    if (crowding.beads == 0) return;
+void BranchedEntry::note(Overlaps const& left, double excluded) const {
+    if (left.count == 0) return;
+    char const* const unit = request_.scene.si ? "m" : "nm";
     request_.scene.note(fmt::format(
-        "chain `{}` found no free place for {} of its beads: beads {} and {} start {:.3g} {} apart",
-        shown(request_.name()), crowding.beads, crowding.first + 1, crowding.second + 1,
-        crowding.distance, request_.scene.si ? "m" : "nm"));
+        "chain `{}` starts with {} overlaps of beads closer than {:.4g} {}, the nearest {:.3g} {} "
+        "apart: it is too dense for its `excluded`",
+        shown(request_.name()), left.count, excluded, unit, left.nearest, unit));
 }
 
 }  // namespace catena::scene

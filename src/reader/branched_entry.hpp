@@ -23,7 +23,8 @@ class BranchedEntry {
   private:
     /// Reads `residue`, `mass`, `length` and `excluded`, with defaults of the chain's model.
     void read_beads(Fields const& fields, ChainRequest& request);
-    void note(Crowding const& crowding) const;
+    /// Adds a note on overlaps that a start has.
+    void note(Overlaps const& left, double excluded) const;
 
     ChainRequest const& request_;
     BranchedShape shape_;

@@ -114,6 +114,14 @@ def restart_is_the_same(scene, whole, folder):
         check(np.array_equal(file["particles/trajectory/position/value"][:], whole), "a restart changes positions")
 
 
+def starts_from_a_frame(scene, frame, whole, folder):
+    """A run that starts from the last frame of another one has its positions, with links fitted along the branches."""
+    output = os.path.join(folder, "again")
+    catena("run", scene, "--output", output, "--quiet", "--steps", "0", "--set", f"start={{from: {frame}}}")
+    with h5py.File(os.path.join(output, "trajectory.h5md")) as file:
+        check(np.abs(file["particles/trajectory/position/value"][0] - whole[-1]).max() < 1e-9, "a frame as start changes positions")
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix=f"catena-branches-{os.getpid()}-") as folder:
         for integrator, backend in (("g-baoab", "segments"), ("rattle", "serial"), ("g-baoab", "openmp")):
@@ -126,6 +134,7 @@ def main():
             positions = look_at_topology(output)
             if backend == "segments":
                 restart_is_the_same(scene, positions, folder)
+                starts_from_a_frame(scene, output, positions, folder)
                 look_at_numbers(output)
                 subprocess.run([sys.executable, PLOT, output], check=True, capture_output=True)
                 check(os.path.getsize(os.path.join(output, "picture.png")) > 10000, "the picture is empty")
