@@ -8,13 +8,27 @@ def placed_chains(trajectory):
     """Positions [sites][3] of each chain, its middle moved into the box by whole edges."""
     import numpy as np
     placed = []
-    for first, count, ring in trajectory["chains"]:
+    for first, count, _ in trajectory["chains"]:
         chain = trajectory["positions"][first:first + count].astype(float)
         if trajectory["box"] is not None and count > 0:
             chain = chain - np.floor(chain.mean(axis=0) / trajectory["box"]) * trajectory["box"]
         if count > 0:
-            placed.append(np.vstack([chain, chain[:1]]) if ring and count > 2 else chain)
+            placed.append(chain)
     return placed
+
+
+def bonds_of_chains(trajectory):
+    """Pairs of bonded sites of each chain, counted from 0 in the chain: along it, around a ring, or to the site on which each hangs."""
+    import numpy as np
+    bonds = []
+    for first, count, ring in trajectory["chains"]:
+        if count == 0:
+            continue
+        parent = trajectory["parent"]
+        inboard = np.arange(count) - 1 if parent is None else parent[first:first + count]
+        pairs = np.stack([inboard, np.arange(count)], axis=1)[1:]
+        bonds.append(np.vstack([pairs, [[count - 1, 0]]]) if ring and count > 2 else pairs)
+    return bonds
 
 
 def upright_axes(points, up):
@@ -70,34 +84,36 @@ def bead_polygons(points, radius):
     return points[:, None, :2] + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)[None]
 
 
-def link_polygons(points, width, radius):
-    """Each link from the surface of one bead to that of the next."""
+def link_polygons(begin, end, width, radius):
+    """Each link from the surface of one bead to that of the other."""
     import numpy as np
-    direction = np.diff(points, axis=0)
+    direction = end - begin
     direction *= 0.85 * radius / np.maximum(np.linalg.norm(direction, axis=1), 1e-300)[:, None]
-    a, b = (points[:-1] + direction)[:, :2], (points[1:] - direction)[:, :2]
+    a, b = (begin + direction)[:, :2], (end - direction)[:, :2]
     along = b - a
     side = np.stack([-along[:, 1], along[:, 0]], axis=-1)
     side *= 0.5 * width / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
     return np.stack([a + side, b + side, b - side, a - side], axis=1)
 
 
-def draw_beads(axes, chains, colours):
+def draw_beads(axes, chains, bonds, colours):
     """Beads and links as polygons in one collection, the farthest first."""
     import numpy as np
     from matplotlib.collections import PolyCollection
-    link = np.median(np.concatenate([np.linalg.norm(np.diff(c, axis=0), axis=1) for c in chains if len(c) > 1] or [[1.0]]))
+    link = np.median(np.concatenate([np.linalg.norm(c[pairs[:, 1]] - c[pairs[:, 0]], axis=1) for c, pairs in zip(chains, bonds) if len(pairs)]
+                                    or [[1.0]]))
     radius = 0.36 * link
     everything = np.vstack(chains)
     low, high = everything[:, 2].min(), everything[:, 2].max()
     polygons, faces, edges, order = [], [], [], []
-    for chain, colour in zip(chains, colours):
+    for chain, pairs, colour in zip(chains, bonds, colours):
+        from_, to = pairs[:, 0], pairs[:, 1]
         depth = (chain[:, 2] - low) / max(high - low, 1e-300)
         beads = faded(colour, depth)
         shine = faded(np.clip(colour[:, :3] + 0.42 * (1 - colour[:, :3]), 0, 1), depth)
-        middle = 0.5 * (chain[1:, 2] + chain[:-1, 2])
-        links = 0.5 * (beads[1:] + beads[:-1]) * 0.92
-        parts = [(link_polygons(chain, 0.30 * link, radius), links, 0.62 * links, middle),
+        middle = 0.5 * (chain[to, 2] + chain[from_, 2])
+        links = 0.5 * (beads[to] + beads[from_]) * 0.92
+        parts = [(link_polygons(chain[from_], chain[to], 0.30 * link, radius), links, 0.62 * links, middle),
                  (bead_polygons(chain, radius), beads, 0.62 * beads, chain[:, 2]),
                  (bead_polygons(chain + [-0.3 * radius, 0.32 * radius, 0], 0.36 * radius), shine, shine, chain[:, 2] + 1e-6 * link)]
         for polygon, face, edge, z in parts:
@@ -111,15 +127,18 @@ def draw_beads(axes, chains, colours):
     return radius
 
 
-def draw_lines(axes, chains, colours):
-    """For many sites: thin lines, the chain thinned to what can be seen."""
+def draw_lines(axes, chains, bonds, colours):
+    """For many sites: thin lines, a chain without branches thinned to what can be seen."""
     import numpy as np
     from matplotlib.collections import LineCollection
-    for chain, colour in zip(chains, colours):
+    for chain, pairs, colour in zip(chains, bonds, colours):
         step = max(1, len(chain) // 20000)
-        points = chain[::step, :2]
-        segments = np.stack([points[:-1], points[1:]], axis=1)
-        axes.add_collection(LineCollection(segments, colors=colour[::step][:len(segments)], linewidths=0.9, capstyle="round"))
+        if (pairs[:, 1] == pairs[:, 0] + 1).all():
+            points = chain[::step, :2]
+            segments, colour = np.stack([points[:-1], points[1:]], axis=1), colour[::step]
+        else:
+            segments, colour = chain[pairs, :2], colour[pairs[:, 0]]
+        axes.add_collection(LineCollection(segments, colors=colour[:len(segments)], linewidths=0.9, capstyle="round"))
     return 0.0
 
 
@@ -162,7 +181,7 @@ def draw_conformation(axes, trajectory, up=None):
         colours = [np.tile(colour_map()(k / (len(chains) - 1)), (len(chain), 1)) for k, chain in enumerate(flat)]
     seen = np.vstack(flat + ([draw_box(axes, box, view, middle)] if box is not None else []))
     draw = draw_beads if sum(map(len, chains)) <= MOST_ROUND_BEADS else draw_lines
-    radius = draw(axes, flat, colours)
+    radius = draw(axes, flat, bonds_of_chains(trajectory), colours)
     low, high = seen[:, :2].min(axis=0) - 1.5 * radius, seen[:, :2].max(axis=0) + 1.5 * radius
     half = 0.53 * np.maximum((high - low), 0.45 * (high - low).max() + 1e-9)
     centre = 0.5 * (low + high)
@@ -173,7 +192,7 @@ def draw_conformation(axes, trajectory, up=None):
     axes.set_anchor("C")
     axes.axis("off")
     draw_scale(axes, extent, trajectory["unit"])
-    if len(chains) == 1:
+    if len(chains) == 1 and trajectory["parent"] is None:
         mark_ends(axes, flat[0], trajectory["chains"][0][1], radius + 0.032 * (extent[1] - extent[0]))
 
 

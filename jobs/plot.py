@@ -85,6 +85,7 @@ def read_trajectory(path):
                 "unit": position.attrs["unit"],
                 "box": group["box/edges/value"][-1] if "edges" in group["box"] else None,
                 "chains": list(zip(chains["first"][:], chains["count"][:], chains["ring"][:])),
+                "parent": file["catena/parent"][:] if "catena/parent" in file else None,
                 "title": title_of(file["catena"].attrs.get("title", b"")),
             }
     except (OSError, KeyError) as error:

@@ -20,6 +20,7 @@ std::string signature(Topology const& topology, Topology::Chain const& chain) {
     std::memcpy(masses.data(), topology.mass.data() + first, masses.size());
     key += masses;
     for (std::size_t k = first; k < first + count; ++k) key += topology.residue[k] + ' ';
+    for (std::int64_t const parent : chain.parent) key += std::to_string(parent) + ' ';
     return key;
 }
 
@@ -67,7 +68,7 @@ std::vector<Kind> kinds_of(Topology const& topology, bool by_members) {
         Topology::Chain const& chain = topology.chains[c];
         if (chain.count == 0) continue;
         auto const [found, is_new] = known.emplace(signature(topology, chain), kinds.size());
-        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}});
+        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}, !chain.parent.empty()});
         kinds[found->second].chains.push_back(c);
     }
     std::set<std::string> taken;

@@ -9,13 +9,14 @@
 
 namespace catena::analysis {
 
-/// Equal chains. They agree in the number of sites, in every mass and residue name, and in being a
-/// ring or not.
+/// Equal chains. They agree in the number of sites, in every mass and residue name, in being a ring
+/// or not, and in their branches.
 struct Kind {
     std::string name;  // unique among the kinds of a trajectory
     std::int64_t sites = 0;
     bool ring = false;
     std::vector<std::size_t> chains;  // indices in the topology, ascending
+    bool branched = false;
 
     std::size_t copies() const { return chains.size(); }
 };

@@ -42,6 +42,9 @@ void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
     if (!chain.is_beads() || chain.base != Base::free || chain.tip != Tip::free || chain.size() < 4)
         refuse("bench sampling takes a free chain of 4 beads or more",
                "name a scene such as inputs/alpha-synuclein.yaml");
+    if (chain.is_branched())
+        refuse("bench sampling takes an unbranched chain",
+               "name a scene such as inputs/alpha-synuclein.yaml");
     if (!scene.forces.openmm || scene.forces.openmm->builder.empty())
         refuse("bench sampling takes forces of CALVADOS 2 or 3, whose bonds OpenMM then computes",
                "add forces: {openmm: {builder: calvados2}}");

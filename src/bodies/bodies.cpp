@@ -11,6 +11,7 @@
 #include "bodies/physics.hpp"
 #include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
+#include "scene/branches.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
@@ -100,6 +101,38 @@ std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
     return load;
 }
 
+/// Throws InputError for bodies other than beads that have the key `parent`.
+void refuse_parents(Node const& bodies) {
+    for (Node const& body : bodies.items)
+        if (Node const* const parent = body.find("parent"))
+            fail(*parent, "a branched chain that has rigid bodies or joints other than links",
+                 "leave `parent` out: branched chains consist of point beads on links");
+}
+
+/// Reads the bead on which bead k (from 0) of `beads` hangs; -1 for bead 1.
+std::int64_t read_parent(Fields const& bead, std::int64_t k, std::int64_t beads) {
+    Node const* const node = bead.find("parent");
+    if (!node) return k - 1;
+    std::int64_t const parent = whole(*node, 0);
+    if (k == 0 && parent != 0)
+        fail(*node,
+             fmt::format("bead 1 hangs on bead {}, but the first bead hangs on none", parent),
+             "leave `parent` out here, and begin the list with the bead that hangs on none");
+    if (k > 0 && parent == 0)
+        fail(*node, fmt::format("bead {} hangs on none, as bead 1 does: two trees", k + 1),
+             "give it the number of an earlier bead, or write a chain of its own");
+    if (parent == k + 1)
+        fail(*node, fmt::format("bead {} hangs on itself", parent),
+             "give it the number of an earlier bead");
+    if (parent > beads)
+        fail(*node, fmt::format("bead {} hangs on bead {} of {}", k + 1, parent, beads),
+             "count the beads of this chain from 1");
+    if (parent > k)
+        fail(*node, fmt::format("bead {} hangs on bead {}, which follows it", k + 1, parent),
+             "list each bead after the one it hangs on");
+    return parent - 1;
+}
+
 /// Returns the node of the joint's type, or nullptr.
 Node const* type_node_of(Node const& body) {
     Node const* const joint = body.find("joint");
@@ -132,6 +165,7 @@ BodyList kind_of_list(Node const& bodies) {
     // A single point without links, such as an ion, is a chain of one bead.
     bool const lone_bead =
         bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");
+    if (rigid || !(links || lone_bead)) refuse_parents(bodies);
     if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
     return rigid ? BodyList::linked : BodyList::beads;
 }
@@ -175,6 +209,7 @@ ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> co
 
 ExplicitBeads read_beads(Node const& node, Base base) {
     ExplicitBeads made;
+    std::vector<std::int64_t> inboard;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
         Node const& item = node.items[k];
         for (char const* const key : {"com", "inertia", "wrench", "drag", "beads"})
@@ -182,6 +217,8 @@ ExplicitBeads read_beads(Node const& node, Base base) {
                 fail(*extra, fmt::format("key `{}` does not apply to a point bead on a link", key),
                      "leave it out or change `joint`");
         Fields const body(item, keys::bead);
+        inboard.push_back(read_parent(body, static_cast<std::int64_t>(k),
+                                      static_cast<std::int64_t>(node.items.size())));
         made.beads.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         made.beads.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
         Node const* const velocity = body.find("velocity");
@@ -203,6 +240,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         }
         made.beads.length.push_back(length);
     }
+    made.parent = as_parents(std::move(inboard));
     return made;
 }
 

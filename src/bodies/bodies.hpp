@@ -10,8 +10,8 @@ namespace catena::scene {
 /// bodies: rigid bodies on any other joints.
 enum class BodyList { bodies, beads, linked };
 
-/// Determines the content of the list. Throws InputError for an empty list and for a mixture of
-/// links with other joints.
+/// Determines the content of the list. Throws InputError for an empty list, for a mixture of links
+/// with other joints, and for a `parent` among rigid bodies.
 BodyList kind_of_list(Node const& bodies);
 
 /// Rigid bodies read from a list.
@@ -30,11 +30,13 @@ ExplicitBodies read_bodies(Node const& bodies, Base base, std::array<double, 2> 
 struct ExplicitBeads {
     /// The beads; `length` is NaN where none is given.
     BeadArrays beads;
+    /// Beads on which the beads hang, as ChainSpec::parent.
+    std::vector<std::int64_t> parent;
     /// True if at least one bead has a velocity.
     bool velocities = false;
 };
-/// Reads beads {mass, position, velocity, residue, joint: {type: link, length}}. Throws InputError
-/// for keys of rigid bodies.
+/// Reads beads {mass, position, velocity, residue, parent, joint: {type: link, length}}. Throws
+/// InputError for keys of rigid bodies, and for a `parent` that is not an earlier bead.
 ExplicitBeads read_beads(Node const& bodies, Base base);
 
 /// Reads `drag: {linear, angular}`; both default to 0. Throws InputError for negative values.

@@ -98,13 +98,14 @@ std::string text_of(Body const& body) {
     return map.str();
 }
 
-/// `has_link`: a link connects the bead to the one before it, or to the ground.
+/// `has_link`: a link connects the bead to another one, or to the ground.
 std::string text_of(Bead const& bead, bool has_link) {
     Map map, link;
     map.number("mass", bead.mass);
     map.triple("position", bead.position);
     map.triple("velocity", bead.velocity);
     if (!bead.residue.empty()) map.text("residue", quoted(bead.residue));
+    if (bead.parent) map.text("parent", std::to_string(*bead.parent));
     link.text("type", "link");
     link.number("length", bead.length);
     if (has_link || bead.length) map.text("joint", link.str());

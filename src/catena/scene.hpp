@@ -51,7 +51,7 @@ struct Body {
     FurtherKeys keys = {};
 };
 
-/// Point mass on a rigid link to the bead before it.
+/// Point mass on a rigid link to the bead before it, or to another one.
 struct Bead {
     double mass = 0;
     /// Position at the start, W.
@@ -61,6 +61,8 @@ struct Bead {
     std::optional<double> length = {};
     /// Three-letter name; empty for a bead without one.
     std::string residue = {};
+    /// Number of the bead on which it hangs, counted from 1; absent for the bead before.
+    std::optional<std::int64_t> parent = {};
 };
 
 /// Chain of bodies or of beads; exactly one of the two lists is filled.

@@ -8,6 +8,7 @@
 
 #include "chain/chain_order.hpp"
 #include "joints/joint_models.hpp"
+#include "scene/branch_limits.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -281,6 +282,21 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
 }
 
+/// Sets the inboard bodies of branched chains and cuts the chains into paths.
+void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise) {
+    group.inboard.assign(static_cast<std::size_t>(group.size), -1);
+    for (dca::Piece const& piece : group.pieces) {
+        std::vector<std::int64_t> const& parent = scene.chains[group.chain[piece.chain]].parent;
+        for (std::int64_t i = 0; i < piece.count; ++i)
+            if (parent[i] >= 0) group.inboard[piece.local + i] = piece.local + parent[i];
+    }
+    group.branches = dca::Branches(group.inboard, pairwise);
+    group.schedule.runs.clear();
+    group.schedule.levels.clear();
+    group.schedule.roots.clear();
+    group.schedule.slots = 0;
+}
+
 /// Sets the neighbouring ranks.
 void find_neighbours(ChainGroup& group, int rank) {
     dca::Partition const& p = group.partition;
@@ -372,6 +388,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
     fill(group, scene, options.executor);
+    if (scene::branches(any)) fill_branches(group, scene, pairwise);
     if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());
@@ -382,6 +399,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
 
 /// Returns a number that is equal for chains of one group.
 int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
+    if (scene::branches(spec)) return 7;
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;
     if (carries_all(handles) || (implicit && scene::resists(spec))) return 6;

@@ -14,6 +14,7 @@
 #include "mpi/collectives.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
+#include "tree/branches.hpp"
 #include "tree/load_balance.hpp"
 #include "tree/tree.hpp"
 
@@ -84,6 +85,11 @@ struct ChainGroup {
     dca::Partition partition;
     std::vector<dca::Piece> pieces;  // pieces of this rank
     dca::Schedule schedule;
+    /// Inboard body of each local body, -1 for first bodies; empty unless the chains are branched.
+    std::vector<std::int64_t> inboard;
+    /// Paths of branched chains, which replace the runs, merges and roots of `schedule`.
+    dca::Branches branches;
+    bool is_branched() const { return !inboard.empty(); }
 
     // Arrays over local bodies.
     /// Number of local bodies.

@@ -62,23 +62,56 @@ dca::ChainTree const& longest_tree(ChainGroup const& group) {
                              [](auto const& a, auto const& b) { return a.bodies < b.bodies; });
 }
 
+/// Counts of the tree of a group's longest chain, or of the paths of branched chains.
+struct TreeCounts {
+    std::int64_t runs = 0, levels = 0, depth = 0;
+};
+TreeCounts counts_of(ChainGroup const& group) {
+    dca::ChainTree const& tree = longest_tree(group);
+    if (!group.is_branched()) return {tree.runs, tree.levels(), tree.depth()};
+    TreeCounts counts{0, 0, group.branches.depth()};
+    for (dca::PhaseLists const& lists : group.branches.lists) {
+        counts.runs += std::ssize(lists.runs);
+        counts.levels = std::max(counts.levels, std::ssize(lists.levels));
+    }
+    return counts;
+}
+
+/// Describes the tree of a group's longest chain, or the paths of branched chains.
+std::string tree_text(ChainGroup const& group) {
+    dca::ChainTree const& tree = longest_tree(group);
+    TreeCounts const counts = counts_of(group);
+    std::string const bodies =
+        group.is_branched()
+            ? fmt::format("{} bodies in {} and {}: {} of up to {} bodies, then up to {} of merges",
+                          group.partition.bodies(),
+                          counted(group.branches.paths(), "path", "paths"),
+                          counted(group.branches.phases(), "phase", "phases"),
+                          counted(counts.runs, "run", "runs"), tree.run_length,
+                          counted(counts.levels, "level", "levels"))
+            : fmt::format("{} bodies: {} of up to {} bodies, then {} of merges", tree.bodies,
+                          counted(counts.runs, "run", "runs"), tree.run_length,
+                          counted(counts.levels, "level", "levels"));
+    return fmt::format("{}; depth {}; table version {}", bodies, counts.depth,
+                       dca::tree_table_version);
+}
+
 /// Adds the description of a group: blocks, tree, units, collectives and memory.
 void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport const& report) {
     dca::ChainTree const& tree = longest_tree(group);
     Rounds const rounds = rounds_of(group);
     std::vector<std::int64_t> const shares = shares_of(group);
-    text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"),
+    text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), group.is_branched() ? "branched chain" : "chain",
+                                     group.is_branched() ? "branched chains" : "chains"),
                              group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
-    text.entry("tree",
-               fmt::format("{} bodies: {} of up to {} bodies, then {} of merges; depth {}; table "
-                           "version {}",
-                           tree.bodies, counted(tree.runs, "run", "runs"), tree.run_length,
-                           counted(tree.levels(), "level", "levels"), tree.depth(),
-                           dca::tree_table_version));
-    text.entry("units",
-               fmt::format("{} (one rank computes each; every rank computes the tree above them)",
-                           tree.units));
+    TreeCounts const counts = counts_of(group);
+    text.entry("tree", tree_text(group));
+    if (!group.is_branched())
+        text.entry(
+            "units",
+            fmt::format("{} (one rank computes each; every rank computes the tree above them)",
+                        tree.units));
     text.entry("bodies per rank", shares_text(shares));
     text.entry(
         "collectives",
@@ -94,10 +127,10 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"bodies", group.partition.bodies()},
                     {"directions", group.directions},
                     {"run_length", tree.run_length},
-                    {"runs", tree.runs},
-                    {"levels", tree.levels()},
-                    {"depth", tree.depth()},
-                    {"units", tree.units},
+                    {"runs", counts.runs},
+                    {"levels", counts.levels},
+                    {"depth", counts.depth},
+                    {"units", group.is_branched() ? 1 : tree.units},
                     {"bodies_of_ranks", shares},
                     {"collectives",
                      {{"matrices", rounds.matrices},

@@ -29,6 +29,14 @@ struct BeadPlaces {
     CATENA_HD_IN_PLACE bool linked(std::int64_t k) const { return k >= size || has_link[k] != 0; }
     /// True if the inboard link of bead k would end on the ground.
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
+    /// Bead on which the inboard link of bead k ends, unless it ends on the ground.
+    CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t k) const { return k - 1; }
+};
+/// BeadPlaces of branched chains.
+struct BranchedPlaces : BeadPlaces {
+    /// ChainGroup::inboard.
+    std::int64_t const* inboard_bead = nullptr;
+    CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t k) const { return inboard_bead[k]; }
 };
 /// Field types for the beads of a rank, in arrays of a Space. PartFields (bead_part.hpp) is the
 /// alternative in registers.
@@ -39,6 +47,10 @@ struct BeadFields {
     template <int D>
     using Found = View<D>;
     using Biases = DirectionsView;
+};
+/// BeadFields of branched chains.
+struct BranchedFields : BeadFields {
+    using Places = BranchedPlaces;
 };
 
 /// State and operations of beads. `Fields` chooses the storage, as BeadFields does; bead k counts
@@ -65,7 +77,8 @@ struct BeadChainsIn {
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t k) const { return places.to_ground(k); }
     /// Bead k from its inboard neighbour or from the anchor on the ground.
     CATENA_HD_IN_PLACE Vec3 link(std::int64_t k) const {
-        return position.load(k) - (to_ground(k) ? places.piece_of(k).anchor : position.load(k - 1));
+        return position.load(k) -
+               (to_ground(k) ? places.piece_of(k).anchor : position.load(places.inboard(k)));
     }
     /// Value of the field `of` (positions or velocities) at the bead that tip i is attached to;
     /// `at_ground` if that is the ground. Rings that are whole on this rank are read from the
@@ -144,7 +157,8 @@ struct BeadChainsIn {
     }
     /// Velocity bias of the link of bead k at the observed velocities.
     CATENA_HD_IN_PLACE double swing_of(std::int64_t k) const {
-        Vec3 const v = observed.load(k) - (to_ground(k) ? Vec3::zero() : observed.load(k - 1));
+        Vec3 const v =
+            observed.load(k) - (to_ground(k) ? Vec3::zero() : observed.load(places.inboard(k)));
         return velocity_bias(v, direction.load(k), length.at(k, 0));
     }
     /// Velocity bias of the link of tip i at the observed velocities.
@@ -165,15 +179,15 @@ struct BeadChainsIn {
         return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0;
     }
     /// True if error(k) is known to be at most `tolerance` for all beads [begin, end), which must
-    /// have links to the beads before them. It has no branch and no square root, so that compilers
+    /// have links to other beads. It has no branch and no square root, so that compilers
     /// vectorise it.
     bool closed_along(std::int64_t begin, std::int64_t end, double tolerance) const {
         // The factor covers the squares of relative errors, which the linearisation neglects.
         double const near = 0.999 * tolerance * (1 - tolerance);
         std::int64_t open = 0;
         for (std::int64_t k = begin; k < end; ++k) {
-            double const off = excess(position.load(k) - position.load(k - 1), length.at(k, 0),
-                                      half_over_length.at(k, 0));
+            double const off = excess(position.load(k) - position.load(places.inboard(k)),
+                                      length.at(k, 0), half_over_length.at(k, 0));
             open += std::fabs(off) <= near * length.at(k, 0) ? 0 : 1;
         }
         return open == 0;

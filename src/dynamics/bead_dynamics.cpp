@@ -1,6 +1,8 @@
 // Start, results and residual of bead chains on the host.
 #include "dynamics/bead_dynamics.hpp"
 
+#include "dynamics/branched_fixman.hpp"
+
 #include "joints/joint_models.hpp"
 
 namespace catena {
@@ -34,6 +36,18 @@ Vec3 BeadSolution::outboard_force(std::int64_t k) const {
     return group.is_last[k] ? Vec3::zero() : joint_force.load<1>(k + 1)[0] * direction.load(k + 1);
 }
 
+std::vector<BeadSolution::Outboard> BeadSolution::outboard_forces() const {
+    std::vector<Outboard> all(static_cast<std::size_t>(group.size));
+    auto const add = [](Outboard& to, Vec3 const& f) { to = {to.force + f, to.size + norm(f)}; };
+    for (std::int64_t k = 0; k < group.size; ++k) {
+        if (!group.is_branched())
+            add(all[static_cast<std::size_t>(k)], outboard_force(k));
+        else if (std::int64_t const p = group.inboard[static_cast<std::size_t>(k)]; p >= 0)
+            add(all[static_cast<std::size_t>(p)], joint_force.load<1>(k)[0] * direction.load(k));
+    }
+    return all;
+}
+
 BodyResults BeadSolution::results() const {
     BodyResults r;
     for (std::int64_t k = 0; k < group.size; ++k) {
@@ -53,12 +67,13 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
     /// Acceleration of bead k, and the sum of the sizes of the forces' contributions to it.
     Field<4> terms(group.size);
     double worst = 0;
+    std::vector<Outboard> const outboard = outboard_forces();
     for (std::int64_t k = 0; k < group.size; ++k) {
         Vec3 const a = acceleration.load(k), ma = group.mass.view().at(k, 0) * a, f = force.load(k);
-        Vec3 const inboard = joint_force.load<1>(k)[0] * direction.load(k),
-                   outboard = outboard_force(k);
-        double const size = norm(f) + norm(inboard) + norm(outboard);
-        worst = larger(worst, relative(norm(ma - f - inboard + outboard), norm(ma) + size));
+        Vec3 const inboard = joint_force.load<1>(k)[0] * direction.load(k);
+        auto const& [beyond, of_outboard] = outboard[static_cast<std::size_t>(k)];
+        double const size = norm(f) + norm(inboard) + of_outboard;
+        worst = larger(worst, relative(norm(ma - f - inboard + beyond), norm(ma) + size));
         terms.set(k, {{a[0], a[1], a[2], group.inverse_mass.view().at(k, 0) * size}});
     }
     exchange_from_inboard(communicator, group, terms.view());
@@ -78,12 +93,12 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
     }
     for (std::int64_t k = 0; k < group.size; ++k) {
         if (!is_rod(group.joint[k])) continue;
-        Vector<double, 4> const mine = terms[k], before = group.is_first[k]
-                                                              ? Vector<double, 4>::zero()
-                                                              : terms.view().load(k - 1);
+        bool const grounded = group.is_first[k] != 0;
+        std::int64_t const p = group.is_branched() ? group.inboard[k] : k - 1;
+        Vector<double, 4> const mine = terms[k], before = grounded ? Vector<double, 4>::zero()
+                                                                   : terms.view().load(p);
         Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
-        Vec3 const apart =
-            velocity.load(k) - (group.is_first[k] ? Vec3::zero() : velocity.load(k - 1));
+        Vec3 const apart = velocity.load(k) - (grounded ? Vec3::zero() : velocity.load(p));
         double const turning =
             velocity_bias(apart, direction.load(k), group.length.view().at(k, 0));
         worst = larger(worst, relative(dot(direction.load(k), across) + turning,
@@ -96,11 +111,19 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Sc
                                                      Executor const& executor,
                                                      Communicator const& communicator,
                                                      std::unique_ptr<ChainSolver> solver) {
-    auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, HostSpace(executor),
-                                                           communicator, std::move(solver));
+    HostSpace const space(executor);
+    if (group.is_branched()) {
+        auto beads = std::make_unique<BeadDynamics<HostSpace, BranchedFields>>(
+            group, scene, space, communicator, std::move(solver));
+        if (scene.dynamics.fixman)
+            beads->use(std::make_unique<BranchedFixman>(group, scene, executor));
+        return beads;
+    }
+    auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, space, communicator,
+                                                           std::move(solver));
     if (scene.dynamics.fixman)
-        beads->use(std::make_unique<FixmanPotential>(group, scene, executor, communicator,
-                                                     beads->solver()));
+        beads->use(
+            std::make_unique<LinkFixman>(group, scene, executor, communicator, beads->solver()));
     return beads;
 }
 

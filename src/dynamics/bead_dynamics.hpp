@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "dca/solvers/tree_solver.hpp"
@@ -25,8 +26,16 @@ struct BeadSolution {
     ConstView<3> force, acceleration, direction, tip_direction;
     ConstDirectionsView joint_force, tip_force;
     /// Force of the outboard link of bead k on the next bead or on the ground; minus the force on
-    /// bead k.
+    /// bead k. Precondition: the chains are not branched.
     Vec3 outboard_force(std::int64_t k) const;
+    /// Sum of the forces of a bead's outboard links on the beads outboard of it, and the sum of
+    /// their sizes.
+    struct Outboard {
+        Vec3 force = Vec3::zero();
+        double size = 0;
+    };
+    /// Returns the outboard forces of every bead.
+    std::vector<Outboard> outboard_forces() const;
     BodyResults results() const;
     /// Largest local backward residual over all ranks. `velocity`: velocities of the evaluation,
     /// with halo. Collective.
@@ -38,9 +47,12 @@ Field<1> halves_over(Field<1> const& length, Executor const&);
 
 /// State, arrays and operations of bead chains; DeviceBeads serves OpenMM on the same GPU,
 /// ClosingDrifts the closing of links.
-template <class Space>
+/// `Fields` is BranchedFields for branched chains, which only the host has.
+template <class Space, class Fields = BeadFields>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
+    using Chains = BeadChainsIn<Fields>;
+    static constexpr bool is_branched = std::is_same_v<Fields, BranchedFields>;
 
   public:
     /// `solver` must read and write views of the same Space.
@@ -194,7 +206,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     /// Precondition: update_configuration() has brought the neighbours' positions.
     double own_error() override {
-        BeadChains const c = chains();
+        Chains const c = chains();
         double const along = space_.largest(
             group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
         double const at_tips = space_.largest(
@@ -233,7 +245,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         settle_forces();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         ring_ends_.take(observed_.view(), observed_.view());
-        BeadChains const c = chains();
+        Chains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
         solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
@@ -337,7 +349,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     /// True if own_error() is known to be at most `tolerance`.
     bool closed_within(double tolerance) {
-        BeadChains const c = chains();
+        Chains const c = chains();
         for (dca::Piece const& p : group_.pieces)
             if (!(c.error(p.local) <= tolerance) ||
                 !c.closed_along(p.local + 1, p.local + p.count, tolerance))
@@ -347,12 +359,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         return true;
     }
     /// The parts of a step, executed loop by loop.
-    BeadStep<Way> parts() { return {chains(), {*this}}; }
+    BeadStep<Way, Fields> parts() { return {chains(), {*this}}; }
     /// Takes a step in one launch if the solver is a TreeSolver with this leaf that supports it.
     /// Returns true if it did.
     template <class Leaf>
     bool carry(ConstrainedStep const& step) {
-        if constexpr (Space::template has_blocks<Leaf::K>) {
+        if constexpr (Space::template has_blocks<Leaf::K> && !is_branched) {
             auto* const solver = dynamic_cast<dca::TreeSolver<Leaf, Space>*>(solver_.get());
             if (solver == nullptr || !solver->carries()) return false;
             held([&] {
@@ -391,8 +403,9 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     std::int64_t tips() const { return std::ssize(tip_); }
     /// Views of all arrays for loops over beads.
-    BeadChains chains() {
-        BeadChains c;
+    Chains chains() {
+        Chains c;
+        if constexpr (is_branched) c.places.inboard_bead = group_.inboard.data();
         c.places.size = group_.size;
         c.places.is_first = is_first_.data();
         c.places.has_link = has_link_.data();

@@ -34,6 +34,7 @@ struct PartPlaces {
     CATENA_HD_IN_PLACE LocalPiece const& piece_of(std::int64_t) const { return piece; }
     CATENA_HD_IN_PLACE bool linked(std::int64_t i) const { return i > 0 || !starts || to_anchor; }
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t i) const { return i == 0 && starts; }
+    CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t i) const { return i - 1; }
 };
 /// Counterpart of BeadFields for a part in registers.
 struct PartFields {

@@ -16,9 +16,8 @@ Vec3 turning(double strength, Vec3 const& s, Vec3 const& u) {
 
 }  // namespace
 
-FixmanPotential::FixmanPotential(ChainGroup const& group, Scene const& scene,
-                                 Executor const& executor, Communicator const& communicator,
-                                 ChainSolver& solver)
+LinkFixman::LinkFixman(ChainGroup const& group, Scene const& scene, Executor const& executor,
+                       Communicator const& communicator, ChainSolver& solver)
     : group_(group),
       executor_(executor),
       communicator_(communicator),
@@ -34,14 +33,14 @@ FixmanPotential::FixmanPotential(ChainGroup const& group, Scene const& scene,
       pull_(group.size),
       across_(group.size) {}
 
-Vec3 FixmanPotential::outboard(ConfigurationView const& at, std::int64_t k) const {
+Vec3 LinkFixman::outboard(ConfigurationView const& at, std::int64_t k) const {
     if (group_.has_jointed_tip(k)) return at.tip_direction.load(k);
     return group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : at.direction.load(k + 1);
 }
 
 /// Force -grad U_F = kT sum_k w_k grad(u_k . u_k+1), w_k = (T^-1)_k,k+1 / m_k. It rotates link k
 /// towards w_k-1 u_k-1 + w_k u_k+1.
-void FixmanPotential::add_forces(ConfigurationView const& at, View<3> force) {
+void LinkFixman::add_forces(ConfigurationView const& at, View<3> force) {
     solver_.invert({pivot_.view(), tip_pivot_.view(), beside_.view()});
     View<1> const beside = beside_.view();
     ConstView<1> const inverse_mass = group_.inverse_mass.view(), length = group_.length.view();
@@ -71,7 +70,7 @@ void FixmanPotential::add_forces(ConfigurationView const& at, View<3> force) {
     }
 }
 
-std::vector<double> FixmanPotential::energy() const {
+std::vector<double> LinkFixman::energy() const {
     std::vector<double> energy;
     for (std::int64_t k = 0; k < group_.size; ++k)
         energy.push_back(0.5 * kt_ * std::log(pivot_.view().at(k, 0)));

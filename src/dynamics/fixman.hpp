@@ -11,19 +11,28 @@
 
 namespace catena {
 
-/// Computes the force and the energy from entries of T^-1 (ChainSolver::invert()).
+/// Force and energy of the potential of one group of chains.
 class FixmanPotential {
+  public:
+    virtual ~FixmanPotential() = default;
+    /// Adds its force on each bead (W) at the configuration of the last assembled matrices.
+    /// Collective.
+    virtual void add_forces(ConfigurationView const&, View<3> force) = 0;
+    /// Energy by bead from the last add_forces(), kJ/mol; only the sum has a meaning.
+    virtual std::vector<double> energy() const = 0;
+};
+
+/// Computes both for unbranched chains from entries of T^-1 (ChainSolver::invert()).
+class LinkFixman final : public FixmanPotential {
   public:
     /// `solver` is the solver of the group's links, on the host. All arguments must outlive this
     /// object.
-    FixmanPotential(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                    ChainSolver& solver);
-    /// Adds its force on each bead (W) at the configuration of the last assembled matrices.
-    /// Collective.
-    void add_forces(ConfigurationView const&, View<3> force);
-    /// Energy by bead, kJ/mol: that of the link on its inboard side, from the last add_forces().
-    /// The energy of a tip's link is added to the last bead.
-    std::vector<double> energy() const;
+    LinkFixman(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+               ChainSolver& solver);
+    void add_forces(ConfigurationView const&, View<3> force) override;
+    /// The energy of a link is that of the bead on its outboard side; that of a tip's link is added
+    /// to the last bead.
+    std::vector<double> energy() const override;
 
   private:
     bool has_link(std::int64_t k) const {

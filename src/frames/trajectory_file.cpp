@@ -214,6 +214,29 @@ void TrajectoryFile::read_chains() {
         throw InputError("the trajectory's chains, masses and positions do not fit together", name_,
                          "run the scene again");
     if (has(root, "catena/members")) read_members();
+    if (has(root, "catena/parent")) read_branches();
+}
+
+void TrajectoryFile::read_branches() {
+    Place const root{series_->file.get(), name_, reading};
+    auto const parent = read_list<std::int64_t>(root, "catena/parent", H5T_NATIVE_INT64);
+    bool sound = parent.size() == topology_.mass.size();
+    for (std::size_t c = 0; sound && c < topology_.chains.size(); ++c) {
+        Topology::Chain& chain = topology_.chains[c];
+        bool branched = false;
+        for (std::int64_t k = 0; sound && k < chain.count; ++k) {
+            std::int64_t const on = parent[static_cast<std::size_t>(chain.first + k)];
+            sound = k == 0 ? on == -1 : on >= 0 && on < k;
+            branched = branched || on != k - 1;
+        }
+        if (branched)
+            chain.parent.assign(parent.begin() + chain.first,
+                                parent.begin() + chain.first + chain.count);
+    }
+    if (!sound)
+        throw InputError(
+            "the trajectory is damaged, the branches of its chains do not fit its sites", name_,
+            "run the scene again");
 }
 
 void TrajectoryFile::read_members() {

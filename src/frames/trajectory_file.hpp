@@ -56,6 +56,7 @@ class TrajectoryFile {
     void open();
     void read_chains();
     void read_members();
+    void read_branches();
     void read_residues();
 
     std::string name_;

@@ -1,8 +1,10 @@
 // A stack of points that finds neighbours by cells.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -36,22 +38,40 @@ class CellStack {
     }
     /// True if a point other than the last one is nearer than the width.
     bool crowded(Vec3 const& point) const {
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) {
-                    auto const head = heads_.find(key(point, x, y, z));
-                    if (head != heads_.end() && crowded_by(point, head->second)) return true;
-                }
-        return false;
+        return for_each_around(
+            point, [&](std::int64_t k) { return k + 1 != size() && norm(at(k) - point) < width_; });
+    }
+    /// Point k, in the order of pushing.
+    Vec3 const& at(std::int64_t k) const { return points_[static_cast<std::size_t>(k)]; }
+    /// Returns the distance of the nearest point among those nearer than the width, except point
+    /// `passed_over`; infinite if there is none. The search ends early once the result is at most
+    /// `least`; it then returns any such value.
+    double clearance(Vec3 const& place, std::int64_t passed_over, double least) const {
+        double found = std::numeric_limits<double>::infinity();
+        for_each_around(place, [&](std::int64_t k) {
+            double const distance = norm(at(k) - place);
+            if (k != passed_over && distance < width_) found = std::min(found, distance);
+            return found <= least;
+        });
+        return found;
     }
     /// Moves the points out, in the order of pushing.
     std::vector<Vec3> take() { return std::move(points_); }
 
   private:
-    bool crowded_by(Vec3 const& point, std::int64_t k) const {
-        for (; k >= 0; k = next_[static_cast<std::size_t>(k)])
-            if (k + 1 != size() && norm(points_[static_cast<std::size_t>(k)] - point) < width_)
-                return true;
+    /// Calls visit(k) for the points in the cells around a place until it returns true; returns
+    /// whether it did.
+    template <class Visit>
+    bool for_each_around(Vec3 const& place, Visit const& visit) const {
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    auto const head = heads_.find(key(place, x, y, z));
+                    if (head == heads_.end()) continue;
+                    for (std::int64_t k = head->second; k >= 0;
+                         k = next_[static_cast<std::size_t>(k)])
+                        if (visit(k)) return true;
+                }
         return false;
     }
     /// Key of the cell shifted by (x, y, z) cells from the point's cell: 21 bits per axis. Distant

@@ -11,9 +11,9 @@ namespace catena::scene {
 
 namespace {
 
-/// Inboard end of link k (from 0): the preceding bead, or the anchor.
-Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {
-    return k == 0 ? beads.anchor : beads.position[k - 1];
+/// Inboard end of link k (from 0): the bead on which bead k hangs, or the anchor.
+Vec3 inboard_end(BeadArrays const& beads, Parents parents, std::size_t k) {
+    return k == 0 ? beads.anchor : beads.position[inboard_of(parents, k)];
 }
 
 }  // namespace
@@ -53,15 +53,15 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
     return grown.take();
 }
 
-void take_lengths(BeadArrays& beads, Base base) {
+void take_lengths(BeadArrays& beads, Base base, Parents parents) {
     beads.length.assign(beads.size(), 0.0);
     for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k)
-        beads.length[k] = norm(beads.position[k] - inboard_of(beads, k));
+        beads.length[k] = norm(beads.position[k] - inboard_end(beads, parents, k));
 }
 
-std::int64_t coincident_bead(BeadArrays const& beads, Base base) {
+std::int64_t coincident_bead(BeadArrays const& beads, Base base, Parents parents) {
     for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k) {
-        Vec3 const from = inboard_of(beads, k);
+        Vec3 const from = inboard_end(beads, parents, k);
         // Positions are rounded to half a unit in their last place. A link shorter than a few of
         // these units has no direction.
         double const rounding =

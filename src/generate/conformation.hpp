@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/linear.hpp"
+#include "scene/branches.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::scene {
@@ -13,6 +14,9 @@ namespace catena::scene {
 /// Excluded distance of self-avoiding chains. Closer pairs of CALVADOS beads repel each other by
 /// several kT (mean diameters are 0.45 to 0.68 nm).
 inline constexpr double excluded_distance = 0.56;  // nm
+/// Largest excluded distance of self-avoiding chains, relative to their links: bond angles are then
+/// above 97 degrees.
+inline constexpr double widest_exclusion = 1.5;
 
 /// Planar zig-zag along x with bond angles of 120 degrees, from the origin. A straight chain is
 /// avoided: under forces along itself it would never bend without noise. Its link matrix is also
@@ -27,10 +31,10 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
 
 /// Sets each link's `length` to the distance of its ends (entry 0: to the anchor of a fixed base,
 /// else 0).
-void take_lengths(BeadArrays& beads, Base base);
+void take_lengths(BeadArrays& beads, Base base, Parents parents = {});
 
 /// Returns the first bead (from 0) that coincides with its inboard neighbour within rounding. Entry
 /// 0 is compared with the anchor of a fixed base. Returns -1 if no bead coincides.
-std::int64_t coincident_bead(BeadArrays const& beads, Base base);
+std::int64_t coincident_bead(BeadArrays const& beads, Base base, Parents parents = {});
 
 }  // namespace catena::scene

@@ -38,6 +38,9 @@ struct Crowd {
     std::vector<std::size_t> first;
     /// Walls of each chain; empty if no chain has any.
     std::vector<Walls> walls = {};
+    /// A single branched chain: the point on which each point hangs, -1 for the first. Empty for
+    /// unbranched chains. Only relax() takes branches.
+    std::vector<std::int64_t> parent = {};
 
     std::size_t chains() const { return first.size() - 1; }
     /// Number of beads that belong to chains; points from there on are fixed.
@@ -55,6 +58,8 @@ struct Crowd {
     }
     /// True if a link joins points i and j.
     bool linked(std::size_t i, std::size_t j) const {
+        if (!parent.empty())
+            return parent[std::max(i, j)] == static_cast<std::int64_t>(std::min(i, j));
         return i < j ? j - i == 1 && length[j] > 0 : i - j == 1 && length[i] > 0;
     }
 };

@@ -142,6 +142,10 @@ struct Walk {
     std::uint64_t seed = 0;
 };
 
+/// Beads of a walk without positions: masses and lengths of the links; entry 0 of a free base has
+/// no link.
+BeadArrays drawn_sizes(Walk const& walk);
+
 /// Walk with independent uniform directions.
 BeadArrays freely_jointed(Walk const& walk);
 

@@ -1,6 +1,8 @@
-// Implements the projection by a tridiagonal solver (Thomas algorithm), bordered for rings.
+// Implements the projection by a tridiagonal solver (Thomas algorithm), bordered for rings,
+// and by 3 x 3 blocks for trees.
 #include "generate/link_projection.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
@@ -20,12 +22,29 @@ double beside(LinkedUnits const& units, std::size_t between, Vec3 const& a, Vec3
     return -dot(a, b) * mobility_of(units, between);
 }
 
+/// Solves a symmetric positive definite system.
+Vec3 solved(Mat3 const& a, Vec3 const& right) {
+    Eigen::Matrix3d matrix;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) matrix(i, j) = a(i, j);
+    Eigen::Vector3d const x = matrix.llt().solve(Eigen::Vector3d(right[0], right[1], right[2]));
+    return {{x[0], x[1], x[2]}};
+}
+
 void shift(LinkedUnits const& units, std::size_t k, double lambda, Vec3 const& along) {
     if (double const mobility = mobility_of(units, k); mobility > 0)
         units.at[k] = plus_scaled(units.at[k], mobility * lambda, along);
 }
 
 }  // namespace
+
+std::vector<std::int64_t> unit_parents(Parents parents, Base base) {
+    std::vector<std::int64_t> units(parents.begin(), parents.end());
+    if (units.empty() || base == Base::free) return units;
+    for (std::int64_t& parent : units) ++parent;
+    units.insert(units.begin(), -1);
+    return units;
+}
 
 bool LinkProjection::project(LinkedUnits const& units) {
     if (units.at.size() < 2) return true;
@@ -53,6 +72,7 @@ LinkProjection::Link LinkProjection::link_between(LinkedUnits const& units, std:
 /// Computes the links' directions and errors and eliminates the system from its first row on.
 /// Returns false if no link needs a correction.
 bool LinkProjection::eliminate(LinkedUnits const& units) {
+    if (!units.parent.empty()) return eliminate_tree(units);
     std::size_t const n = units.at.size();
     along_.resize(n), factor_.resize(n), lambda_.resize(n);
     bool wrong = false;
@@ -75,6 +95,7 @@ bool LinkProjection::eliminate(LinkedUnits const& units) {
 
 /// Back substitution from the last row on; displaces the units.
 void LinkProjection::substitute(LinkedUnits const& units) {
+    if (!units.parent.empty()) return substitute_tree(units);
     std::size_t const n = units.at.size();
     if (units.closing > 0) close(units);
     for (std::size_t k = n - 1; k >= 1; --k) {
@@ -83,6 +104,42 @@ void LinkProjection::substitute(LinkedUnits const& units) {
         shift(units, k - 1, lambda_[k], along_[k]);
         shift(units, k, -lambda_[k], along_[k]);
     }
+}
+
+/// Eliminates a tree from its ends on. The displacement d of a unit under the force lambda u of its
+/// link obeys W d = lambda u + pull. Returns false if no link needs a correction.
+bool LinkProjection::eliminate_tree(LinkedUnits const& units) {
+    std::size_t const n = units.at.size();
+    along_.resize(n), factor_.resize(n), lambda_.resize(n);
+    weight_.assign(n, Mat3::zero()), pull_.assign(n, Vec3::zero());
+    for (std::size_t k = 0; k < n; ++k)
+        for (int i = 0; i < 3 && mobility_of(units, k) > 0; ++i)
+            weight_[k](i, i) = 1 / mobility_of(units, k);
+    bool wrong = false;
+    for (std::size_t k = n - 1; k >= 1; --k) {
+        auto const p = static_cast<std::size_t>(units.parent[k]);
+        Link const link = link_between(units, p, k, units.length[k]);
+        wrong = wrong || link.wrong;
+        Vec3 const &u = along_[k] = link.along, softness = solved(weight_[k], u);
+        factor_[k] = 1 / dot(u, softness);
+        lambda_[k] = link.error + dot(softness, pull_[k]);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) weight_[p](i, j) += factor_[k] * u[i] * u[j];
+        pull_[p] = plus_scaled(pull_[p], factor_[k] * lambda_[k], u);
+    }
+    return wrong;
+}
+
+/// Displaces the units of a tree, from the first one on.
+void LinkProjection::substitute_tree(LinkedUnits const& units) {
+    std::vector<Vec3> by(units.at.size(), Vec3::zero());
+    if (mobility_of(units, 0) > 0) by[0] = solved(weight_[0], pull_[0]);
+    for (std::size_t k = 1; k < by.size(); ++k) {
+        double const along = dot(along_[k], by[static_cast<std::size_t>(units.parent[k])]);
+        by[k] =
+            solved(weight_[k], plus_scaled(pull_[k], factor_[k] * (along - lambda_[k]), along_[k]));
+    }
+    for (std::size_t k = 0; k < by.size(); ++k) units.at[k] = units.at[k] + by[k];
 }
 
 /// True if the closing link of a ring has a length error.

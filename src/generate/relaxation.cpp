@@ -113,7 +113,12 @@ class Relaxation {
         for (std::size_t c = 0; c < crowd_.chains(); ++c) {
             std::size_t const begin = crowd_.first[c], beads = crowd_.first[c + 1] - begin;
             links_.project({std::span(crowd_.at).subspan(begin, beads),
-                            std::span(crowd_.length).subspan(begin, beads)});
+                            std::span(crowd_.length).subspan(begin, beads),
+                            {},
+                            {},
+                            {},
+                            0,
+                            crowd_.parent});
         }
     }
 

@@ -31,26 +31,24 @@ std::size_t constexpr least_ratios = 3;
 /// Distance in links below which beads that are not neighbours overlap.
 double constexpr overlap = 0.66;
 
-/// Inboard end of link k (from 0): the preceding bead, or the anchor.
-Vec3 inboard_of(BeadArrays const& beads, std::size_t k) {
-    return k == 0 ? beads.anchor : beads.position[k - 1];
+/// Inboard end of link k (from 0): the bead on which bead k hangs, or the anchor.
+Vec3 inboard_end(StartFit::Chain const& chain, std::size_t k) {
+    return k == 0 ? chain.beads.anchor : chain.beads.position[inboard_of(chain.parents, k)];
 }
 std::size_t first_link(Base base) { return base == Base::fixed ? 0 : 1; }
 
 std::vector<double> distances_of(StartFit::Chain const& chain) {
     std::vector<double> distances(chain.beads.size(), 0.0);
     for (std::size_t k = first_link(chain.base); k < chain.beads.size(); ++k)
-        distances[k] = norm(chain.beads.position[k] - inboard_of(chain.beads, k));
+        distances[k] = norm(chain.beads.position[k] - inboard_end(chain, k));
     return distances;
 }
 
-/// Names the two ends of link k.
-std::string ends_of(std::size_t k) {
-    return k == 0 ? "the anchor and bead 1" : fmt::format("beads {} and {}", k, k + 1);
-}
-/// Names the two ends of a link that may be the tip's, whose index is the number of beads.
+/// Names the two ends of link k, which may be the tip's: its index is the number of beads.
 std::string ends_of(StartFit::Chain const& chain, std::size_t k) {
-    if (k < chain.beads.size()) return ends_of(k);
+    if (k == 0) return "the anchor and bead 1";
+    if (k < chain.beads.size())
+        return fmt::format("beads {} and {}", inboard_of(chain.parents, k) + 1, k + 1);
     return chain.tip->ring ? fmt::format("beads {} and 1", k)
                            : fmt::format("bead {} and the tip's anchor", k);
 }
@@ -59,7 +57,7 @@ std::string ends_of(StartFit::Chain const& chain, std::size_t k) {
 double longest_uncut(StartFit::Chain const& chain, Vec3 const& edge) {
     double longest = 0;
     for (std::size_t k = first_link(chain.base); k < chain.beads.size(); ++k) {
-        Vec3 const link = chain.beads.position[k] - inboard_of(chain.beads, k);
+        Vec3 const link = chain.beads.position[k] - inboard_end(chain, k);
         bool cut = false;
         for (int i = 0; i < 3; ++i) cut = cut || std::abs(link[i]) > 0.5 * edge[i];
         if (!cut) longest = std::max(longest, norm(link));
@@ -85,6 +83,7 @@ class Units {
         }
         if (chain.tip && !chain.tip->ring)
             add(*chain.tip->anchor, Vec3::zero(), chain.tip->length, 0);
+        parent_ = unit_parents(chain.parents, chain.base);
         given_ = at_;
     }
 
@@ -92,8 +91,8 @@ class Units {
     /// units.
     bool project() {
         double const closing = chain_.tip && chain_.tip->ring ? chain_.tip->length : 0;
-        bool const closed =
-            LinkProjection().project({at_, length_, mobility_, inboard_, outboard_, closing});
+        bool const closed = LinkProjection().project(
+            {at_, length_, mobility_, inboard_, outboard_, closing, parent_});
         std::size_t const anchors = chain_.base == Base::fixed ? 1 : 0;
         for (std::size_t u = 0; u < first_.size(); ++u) {
             Vec3 const shift = at_[u + anchors] - given_[u + anchors];
@@ -114,7 +113,8 @@ class Units {
     StartFit::Chain const& chain_;
     std::vector<Vec3> at_, given_, inboard_, outboard_;
     std::vector<double> length_, mobility_;
-    std::vector<std::size_t> first_;  // first bead of each unit
+    std::vector<std::size_t> first_;    // first bead of each unit
+    std::vector<std::int64_t> parent_;  // as LinkedUnits::parent
 };
 
 }  // namespace
@@ -131,20 +131,21 @@ void StartFit::make_whole(Chain const& chain, bool as_given, std::optional<Vec3>
     Images const images(*box);
     double const usual = as_given ? longest_uncut(chain, images.edge()) : 0;
     std::vector<Vec3>& position = chain.beads.position;
-    /// Inboard end as the file has it.
-    Vec3 before = chain.base == Base::fixed ? chain.beads.anchor : position[0];
-    Vec3 shift = Vec3::zero();
+    std::vector<Vec3> const given = position;
+    std::vector<Vec3> shifts(position.size(), Vec3::zero());
     std::int64_t cut = 0;
     for (std::size_t k = first_link(chain.base); k < chain.beads.size(); ++k) {
-        Vec3 const link = position[k] - before, image = images.shortest(link);
-        before = position[k];
+        std::size_t const inboard = k == 0 ? 0 : inboard_of(chain.parents, k);
+        Vec3 const link = given[k] - (k == 0 ? chain.beads.anchor : given[inboard]),
+                   image = images.shortest(link);
+        Vec3& shift = shifts[k] = k == 0 ? Vec3::zero() : shifts[inboard];
         bool const is_cut = as_given ? norm(image) < norm(link) && norm(image) <= most_usual * usual
                                      : std::abs(norm(image) - chain.beads.length[k]) <
                                            std::abs(norm(link) - chain.beads.length[k]);
         if (is_cut) {
             shift = shift - images.whole_edges(link);
             if (cut_links_ + cut == 0)
-                first_cut_ = fmt::format("{} of chain `{}`", ends_of(k), shown(chain.name));
+                first_cut_ = fmt::format("{} of chain `{}`", ends_of(chain, k), shown(chain.name));
             ++cut;
         }
         for (int i = 0; i < 3; ++i)
@@ -171,8 +172,8 @@ void StartFit::project(Chain const& chain, Change const& worst) {
     std::vector<Vec3> const given = chain.beads.position;
     bool closed = Units(chain).project();
     for (std::size_t k = 1; k < given.size(); ++k)
-        closed = closed && dot(given[k] - given[k - 1],
-                               chain.beads.position[k] - chain.beads.position[k - 1]) > 0;
+        closed = closed && dot(given[k] - given[inboard_of(chain.parents, k)],
+                               chain.beads.position[k] - inboard_end(chain, k)) > 0;
     if (!closed)
         fail(from_,
              fmt::format("no small change of positions gives the links of chain `{}` their lengths",
@@ -226,9 +227,9 @@ void StartFit::refuse(Chain const& chain, Change const& worst,
         if (links++ == 0 || part > named.part) named = {part, before[k], length, k};
     }
     if (links == 0) return;
-    std::string what =
-        fmt::format("{} of chain `{}` are {:.4g} {} apart, their link is {:.4g} {} long",
-                    ends_of(named.link), shown(chain.name), named.from, unit(), named.to, unit());
+    std::string what = fmt::format(
+        "{} of chain `{}` are {:.4g} {} apart, their link is {:.4g} {} long",
+        ends_of(chain, named.link), shown(chain.name), named.from, unit(), named.to, unit());
     if (links > 1)
         what += fmt::format(", and {} would change by more than {:.0f} %",
                             links == 2 ? "another link" : fmt::format("{} other links", links - 1),
@@ -250,14 +251,20 @@ std::string StartFit::nearest_text(Chain const& chain) const {
     // The distance of second neighbours bounds the search, whose time grows with the number of
     // pairs. In a table in another unit all beads lie within one link.
     double bound = within;
-    std::size_t nearest = 0;
-    for (std::size_t k = 2; k < position.size(); ++k)
-        if (double const apart = norm(position[k] - position[k - 2]); apart < bound)
-            bound = apart, nearest = k;
+    std::size_t nearest = 0, second = 0;
+    for (std::size_t k = 2; k < position.size(); ++k) {
+        std::size_t const inboard = inboard_of(chain.parents, k);
+        if (inboard == 0) continue;
+        std::size_t const other = inboard_of(chain.parents, inboard);
+        if (double const apart = norm(position[k] - position[other]); apart < bound)
+            bound = apart, nearest = k, second = other;
+    }
     if (nearest > 0 && bound <= rounding * within)
-        return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", nearest - 1, nearest + 1,
+        return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", second + 1, nearest + 1,
                            bound, unit());
-    auto const counts = [](std::size_t i, std::size_t j) { return j > i + 1; };
+    auto const counts = [&](std::size_t i, std::size_t j) {
+        return i < j && inboard_of(chain.parents, j) != i;
+    };
     std::optional<NearPair> const near =
         nearest_pair(position, scene_.box, bound * (1 + rounding), counts);
     if (!near) return "";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bodies/domains.hpp"
+#include "scene/branches.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
 
@@ -63,6 +64,8 @@ class StartFit {
         std::vector<Domain> rigid = {};
         /// Link that closes the chain at its first bead or at the ground, or nullptr.
         TipJoint const* tip = nullptr;
+        /// Beads on which the beads hang; empty for an unbranched chain.
+        Parents parents = {};
     };
     /// Moves beads by whole edges of the periodic box until no link is cut by its sides; without a
     /// box nothing moves. Bead 1 stays (fixed base: the anchor). A link is cut if its nearest image

@@ -8,23 +8,6 @@ namespace catena::scene {
 
 namespace {
 
-/// Draws the lengths of the links and the masses of the beads; entry 0 of a free base has no link.
-BeadArrays drawn_sizes(Walk const& walk) {
-    BeadArrays beads;
-    auto const n = static_cast<std::size_t>(walk.beads);
-    beads.residue.assign(n, "UNK");
-    beads.velocity.assign(n, Vec3::zero());
-    beads.anchor = walk.anchor;
-    beads.mass.reserve(n), beads.length.reserve(n), beads.position.reserve(n);
-    for (std::int64_t k = 0; k < walk.beads; ++k) {
-        beads.mass.push_back(draw_size(walk.mass, walk.seed, k, SizeStream::mass));
-        bool const linked = k > 0 || walk.base == Base::fixed;
-        beads.length.push_back(linked ? draw_size(walk.length, walk.seed, k, SizeStream::length)
-                                      : 0);
-    }
-    return beads;
-}
-
 /// Returns a unit vector at the angle acos(`cosine`) to the unit vector `axis`, at `azimuth` about
 /// it.
 Vec3 tilted(Vec3 const& axis, double cosine, double azimuth) {
@@ -77,6 +60,22 @@ double bending_of(double ratio) {
         if (done) break;
     }
     return kappa;
+}
+
+BeadArrays drawn_sizes(Walk const& walk) {
+    BeadArrays beads;
+    auto const n = static_cast<std::size_t>(walk.beads);
+    beads.residue.assign(n, "UNK");
+    beads.velocity.assign(n, Vec3::zero());
+    beads.anchor = walk.anchor;
+    beads.mass.reserve(n), beads.length.reserve(n), beads.position.reserve(n);
+    for (std::int64_t k = 0; k < walk.beads; ++k) {
+        beads.mass.push_back(draw_size(walk.mass, walk.seed, k, SizeStream::mass));
+        bool const linked = k > 0 || walk.base == Base::fixed;
+        beads.length.push_back(linked ? draw_size(walk.length, walk.seed, k, SizeStream::length)
+                                      : 0);
+    }
+    return beads;
 }
 
 BeadArrays freely_jointed(Walk const& walk) {

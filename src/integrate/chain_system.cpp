@@ -12,6 +12,7 @@
 #include "error.hpp"
 #include "mpi/collectives.hpp"
 #include "mpi/thread_limit.hpp"
+#include "scene/branch_limits.hpp"
 
 namespace catena {
 namespace {
@@ -60,7 +61,7 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (std::string const why = scene.dynamics.why_host_alone(); uses_gpu(asked) && !why.empty())
+    if (std::string const why = scene::why_host_alone(scene); uses_gpu(asked) && !why.empty())
         throw InputError(why, "solver.backend: " + std::string(name_of(asked)),
                          "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
@@ -98,6 +99,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
       axes_(axes),
       backend_(choose_backend(scene, communicator)),
       implicit_step_(implicit_step) {
+    scene::refuse_unsupported_branches(scene, communicator.size());
     if (uses_gpu(backend_))
         refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator),
                     without_gpu);

@@ -27,9 +27,11 @@ void add_beads(BeadSystem& system, ChainSpec const& chain) {
     system.residue.insert(system.residue.end(), chain.beads.residue.begin(),
                           chain.beads.residue.end());
     auto const beads = static_cast<std::int64_t>(chain.size());
-    for (std::int64_t k = 1; k < beads; ++k)
-        system.links.push_back(
-            {first + k - 1, first + k, chain.beads.length[static_cast<std::size_t>(k)]});
+    for (std::int64_t k = 1; k < beads; ++k) {
+        auto const at = static_cast<std::size_t>(k);
+        std::int64_t const inboard = chain.is_branched() ? chain.parent[at] : k - 1;
+        system.links.push_back({first + inboard, first + k, chain.beads.length[at]});
+    }
     if (chain.is_ring()) system.links.push_back({first, first + beads - 1, chain.tip_joint.length});
 }
 

@@ -91,6 +91,13 @@ void put_text(Place const& place, std::string const& name, std::string_view text
         terminated.c_str());
 }
 
+void put_reference(Place const& place, std::string const& name, Place const& object) {
+    hobj_ref_t reference{};
+    check(H5Rcreate(&reference, object.id, ".", H5R_OBJECT, H5I_INVALID_HID), place.file,
+          place.doing);
+    put(place, name, H5T_STD_REF_OBJ, scalar(place), &reference);
+}
+
 void put_texts(Place const& place, std::string const& name, std::span<std::string const> texts) {
     auto const [length, packed] = pack(texts);
     hsize_t const count = texts.size();

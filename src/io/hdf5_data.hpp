@@ -30,6 +30,8 @@ void put_attribute(Place const&, std::string const& name, std::int64_t value);
 void put_text(Place const&, std::string const& name, std::string_view text);
 /// Writes a one-dimensional attribute of strings, padded to one length.
 void put_texts(Place const&, std::string const& name, std::span<std::string const> texts);
+/// Writes a scalar attribute that refers to an object of the same file.
+void put_reference(Place const&, std::string const& name, Place const& object);
 /// Writes the attribute `unit` with variable length in UTF-8, because MDAnalysis refuses
 /// fixed-length units.
 void put_unit(Place const&, std::string const& unit);

@@ -139,8 +139,10 @@ std::vector<SiteNames::Bond> SiteNames::bonds() const {
     for (std::size_t begin = 0, end = 0; begin < runs_.size(); begin = end) {
         std::size_t const chain = chains_[runs_[begin].member];
         while (end < runs_.size() && chains_[runs_[end].member] == chain) ++end;
-        add_bonds(begin, end, bonds);
         Topology::Chain const& of = topology_.chains[chain];
+        if (of.parent.empty()) add_bonds(begin, end, bonds);
+        for (std::size_t k = 1; k < of.parent.size(); ++k)
+            bonds.emplace_back(of.first + of.parent[k], of.first + static_cast<std::int64_t>(k));
         if (of.ring && of.count > 2) bonds.emplace_back(of.first + of.count - 1, of.first);
     }
     return bonds;

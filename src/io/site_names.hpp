@@ -45,7 +45,8 @@ class SiteNames {
     std::size_t chain(std::size_t member) const { return chains_[member]; }
     /// True if no site after the run belongs to its member.
     bool ends_member(std::size_t run) const { return last_run_[runs_[run].member] == run; }
-    /// Bonds between neighbours along members, and between the ends of rings.
+    /// Bonds between neighbours along members or along branches, and between the ends of rings. A
+    /// bond of a branched chain begins at the site on which the other hangs.
     std::vector<Bond> bonds() const;
 
   private:

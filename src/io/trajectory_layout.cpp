@@ -4,6 +4,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 
@@ -51,6 +52,7 @@ class Builder {
         std::vector<std::int64_t> id(contents_.sites);
         std::iota(id.begin(), id.end(), 1);
         put_array(at(sites), "id", id);
+        if (is_branched()) add_connectivity(sites);
         add_own_group();
         return std::move(series_);
     }
@@ -84,6 +86,7 @@ class Builder {
         put_text(at(own), "length_unit", units_.length);
         describe_chains(at(own));
         if (!topology_.members.empty()) describe_members(at(own));
+        if (is_branched()) describe_branches(at(own));
         if (contents_.bodies > 0) {
             Group const element = add_element(at(own), "orientation", {contents_.bodies, 4}, "",
                                               series_.orientation, "w x y z, body axes to W");
@@ -143,6 +146,33 @@ class Builder {
         put_array(at(chains), "beads", beads);
         put_array(at(chains), "ring", ring);
         put_array(at(chains), "name", name);
+    }
+
+    bool is_branched() const {
+        return std::any_of(topology_.chains.begin(), topology_.chains.end(),
+                           [](Topology::Chain const& chain) { return !chain.parent.empty(); });
+    }
+
+    /// Writes /connectivity/bonds of H5MD.
+    void add_connectivity(Group const& sites) {
+        std::vector<std::int64_t> ids;
+        for (auto const& [from, to] : SiteNames(topology_).bonds())
+            ids.insert(ids.end(), {from + 1, to + 1});
+        Group const connectivity = make_group(root_, "connectivity");
+        std::array<hsize_t, 2> const shape{ids.size() / 2, 2};
+        Dataset const bonds =
+            put_array(at(connectivity), "bonds", H5T_NATIVE_INT64, ids.data(), shape);
+        put_reference(at(bonds), "particles_group", at(sites));
+    }
+
+    /// Writes /catena/parent.
+    void describe_branches(Place const& own) {
+        std::vector<std::int64_t> parent;
+        for (Topology::Chain const& chain : topology_.chains)
+            for (std::int64_t k = 0; k < chain.count; ++k)
+                parent.push_back(chain.parent.empty() ? k - 1
+                                                      : chain.parent[static_cast<std::size_t>(k)]);
+        put_array(own, "parent", parent);
     }
 
     /// Writes /catena/members.

@@ -140,7 +140,9 @@ constexpr Key bead_keys[] = {
     velocity,
     residue,
     {"joint", "`{type: link}`", "required but for bead 1", "",
-     "This link connects the bead to the one before it.", "joint: {type: link}"},
+     "This link connects the bead to the one it hangs on.", "joint: {type: link}"},
+    {"parent", "integer, 1 to the bead's number less 1", "the bead before", "",
+     "The bead hangs on the bead with this number, counted from 1; bead 1 takes 0.", "parent: 3"},
 };
 
 constexpr Key bead_link_keys[] = {

@@ -24,6 +24,24 @@ constexpr Key radius{
     "radius: 0.01"};
 constexpr Key turn{"turn",     "number", "0.3", "radians", "Every joint stands at this angle.",
                    "turn: 0.1"};
+constexpr Key excluded{
+    "excluded",
+    "number >= 0",
+    "the mean `length`; with a `model` its bead diameter",
+    "length",
+    "Beads that no link joins start at least this far apart, where there is room.",
+    "excluded: 0.9"};
+constexpr Key tree_mass{
+    "mass", drawn, "1, or that of the `model`", "mass", "A bead has this mass.", "mass: 12"};
+constexpr Key tree_length{
+    "length",      drawn, "required without a `model`", "length", "A link is this long.",
+    "length: 0.97"};
+constexpr Key tree_residue{"residue",
+                           "text",
+                           "`UNK`, or the only one of the `model`",
+                           "",
+                           "Topology and force field know all beads by this name.",
+                           "residue: KGB"};
 constexpr Key only_mass{"mass",    "number > 0", "1", "mass", "A rod or bead has this mass.",
                         "mass: 12"};
 
@@ -48,6 +66,14 @@ constexpr Key generator_keys[] = {
     {"worm_like", "map", "none", "",
      "Beads on links are drawn from the exact discrete worm-like chain.",
      "worm_like: {bodies: 200, persistence: 50, length: 3.4}"},
+    {"star", "map", "none", "", "Arms of beads on links hang on bead 1.",
+     "star: {arms: 6, arm_length: 50, length: 0.97}"},
+    {"brush", "map", "none", "", "Side chains of beads on links hang on a backbone of such beads.",
+     "brush: {backbone: 200, side_length: 20, length: 0.97}"},
+    {"dendrimer", "map", "none", "", "Beads on links form a regular tree around bead 1.",
+     "dendrimer: {generations: 5, spacer: 2, length: 0.97}"},
+    {"random_tree", "map", "none", "", "Each bead hangs on a random earlier one by a link.",
+     "random_tree: {beads: 1000, length: 0.97}"},
 };
 
 constexpr Key random_keys[] = {
@@ -141,6 +167,58 @@ constexpr Key worm_like_keys[] = {
     seed,
 };
 
+constexpr Key star_keys[] = {
+    {"arms", "integer >= 1", "required", "", "This number of arms hangs on bead 1.", "arms: 6"},
+    {"arm_length", "integer >= 1", "required", "",
+     "An arm has this number of beads, numbered outward, arm by arm.", "arm_length: 50"},
+    tree_length,
+    tree_mass,
+    tree_residue,
+    excluded,
+    seed,
+};
+
+constexpr Key brush_keys[] = {
+    {"backbone", "integer >= 1", "required", "",
+     "The backbone has this number of beads, which come first.", "backbone: 200"},
+    {"side_length", "integer >= 1", "required", "",
+     "A side chain has this number of beads, numbered outward, side chain by side chain.",
+     "side_length: 20"},
+    {"every", "integer >= 1", "1", "",
+     "Side chains hang on every so many beads of the backbone, from bead 1 on.", "every: 2"},
+    tree_length,
+    tree_mass,
+    tree_residue,
+    excluded,
+    seed,
+};
+
+constexpr Key dendrimer_keys[] = {
+    {"generations", "integer >= 1", "required", "",
+     "From bead 1 to an end of the tree lie this number of segments.", "generations: 4"},
+    {"functionality", "integer >= 3", "3", "",
+     "This number of segments meets at bead 1 and at each branch point.", "functionality: 4"},
+    {"spacer", "integer >= 0", "0", "",
+     "A segment has this number of beads between two branch points.", "spacer: 3"},
+    tree_length,
+    tree_mass,
+    tree_residue,
+    excluded,
+    seed,
+};
+
+constexpr Key random_tree_keys[] = {
+    {"beads", "integer >= 1", "required", "", "The chain has this number of beads.", "beads: 100"},
+    {"max_children", "integer >= 1", "2", "",
+     "A bead carries at most this number of others; all that carry fewer are equally likely.",
+     "max_children: 3"},
+    tree_length,
+    tree_mass,
+    tree_residue,
+    excluded,
+    seed,
+};
+
 constexpr Key distribution_keys[] = {
     {"uniform", "[least, most]", "none", "",
      "All numbers between the two bounds are equally likely.", "uniform: [0.5, 1.5]"},
@@ -168,6 +246,12 @@ constinit KeyMap const freely_jointed{"generator.freely_jointed",
                                       "chains[i].generator.freely_jointed", freely_jointed_keys};
 constinit KeyMap const worm_like{"generator.worm_like", "chains[i].generator.worm_like",
                                  worm_like_keys};
+constinit KeyMap const star{"generator.star", "chains[i].generator.star", star_keys};
+constinit KeyMap const brush{"generator.brush", "chains[i].generator.brush", brush_keys};
+constinit KeyMap const dendrimer{"generator.dendrimer", "chains[i].generator.dendrimer",
+                                 dendrimer_keys};
+constinit KeyMap const random_tree{"generator.random_tree", "chains[i].generator.random_tree",
+                                   random_tree_keys};
 constinit KeyMap const distribution{
     "distribution", "mass, length, radius or inertia of a generator", distribution_keys};
 

@@ -28,7 +28,7 @@ extern KeyMap const hdf5, datasets;
 
 /// The kinds of generators, the parameters of each, and the distributions of sizes and masses.
 extern KeyMap const generator, random, pendulum, coil, dill, elastic_rod, polygon, freely_jointed,
-    worm_like, distribution;
+    worm_like, star, brush, dendrimer, random_tree, distribution;
 
 /// Returns all maps above, those of one page of the manual after each other.
 std::span<KeyMap const* const> all();

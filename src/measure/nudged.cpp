@@ -5,6 +5,7 @@
 
 #include "generate/random.hpp"
 #include "oracle/algebra.hpp"
+#include "scene/branches.hpp"
 
 namespace catena {
 namespace {
@@ -89,19 +90,22 @@ void nudge_beads(Nudged& n, Exact const& exact, scene::Draws draws, double size)
     std::size_t const beads = n.chain.size();
     n.loads.bead_forces.resize(beads, Vec3::zero());
     n.loads.link_gaps.assign(exact.tension.size() + (n.chain.tip == Tip::jointed ? 1 : 0), 0.0);
-    double before = 0;
+    std::vector<double> outboard(beads, 0.0), acceleration(beads, 0.0);
+    for (std::size_t k = 1; k < beads; ++k)
+        outboard[scene::inboard_of(n.chain.parent, k)] +=
+            std::abs(static_cast<double>(exact.tension[k]));
+    outboard.back() += norm(in_double(exact.tip_force).force);
     for (std::size_t k = 0; k < beads; ++k) {
         double const inboard = std::abs(static_cast<double>(exact.tension[k]));
-        double const outboard = k + 1 < beads ? std::abs(static_cast<double>(exact.tension[k + 1]))
-                                              : norm(in_double(exact.tip_force).force);
         Vec3& force = n.loads.bead_forces[k];
-        double const terms = inboard + outboard + norm(force),
-                     acceleration = terms / n.chain.beads.mass[k];
+        double const terms = inboard + outboard[k] + norm(force);
+        acceleration[k] = terms / n.chain.beads.mass[k];
+        double const before = k == 0 ? 0 : acceleration[scene::inboard_of(n.chain.parent, k)];
         force = force + draws.in_cube(size * terms);
-        n.loads.link_gaps[k] = draws.between(-size, size) * (before + acceleration);
-        before = acceleration;
+        n.loads.link_gaps[k] = draws.between(-size, size) * (before + acceleration[k]);
     }
-    if (n.chain.tip == Tip::jointed) n.loads.link_gaps.back() = draws.between(-size, size) * before;
+    if (n.chain.tip == Tip::jointed)
+        n.loads.link_gaps.back() = draws.between(-size, size) * acceleration.back();
 }
 
 /// Perturbs the wrench on each body and the closing of each joint.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "joints/joint_models.hpp"
+#include "scene/branches.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -26,9 +27,10 @@ Vec3 link_end(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const
 Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
                 std::size_t body) {
     if (k == 0) return chain.is_linked() ? chain.linked.anchor : chain.beads.anchor;
-    return chain.is_linked() ? at.position[body - 1] + to_matrix(at.orientation[body - 1]) *
-                                                           chain.linked.outboard[k - 1]
-                             : at.position[body - 1];
+    std::size_t const before = scene::inboard_of(chain.parent, k), inboard = body - k + before;
+    return chain.is_linked() ? at.position[inboard] + to_matrix(at.orientation[inboard]) *
+                                                          chain.linked.outboard[before]
+                             : at.position[inboard];
 }
 
 /// Returns the tension of link k. The force along the link is -tension towards the outboard bead.

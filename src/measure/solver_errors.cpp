@@ -7,6 +7,7 @@
 
 #include "error.hpp"
 #include "measure/oracle_accelerations.hpp"
+#include "scene/branch_limits.hpp"
 #include "scene/freedom.hpp"
 #include "start/start_velocities.hpp"
 
@@ -88,6 +89,8 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
             if (kind == Handles::articulated && !takes_articulated) continue;
+            if (!study.points.empty() && kind != Handles::projected && scene::has_branches(scene))
+                continue;
             Scene variant = scene;
             variant.solver.backend = backend;
             variant.solver.handles = kind;

@@ -75,9 +75,10 @@ struct ShapeColumn {
 };
 constexpr ShapeColumn unweighted = {"unweighted_radius_of_gyration",
                                     &Shape::unweighted_radius_of_gyration};
+constexpr char const* end_to_end = "end_to_end_distance";
 constexpr ShapeColumn shape_columns[] = {{"radius_of_gyration", &Shape::radius_of_gyration},
                                          unweighted,
-                                         {"end_to_end_distance", &Shape::end_to_end_distance}};
+                                         {end_to_end, &Shape::end_to_end_distance}};
 
 /// True if the scene selects a group of columns; an empty selection excludes the unweighted radius.
 bool asks_for(Scene const& scene, std::string const& name) {
@@ -112,14 +113,21 @@ Observables::Observables(Scene const& scene, Topology const& topology,
     if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
     for (auto const& [shape, value] : shape_columns) {
         if (!wants(shape)) continue;
-        if (scene.chains.size() == 1)
-            columns_.push_back(shape + length);
-        else if (scene.chains.size() <= most_single_chains_)
-            for (ChainSpec const& chain : scene.chains)
-                columns_.push_back(shape + ("_" + chain.name) + length);
-        else
+        std::size_t const chains = scene.chains.size();
+        bool any = false;
+        for (std::size_t c = 0; c < chains; ++c) {
+            if (!has_shape(shape, c)) continue;
+            any = true;
+            if (chains > most_single_chains_) break;
+            columns_.push_back(shape + (chains == 1 ? "" : "_" + scene.chains[c].name) + length);
+        }
+        if (any && chains > most_single_chains_)
             columns_.push_back(std::string("mean_") + shape + length);
     }
+}
+
+bool Observables::has_shape(std::string const& name, std::size_t chain) const {
+    return name != end_to_end || !scene_.chains[chain].is_branched();
 }
 
 /// A mechanism in SI units moves far beyond thermal motion. Its temperature tells nothing unless a
@@ -167,14 +175,14 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms,
     if (wants("constraint_error")) row.push_back(constraint_error);
     for (auto const& [name, value] : shape_columns) {
         if (!wants(name)) continue;
-        double sum = 0;
-        for (Shape const& shape : shapes_) {
-            double const one = (shape.*value)();
-            sum += one;
+        double sum = 0, counted = 0;
+        for (std::size_t c = 0; c < shapes_.size(); ++c) {
+            if (!has_shape(name, c)) continue;
+            double const one = (shapes_[c].*value)();
+            sum += one, ++counted;
             if (shapes_.size() <= most_single_chains_) row.push_back(one);
         }
-        if (shapes_.size() > most_single_chains_)
-            row.push_back(sum / static_cast<double>(shapes_.size()));
+        if (shapes_.size() > most_single_chains_ && counted > 0) row.push_back(sum / counted);
     }
     return row;
 }

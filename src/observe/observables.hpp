@@ -63,7 +63,8 @@ class Observables {
   public:
     /// `terms`: names of the potential energy terms. output.observables of the scene selects the
     /// groups of columns. An empty selection means all groups, except the unweighted radius of
-    /// gyration, and the temperature with `units: si` without a thermostat.
+    /// gyration, and the temperature with `units: si` without a thermostat. Branched chains have no
+    /// end-to-end distance.
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
     /// Returns names with units, e.g. "total_energy [kJ/mol]".
     std::vector<std::string> const& columns() const { return columns_; }
@@ -79,6 +80,8 @@ class Observables {
   private:
     /// True if the group of columns is selected and defined.
     bool wants(std::string const& name) const;
+    /// True if a chain has the shape, whose name is that of a column.
+    bool has_shape(std::string const& name, std::size_t chain) const;
     bool has_temperature_;
     Scene const& scene_;
     Topology const& topology_;

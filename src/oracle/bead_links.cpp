@@ -2,6 +2,7 @@
 #include "error.hpp"
 #include "joints/joint_models.hpp"
 #include "oracle/joint.hpp"
+#include "scene/branches.hpp"
 
 namespace catena::oracle {
 
@@ -27,8 +28,10 @@ std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
     auto const x = [&](std::size_t k) { return lift<S>(b.position[k]); };
     auto const v = [&](std::size_t k) { return lift<S>(b.velocity[k]); };
     if (chain.base == Base::fixed) links[0] = bead_link(x(0) - lift<S>(b.anchor), v(0));
-    for (std::size_t k = 1; k < b.size(); ++k)
-        links[k] = bead_link(x(k) - x(k - 1), v(k) - v(k - 1));
+    for (std::size_t k = 1; k < b.size(); ++k) {
+        std::size_t const p = scene::inboard_of(chain.parent, k);
+        links[k] = bead_link(x(k) - x(p), v(k) - v(p));
+    }
     std::size_t const last = b.size() - 1;
     if (chain.is_ring())
         links.push_back(bead_link(x(0) - x(last), v(0) - v(last)));

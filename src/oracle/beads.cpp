@@ -2,6 +2,7 @@
 
 #include "error.hpp"
 #include "oracle/joint.hpp"
+#include "scene/branches.hpp"
 
 // Articulated masses of point beads on rigid links. A bead and everything outboard of it respond to
 // the force lambda u of the inboard link by M a + p = lambda u. The link exerts -lambda u on the
@@ -43,15 +44,17 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
         beads[k].compliance = dot(u, softness);
         beads[k].drive = dot(softness, beads[k].bias);
         if (k == 0) break;
-        beads[k - 1].mass = plus_outer(beads[k - 1].mass, S(S(1) / beads[k].compliance), u, u);
-        beads[k - 1].bias = plus_scaled(
-            beads[k - 1].bias, S((links[k].closure + beads[k].drive) / beads[k].compliance), u);
+        ArticulatedBead<S>& inboard = beads[scene::inboard_of(chain.parent, k)];
+        inboard.mass = plus_outer(inboard.mass, S(S(1) / beads[k].compliance), u, u);
+        inboard.bias = plus_scaled(inboard.bias,
+                                   S((links[k].closure + beads[k].drive) / beads[k].compliance), u);
     }
     // Outward pass: link force, then acceleration, from the inboard bead's acceleration.
     OracleResult<S> result;
-    V3<S> a = V3<S>::zero();
     for (std::size_t k = 0; k < n; ++k) {
         V3<S> const& u = links[k].direction;
+        V3<S> a =
+            k == 0 ? V3<S>::zero() : result.com_acceleration[scene::inboard_of(chain.parent, k)];
         S const lambda =
             k < first ? S(0)
                       : S((links[k].closure + beads[k].drive + dot(u, a)) / beads[k].compliance);

@@ -5,6 +5,7 @@
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
 #include "oracle/linked.hpp"
+#include "scene/branches.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -60,15 +61,19 @@ Dense<S> bead_link_matrix(ChainSpec const& chain) {
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
     auto const count = static_cast<Index>(links.size() - first);
     Dense<S> t = Dense<S>::Zero(count, count);
+    /// Links at each bead; the sign is 1 at the outboard end of the link.
+    std::vector<std::vector<std::pair<std::size_t, int>>> at(n);
     for (std::size_t k = first; k < links.size(); ++k) {
-        auto const i = static_cast<Index>(k - first);
-        if (k > 0) t(i, i) += S(1) / S(chain.beads.mass[k - 1]);
-        if (k == n) continue;
-        S const mobility = S(1) / S(chain.beads.mass[k]);
-        t(i, i) += mobility;
-        if (i + 1 < count)
-            t(i, i + 1) = t(i + 1, i) = -mobility * dot(links[k].direction, links[k + 1].direction);
+        if (k > 0) at[k == n ? n - 1 : scene::inboard_of(chain.parent, k)].emplace_back(k, -1);
+        if (k < n) at[k].emplace_back(k, 1);
     }
+    for (std::size_t bead = 0; bead < n; ++bead)
+        for (auto const& [a, sign_a] : at[bead])
+            for (auto const& [b, sign_b] : at[bead]) {
+                S const cosine = a == b ? S(1) : dot(links[a].direction, links[b].direction);
+                t(static_cast<Index>(a - first), static_cast<Index>(b - first)) +=
+                    S(sign_a * sign_b) * (cosine / S(chain.beads.mass[bead]));
+            }
     return t;
 }
 

@@ -1,5 +1,6 @@
 #include "oracle/linked.hpp"
 #include "oracle/system.hpp"
+#include "scene/branches.hpp"
 
 // Dense systems of chains on links: Newton's (and Euler's) equations of every body, and the second
 // time derivative of every link's length.
@@ -22,7 +23,12 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
         BeadLink<S> const& link = links[static_cast<std::size_t>(k)];
         s.right[row] = link.closure;
         if (k < n) s.add_constraint(3 * k, row, S(1), link.direction);
-        if (k > 0) s.add_constraint(3 * k - 3, row, S(-1), link.direction);
+        // The tip's link begins at the last bead.
+        Index const inboard =
+            k == n ? n - 1
+                   : static_cast<Index>(
+                         k == 0 ? 0 : scene::inboard_of(chain.parent, static_cast<std::size_t>(k)));
+        if (k > 0) s.add_constraint(3 * inboard, row, S(-1), link.direction);
         if (k == n && chain.is_ring()) s.add_constraint(0, row, S(1), link.direction);
     }
     Column<S> const x = solve(s);

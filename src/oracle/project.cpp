@@ -4,6 +4,7 @@
 #include "joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/linked.hpp"
+#include "scene/branches.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -74,7 +75,9 @@ void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& 
     for (std::size_t k = first; k < links.size(); ++k) {
         if (k < chain.size()) add_end(k, k, std::size_t{0}, 1.0);
         if (k == chain.size() && chain.is_ring()) add_end(k, std::size_t{0}, std::size_t{0}, 1.0);
-        if (k > 0) add_end(k, k - 1, std::size_t{1}, -1.0);
+        if (k > 0)
+            add_end(k, k < chain.size() ? scene::inboard_of(chain.parent, k) : k - 1,
+                    std::size_t{1}, -1.0);
     }
 }
 

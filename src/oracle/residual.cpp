@@ -5,6 +5,7 @@
 #include "joints/joint_models.hpp"
 #include "oracle/eigen.hpp"
 #include "oracle/inverse.hpp"
+#include "scene/branches.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -111,17 +112,20 @@ std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads
                                       std::vector<V3<S>>& left) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
     std::vector<Balance<S>> all;
-    V3<S> outboard = -pushed;
+    /// Forces that each bead exerts on the beads outboard of it.
+    std::vector<std::vector<V3<S>>> outboard(chain.size());
+    outboard.back().push_back(-pushed);
     left.clear();
     for (std::size_t k = chain.size(); k-- > 0;) {
         Balance<S> force;
         force.add(S(chain.beads.mass[k]) * acceleration[k]);
         force.add(-bead_force<S>(chain, loads, k));
-        force.add(outboard);
+        for (V3<S> const& each : outboard[k]) force.add(each);
         if (k == 0 && chain.is_ring()) force.add(pushed);
         V3<S> const& u = links[k].direction;
-        outboard = dot(u, force.sum) * u;
-        left.push_back(force.sum - outboard);
+        V3<S> const inboard = dot(u, force.sum) * u;
+        if (k > 0) outboard[scene::inboard_of(chain.parent, k)].push_back(inboard);
+        left.push_back(force.sum - inboard);
         all.push_back(force);
     }
     return all;

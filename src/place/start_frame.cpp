@@ -221,12 +221,13 @@ class FrameStart {
                std::optional<Vec3> const& box) {
         Beads beads = beads_at(chain, positions);
         bool const link = chain.is_beads() && chain.tip == Tip::jointed;
-        StartFit::Chain const at{chain.name, beads.arrays, chain.base, beads.rigid,
-                                 link ? &chain.tip_joint : nullptr};
+        StartFit::Chain const at{
+            chain.name,  beads.arrays, chain.base, beads.rigid, link ? &chain.tip_joint : nullptr,
+            chain.parent};
         fit.make_whole(at, false, box);
-        if (std::int64_t const k = coincident_bead(beads.arrays, chain.base); k >= 0)
+        if (std::int64_t const k = coincident_bead(beads.arrays, chain.base, chain.parent); k >= 0)
             fail_at(*fields_.find("from"), "bead", k + 1,
-                    fmt::format("bead {} of chain `{}` coincides with the one before it", k + 1,
+                    fmt::format("bead {} of chain `{}` coincides with the one it hangs on", k + 1,
                                 shown(chain.name)),
                     "give another frame");
         std::vector<Superposition> const laid = lay_domains(chain, beads);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scene/alike_chains.hpp"
+#include "scene/branches.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena::command {
@@ -45,8 +46,8 @@ Table chain_table(Scene const& scene) {
         std::string const name =
             count == 1 ? first.name : first.name + " .. " + scene.chains[i + count - 1].name;
         table.add({name, std::to_string(count), std::to_string(first.size()),
-                   scene::contents_of(first), base_name(first), scene::tip_name(first),
-                   kind_name(first)});
+                   std::string(first.is_branched() ? "branched " : "") + scene::contents_of(first),
+                   base_name(first), scene::tip_name(first), kind_name(first)});
     }
     return table;
 }
@@ -59,6 +60,9 @@ Json chains_json(Scene const& scene) {
                         {"kind", kind_name(chain)},
                         {"base", base_name(chain)}});
         if (chain.tip != Tip::free) list.back()["tip"] = scene::tip_name(chain);
+        if (chain.is_branched())
+            list.back()["branches"] = {{"ends", scene::ends_of(chain)},
+                                       {"height", scene::height_of(chain)}};
     }
     return list;
 }

@@ -6,8 +6,9 @@
 #include "joints/joint_models.hpp"
 #include "math/with_number.hpp"
 #include "plan/describe.hpp"
+#include "scene/branch_limits.hpp"
 #include "scene/freedom.hpp"
-#include "tree/tree.hpp"
+#include "tree/branches.hpp"
 
 namespace catena::command {
 namespace {
@@ -94,6 +95,19 @@ double numbers_of(DynamicsSpec const& dynamics, bool stands) {
     return numbers;
 }
 
+/// Returns the bytes of a branched chain's solver: segments and joints, beads with side paths, and
+/// the numbers and lists of its paths.
+double bytes_of_branches(ChainSpec const& chain, bool pairwise, SolverSizes const& size) {
+    dca::Branches const branches(chain.parent, pairwise);
+    double constexpr of_place = 2 * sizeof(std::int64_t) + sizeof(std::int32_t) + 2,
+                     of_fork = sizeof(Sym3) + 2 * sizeof(Vec3) + sizeof(dca::Fork),
+                     of_path = sizeof(dca::Run) + sizeof(dca::Root) + sizeof(Vec3);
+    return static_cast<double>(branches.slots) * (size.segment + sizeof(dca::Merge)) +
+           static_cast<double>(branches.joints) * (size.joint + of_place) +
+           static_cast<double>(branches.forks.size()) * of_fork +
+           static_cast<double>(branches.paths()) * of_path;
+}
+
 /// Returns the bytes of a chain's scene data, which every rank holds.
 double scene_bytes(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
@@ -108,7 +122,8 @@ double scene_bytes(ChainSpec const& chain) {
                                           2.0 * static_cast<double>(b.drag.size()));
     double const linked = sizeof(double) * (1 + 6 + 6 + 4 + 3 + 6 + 1);
     double const carried = sizeof(double) * 4 + sizeof(std::string);
-    return bead * static_cast<double>(chain.beads.size()) + body * static_cast<double>(b.size()) +
+    return sizeof(std::int64_t) * static_cast<double>(chain.parent.size()) +
+           bead * static_cast<double>(chain.beads.size()) + body * static_cast<double>(b.size()) +
            loads + more + linked * static_cast<double>(chain.linked.size()) +
            carried * static_cast<double>(b.carried.size() + chain.linked.carried.size());
 }
@@ -137,6 +152,10 @@ Memory memory_of(Scene const& scene, int ranks) {
             chain.is_beads() ? bead_numbers : body_numbers + numbers_of(scene.dynamics, stands);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
+        if (scene::branches(chain)) {
+            m.solver += bytes_of_branches(chain, pairwise, size);
+            continue;
+        }
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
         m.solver +=
             static_cast<double>(tree.runs) * side_by_side(scene, chain, size, k, runs) / ranks;

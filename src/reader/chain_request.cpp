@@ -186,21 +186,23 @@ std::string ChainRequest::name() const {
     return named ? text(*named) : fmt::format("chain-{}", index + 1);
 }
 
-void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
-                         Node const& from) const {
+void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from,
+                         Parents parents) const {
     beads.position = positions;
     double const spread =
-        system ? system->largest_spread(particle, static_cast<std::int64_t>(beads.size())) : 0;
+        system ? system->largest_spread(particle, static_cast<std::int64_t>(beads.size()), parents)
+               : 0;
     double const most =
         part != nullptr && part->mass_centres ? largest_soft_change : largest_change_of(spread);
     StartFit fit(scene, from, "give positions of this model, or write `links: as_given`", most,
                  system ? largest_relaxed_change : 0);
-    StartFit::Chain const chain{part != nullptr ? part->name : name(), beads, base, rigid};
+    StartFit::Chain const chain{
+        part != nullptr ? part->name : name(), beads, base, rigid, nullptr, parents};
     // The chain is made whole first, so that distances of neighbours are those along its links.
     fit.make_whole(chain, links_as_given());
-    refuse_coincident(beads, from);
+    refuse_coincident(beads, from, parents);
     if (links_as_given()) {
-        take_lengths(beads, base);
+        take_lengths(beads, base, parents);
     } else {
         // Links within rigid domains keep the distances of the file.
         for (Domain const& domain : rigid)
@@ -212,10 +214,13 @@ void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions,
     fit.note();
 }
 
-void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from) const {
-    std::int64_t const k = coincident_bead(beads, base);
+void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from,
+                                     Parents parents) const {
+    std::int64_t const k = coincident_bead(beads, base, parents);
     if (k < 0) return;
-    std::string const other = k == 0 ? "the anchor" : fmt::format("bead {}", k);
+    std::string const other =
+        k == 0 ? "the anchor"
+               : fmt::format("bead {}", inboard_of(parents, static_cast<std::size_t>(k)) + 1);
     fail_at(from, "bead", k + 1,
             fmt::format("bead {} coincides with {}: their link has no direction", k + 1, other),
             "move one of them");

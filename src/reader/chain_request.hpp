@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bodies/domains.hpp"
+#include "scene/branches.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
@@ -73,9 +74,10 @@ struct ChainRequest {
     /// Places the beads at `positions`, read from `from`, whole across the periodic box. Then fits
     /// positions to lengths or, with `links: as_given`, lengths to positions (StartFit). Rigid
     /// domains keep their shape, and with `sites: com` the links at their ends keep their lengths.
-    void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
+    void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from,
+               Parents parents = {}) const;
     /// Throws InputError if two neighbours coincide.
-    void refuse_coincident(BeadArrays const& beads, Node const& from) const;
+    void refuse_coincident(BeadArrays const& beads, Node const& from, Parents parents = {}) const;
     /// Returns the positions of the sites of a structure. Notes residues that differ from the
     /// chain's.
     std::vector<Vec3> from_structure(std::string const& path, Node const& file) const;

@@ -75,12 +75,14 @@ void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& p
         "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
-/// Reads beads written one by one. Links have the written lengths, or those of the positions if no
-/// length is written or with `links: as_given`. Returns true if velocities are written.
-bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays& beads) {
+/// Reads beads written one by one into a chain. Links have the written lengths, or those of the
+/// positions if no length is written or with `links: as_given`. Returns true if velocities are
+/// written.
+bool explicit_beads(ChainRequest const& request, Node const& source, ChainSpec& to) {
     request.allow("beads written one by one", {"links", "anchor"});
     ExplicitBeads made = read_beads(source, request.base);
-    beads = std::move(made.beads);
+    BeadArrays& beads = to.beads = std::move(made.beads);
+    std::vector<std::int64_t> const& parent = to.parent = std::move(made.parent);
     beads.anchor = request.anchor();
     std::vector<double> const written = beads.length;
     std::ptrdiff_t const first = request.base == Base::fixed ? 0 : 1;
@@ -88,10 +90,10 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     bool const as_given =
         request.links_as_given() || std::any_of(written.begin() + first, written.end(), is_open);
     StartFit fit(request.scene, source, "give positions that fit the links, or leave `length` out");
-    StartFit::Chain const chain{request.name(), beads, request.base};
+    StartFit::Chain const chain{request.name(), beads, request.base, {}, nullptr, parent};
     fit.make_whole(chain, as_given);
-    request.refuse_coincident(beads, source);
-    take_lengths(beads, request.base);
+    request.refuse_coincident(beads, source, parent);
+    take_lengths(beads, request.base, parent);
     bool any = false;
     for (std::size_t k = 0; k < written.size() && !request.links_as_given(); ++k)
         if (!is_open(written[k])) beads.length[k] = written[k], any = true;
@@ -265,7 +267,7 @@ class ChainReader {
             chain.bodies =
                 read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
         } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
-            velocities = explicit_beads(request_, source_, chain.beads);
+            velocities = explicit_beads(request_, source_, chain);
         } else if (kind == BodyList::linked) {
             request_.allow("bodies on links", {"anchor"});
             ExplicitLinked made =
@@ -281,6 +283,8 @@ class ChainReader {
             chain.bodies = std::move(made.bodies);
             if (made.planar) planar = made.planar;
         }
+        // No bead of a branched chain is known to be the end of a protein.
+        if (chain.is_branched()) request_.protein_ends = {false, false};
         join_tip(chain, tip_, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/branches.hpp"
 #include "structure/calvados2.hpp"
 #include "structure/residue_names.hpp"
 #include "systems/charges.hpp"
@@ -90,7 +91,8 @@ FastestBead fastest_bead(Scene const& scene) {
     FastestBead fastest;
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 1; k < chain.beads.size(); ++k) {
-            double const mass = std::min(chain.beads.mass[k - 1], chain.beads.mass[k]),
+            std::size_t const inboard = inboard_of(chain.parent, k);
+            double const mass = std::min(chain.beads.mass[inboard], chain.beads.mass[k]),
                          length = chain.beads.length[k],
                          scale = std::sqrt(mass / shown_mass) * length / shown_link;
             if (scale < fastest.scale) fastest = {mass, length, scale};

@@ -18,7 +18,7 @@ Node const& single_entry(Node const& node) {
     if (node.items.size() != 1)
         fail(node, fmt::format("the chain has {} generators", node.items.size()),
              "give one of `random`, `pendulum`, `coil`, `dill`, `elastic_rod`, `polygon`, "
-             "`freely_jointed`, `worm_like`");
+             "`freely_jointed`, `worm_like`, `star`, `brush`, `dendrimer`, `random_tree`");
     return *kinds.find(node.items[0].key);
 }
 
@@ -53,7 +53,7 @@ bool stands_fixed(Node const& generator) {
     return generator.find("pendulum") || generator.find("coil") || generator.find("dill");
 }
 
-GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
+GeneratorEntry::GeneratorEntry(ChainRequest& request, Node const& node)
     : request_(request), entry_(single_entry(node)) {
     if (entry_.key == "random")
         read_random();
@@ -63,6 +63,8 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node)
         read_polygon();
     else if (entry_.key == "elastic_rod")
         read_elastic_rod();
+    else if (makes_branches(entry_.key))
+        read_branches();
     else
         read_rods();
 }
@@ -143,6 +145,13 @@ void GeneratorEntry::read_walk() {
     walk.anchor = request_.anchor();
 }
 
+// Stars, brushes, dendrimers and random trees; `positions` may replace their growth.
+void GeneratorEntry::read_branches() {
+    branched_.emplace(request_, entry_);
+    size_ = branched_->size();
+    beads_ = true;
+}
+
 // Regular polygons, to be closed by a tip.
 void GeneratorEntry::read_polygon() {
     Fields const fields(entry_, keys::polygon);
@@ -210,6 +219,8 @@ void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
         chain.bodies = entry_.key == "pendulum" ? pendulum(rods)
                        : entry_.key == "coil"   ? coil(rods, winding_)
                                                 : dill(rods, winding_);
+    } else if (branched_) {
+        branched_->make(chain, seed(copy));
     } else if (elastic_) {
         ElasticRod rod = *elastic_;
         rod.seed = seed(copy);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "generate/generators.hpp"
+#include "reader/branched_entry.hpp"
 #include "reader/chain_request.hpp"
 
 namespace catena::scene {
@@ -11,7 +12,7 @@ namespace catena::scene {
 class GeneratorEntry {
   public:
     /// Reads the entry. Throws InputError for a generator that is unknown or incomplete.
-    GeneratorEntry(ChainRequest const& request, Node const& node);
+    GeneratorEntry(ChainRequest& request, Node const& node);
 
     /// Number of bodies or beads per chain.
     std::int64_t size() const { return size_; }
@@ -29,20 +30,22 @@ class GeneratorEntry {
     void read_random();
     void read_rods();
     void read_walk();
+    void read_branches();
     void read_polygon();
     void read_elastic_rod();
     /// Seed of a copy: that of the entry's own `seed`, or of the scene.
     std::uint64_t seed(std::int64_t copy) const;
 
-    ChainRequest const& request_;
+    ChainRequest& request_;
     /// Map of the generator's parameters.
     Node const& entry_;
     std::int64_t size_ = 0;
-    std::optional<RandomChain> random_;  // exactly one of the five is set
+    std::optional<RandomChain> random_;  // exactly one of the six is set
     std::optional<Rods> rods_;
     std::optional<Walk> walk_;
     std::optional<Polygon> polygon_;
     std::optional<ElasticRod> elastic_;
+    std::optional<BranchedEntry> branched_;
     /// Shape of a coil or dill.
     Winding winding_;
     double persistence_ = 0;  // persistence length of a worm-like walk

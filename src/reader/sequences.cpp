@@ -73,9 +73,6 @@ Residues residues_named(PdbSites const& from, Node const& source, ResidueTable c
     return residues;
 }
 
-/// Largest excluded distance of a self-avoiding walk, relative to its links.
-double constexpr widest_exclusion = 1.5;
-
 /// Sets masses and names of the beads.
 void set_residues(BeadArrays& beads, Residues const& residues, ChainRequest const& request) {
     auto const n = static_cast<std::int64_t>(residues.size());

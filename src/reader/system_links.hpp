@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reader/chains.hpp"
+#include "scene/branches.hpp"
 #include "systems/import.hpp"
 
 namespace catena::scene {
@@ -26,7 +27,7 @@ class WrittenSystem {
     double length(std::int64_t particle) const;
     /// Largest thermal spread, relative to the length, of the springs between neighbours in a
     /// chain. The chain has `beads` beads from particle `first` on.
-    double largest_spread(std::int64_t first, std::int64_t beads) const;
+    double largest_spread(std::int64_t first, std::int64_t beads, Parents parents = {}) const;
     /// True if chains of `beads` beads that begin with particles a and b have the same link
     /// lengths.
     bool alike(std::int64_t a, std::int64_t b, std::int64_t beads) const;
@@ -35,6 +36,9 @@ class WrittenSystem {
     void judge(std::vector<Draft> const& drafts, Scene&) const;
 
   private:
+    /// What joins two particles; it holds nothing if they are not joined.
+    Joining between(std::int64_t a, std::int64_t b) const;
+
     /// Links between consecutive particles of the System.
     SystemLinks links_;
     /// Temperature of the thermal spread, K.

@@ -256,6 +256,10 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, ChainRequest const& request)
     Node const& written = *request.node.find("tip");
     bool const ring = tip.joint.ring;
     Node const& node = tip.bare ? written : *written.find(ring ? "ring" : "joint");
+    if (chain.is_branched())
+        fail(node, "a tip that is not free on a branched chain",
+             "leave `tip` out: branched chains have neither rings nor links to the ground but at "
+             "bead 1");
     bool const links = chain.is_beads() || chain.is_linked(), link = is_rod(tip.joint.type);
     if (links && tip.bare && !ring)
         fail(node, fmt::format("a fixed tip of {}", kind_of(chain)),

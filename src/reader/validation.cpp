@@ -276,6 +276,22 @@ void check_temperature(Node const& root, OutputSpec const& output, DynamicsSpec 
              "leave it out");
 }
 
+/// Refuses the end-to-end distance by name where no chain has two ends.
+void check_end_to_end(Node const& root, OutputSpec const& output,
+                      std::vector<Draft> const& drafts) {
+    auto const asked =
+        std::find(output.observables.begin(), output.observables.end(), "end_to_end_distance");
+    if (asked == output.observables.end()) return;
+    if (std::any_of(drafts.begin(), drafts.end(),
+                    [](Draft const& d) { return !d.chain.is_branched(); }))
+        return;
+    fail(root.find("output")
+             ->find("observables")
+             ->items[static_cast<std::size_t>(asked - output.observables.begin())],
+         "branched chains have no end-to-end distance",
+         "leave it out; `radius_of_gyration` is their size");
+}
+
 }  // namespace
 
 void check_together(Node const& root, Scene const& scene, std::vector<Draft> const& drafts) {
@@ -292,6 +308,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         check_thermal(root, scene.dynamics, draft);
     }
     check_temperature(root, scene.output, scene.dynamics, drafts);
+    check_end_to_end(root, scene.output, drafts);
     if (scene.forces.openmm) check_openmm(root, scene, drafts);
 }
 

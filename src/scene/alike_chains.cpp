@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t most_named = 6;  // runs of alike chains that a sentence names
 
 bool alike(ChainSpec const& a, ChainSpec const& b) {
-    return a.size() == b.size() && a.base == b.base &&
+    return a.size() == b.size() && a.parent == b.parent && a.base == b.base &&
            std::string_view(contents_of(a)) == contents_of(b) && a.tip == b.tip &&
            (a.tip == Tip::free || tip_name(a) == tip_name(b)) && handle_kind(a) == handle_kind(b);
 }
@@ -28,8 +28,9 @@ std::string contents_text(ChainSpec const& chain) {
 std::string text_of(Scene const& scene, AlikeChains const& run) {
     ChainSpec const &first = scene.chains[run.first],
                     &last = scene.chains[run.first + run.count - 1];
-    std::string text = fmt::format("{} {} of {} {}", run.count, run.count == 1 ? "chain" : "chains",
-                                   first.size(), contents_text(first));
+    std::string text =
+        fmt::format("{} {}{} of {} {}", run.count, first.is_branched() ? "branched " : "",
+                    run.count == 1 ? "chain" : "chains", first.size(), contents_text(first));
     if (first.is_ring()) text += " in a ring";
     return text + (run.count == 1 ? fmt::format(" ({})", first.name)
                                   : fmt::format(" ({} to {})", first.name, last.name));

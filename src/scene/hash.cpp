@@ -143,6 +143,7 @@ void add_chain(Fingerprint& print, ChainSpec const& chain) {
     add_carried(print, b.carried);
     add_linked(print, chain.linked);
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
+    add_named(print, "parents", chain.is_branched(), chain.parent);
 }
 
 }  // namespace
@@ -191,6 +192,7 @@ void add_kind(Fingerprint& print, ChainSpec const& chain) {
     print.add_each(l.mass, l.inertia, l.inboard, l.outboard, l.length, l.anchor);
     add_carried(print, chain.carried());
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
+    add_named(print, "parents", chain.is_branched(), chain.parent);
 }
 
 void add_loads(Fingerprint& print, BodyArrays const& b) {

@@ -11,7 +11,7 @@
 namespace catena {
 
 MovingChain::MovingChain(ChainSpec& chain, std::size_t first_bead)
-    : chain_(chain), first_(first_bead) {
+    : chain_(chain), first_(first_bead), parents_(scene::unit_parents(chain.parent, chain.base)) {
     stand_.at = chain.is_beads() ? chain.beads.position : chain.linked.position;
     for (auto const& q : chain.linked.orientation)
         stand_.rotation.push_back({q[0], q[1], q[2], q[3]});
@@ -117,7 +117,7 @@ bool MovingChain::close() {
     bool const jointed = chain_.tip == Tip::jointed;
     if (jointed && !tip.ring) add(*tip.anchor, tip.length, 0, none, none);
     bool const closed = links_.project(
-        {at, length, mobility, inboard, outboard, jointed && tip.ring ? tip.length : 0});
+        {at, length, mobility, inboard, outboard, jointed && tip.ring ? tip.length : 0, parents_});
     std::copy_n(at.begin() + (fixed ? 1 : 0), units(), stand_.at.begin());
     return closed;
 }

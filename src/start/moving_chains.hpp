@@ -58,6 +58,7 @@ class MovingChain {
 
     ChainSpec& chain_;
     std::size_t first_;
+    std::vector<std::int64_t> parents_;  // LinkedUnits::parent
     Stand stand_;
     std::vector<double> weight_, squares_,
         widest_;  // per unit: beads, sum of their squared distances from the centre, largest

@@ -109,13 +109,15 @@ std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& be
     return worst;
 }
 
-/// Returns the middle bead of the first three consecutive beads of a chain that lie on a line,
-/// within the resolution of positions.
+/// Returns the middle bead of the first three consecutive beads of a chain that are joined and lie
+/// on a line, within the resolution of positions.
 std::optional<std::size_t> middle_of_straight(BeadSystem const& beads,
                                               std::vector<Vec3> const& positions) {
+    Joined const joined(beads);
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
         for (std::int64_t k = beads.chain_offset[c] + 1; k + 1 < beads.chain_offset[c + 1]; ++k) {
             auto const b = static_cast<std::size_t>(k);
+            if (!joined(b - 1, b) || !joined(b, b + 1)) continue;  // as in branched chains
             Vec3 const in = positions[b] - positions[b - 1], out = positions[b + 1] - positions[b];
             if (norm(cross(in, out)) <= straight_within * norm(in) * norm(out)) return b;
         }

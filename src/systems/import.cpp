@@ -156,6 +156,9 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     links.to_previous.resize(static_cast<std::size_t>(system->getNumParticles()));
     for (int p = 1; p < system->getNumParticles(); ++p)
         links.to_previous[static_cast<std::size_t>(p)] = joinings.to_previous(p);
+    joinings.for_each_farther([&](int low, int high, Joining const& joining) {
+        links.farther.emplace(std::pair(low, high), joining);
+    });
     return links;
 }
 

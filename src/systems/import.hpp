@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "math/linear.hpp"
@@ -52,12 +54,15 @@ struct ImportedSystem {
     std::optional<Screening> screening;
 };
 
-/// The links of a System between consecutive particles, for chains that the scene writes itself.
+/// The links of a System, for chains that the scene writes itself.
 struct SystemLinks {
     /// True if at least one force uses the box.
     bool periodic = false;
     /// For each particle: the bonds and constraints to the preceding one.
     std::vector<Joining> to_previous;
+    /// Harmonic bonds and constraints between particles that are not consecutive, by the lower and
+    /// the higher particle.
+    std::map<std::pair<std::int64_t, std::int64_t>, Joining> farther;
     /// Sentences on what was left out.
     std::vector<std::string> notes;
     /// Screening of the System's charges, if that is recognised.

@@ -104,10 +104,9 @@ void Joinings::refuse_gap(int p, int first, std::string const& at) const {
                                      "particle {} before it: the molecule is branched",
                                      p, partner, p - 1),
                          at,
-                         "Catena does not simulate trees yet: leave side beads out, or end the "
-                         "chain between particles that are not joined (TER in "
-                         "the "
-                         "topology), so that the other bonds stay springs");
+                         "write its beads in the scene, each with its `parent`, or end the chain "
+                         "between particles that are not joined (TER in the topology), so that the "
+                         "other bonds stay springs");
     throw InputError(
         fmt::format("particles {} and {} (from 0) are joined by no harmonic bond and no constraint",
                     p - 1, p),

@@ -25,6 +25,13 @@ class Joinings {
     Joining to_previous(int p) const { return between(p - 1, p); }
     /// Joining of any two particles.
     Joining between(int a, int b) const;
+    /// Calls visit(lower, higher, joining) for all joined particles that are not consecutive.
+    template <class Visit>
+    void for_each_farther(Visit const& visit) const {
+        for (int high = 0; high < static_cast<int>(to_lower_.size()); ++high)
+            for (auto const& [low, joining] : to_lower_[static_cast<std::size_t>(high)])
+                if (high - low > 1) visit(low, high, joining);
+    }
     /// True if a CustomBondForce alone joins particle p and the preceding one.
     bool bond_stays_force(int p) const {
         return custom_to_previous_[static_cast<std::size_t>(p)] >= 0 && !to_previous(p).holds();

@@ -104,6 +104,16 @@ TEST(BranchedMolecules, RunAsPiecesWhoseOtherBondsStaySprings) {
     EXPECT_NEAR(run.energy("HarmonicAngleForce"), 8.174290, 1e-4);
 }
 
+// Written bead by bead with `parent`: the bonds become links, the angles are those of the same
+// start.
+TEST(BranchedMolecules, RunWholeIfTheSceneSaysOnWhichBeadEachHangs) {
+    std::string const notes = notes_of("13-two-beads-a-unit/branched.yaml");
+    EXPECT_TRUE(holds(notes, "19 harmonic bonds along rigid links left out")) << notes;
+    Finished const run("13-two-beads-a-unit/branched.yaml");
+    EXPECT_EQ(run.ended.status, 0) << run.ended.err;
+    EXPECT_NEAR(run.energy("HarmonicAngleForce"), 8.174290, 1e-4);
+}
+
 // sqrt(kT/k) = sqrt(2.436 / 20) nm = 0.349 nm, 92 % of 0.38 nm.
 TEST(Springs, ThatAreSoftAreNoLinks) {
     expect_refused(check("20-springs-that-are-no-links/soft.yaml"), 2,

@@ -129,6 +129,32 @@ TEST(Model, IsCopiedWithItsChains) {
     EXPECT_EQ(second.bodies(), 5);
 }
 
+/// Branched beads in memory are those of the same scene in YAML, and own forces see them in order.
+TEST(Model, TakesBranchesOfBeads) {
+    Chain star = beads(4);
+    star.beads[2].parent = 1;
+    star.beads[3].parent = 1;
+    Model const memory = model_of(star, "rattle", 0.001);
+    Model const text = Model::from_text(
+        "units: si\n"
+        "chains: [{name: beads, bodies: [{mass: 1, position: [0, 0, 0], velocity: [0, 0, 0.1]}, "
+        "{mass: 1.1, position: [0.8, 0.6, 0], velocity: [0, 0, -0.1], joint: {type: link}}, "
+        "{mass: 1.2, position: [1.6, 0, 0], velocity: [0, 0, -0.1], parent: 1, joint: {type: "
+        "link}}, {mass: 1.3, position: [2.4000000000000004, 0.6, 0], velocity: [0, 0, 0.1], "
+        "parent: 1, joint: {type: link}}]}]\n"
+        "dynamics: {integrator: rattle, step: 0.001}\n");
+    SolverResult const a = Solver(memory).solve(), b = Solver(text).solve();
+    EXPECT_TRUE(a.valid());
+    EXPECT_EQ(a.joint_acceleration, b.joint_acceleration);
+    std::vector<Triple> seen;
+    Simulation const simulation(memory, [&](auto const& at, auto const&) {
+        seen.assign(at.position.begin(), at.position.end());
+        return std::nullopt;
+    });
+    ASSERT_EQ(seen.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(seen[k][0], star.beads[k].position[0], 1e-14);
+}
+
 TEST(Model, TakesEveryMemberOfAJoint) {
     Joint joint = revolute();
     joint.q = {0.2};

@@ -63,6 +63,24 @@ TEST(Topology, PdbColumnsAreThoseOfTheFormat) {
     EXPECT_EQ(lines_of(folder / "topology.pdb", "CONECT")[0], "CONECT    1    5    2");
 }
 
+/// A star of six arms: the bonds go to the bead on which each hangs, four to a record.
+TEST(Topology, BondsFollowBranches) {
+    TemporaryFolder const folder;
+    Frame frame;
+    Topology topology = rows_of_beads(2, 7, frame);
+    topology.chains[1].parent = {-1, 0, 0, 0, 0, 0, 0};
+    write_topology(folder.path(), topology, frame);
+    auto const bonds = lines_of(folder / "topology.pdb", "CONECT");
+    ASSERT_EQ(bonds.size(), 15U);
+    EXPECT_EQ(bonds[6], "CONECT    7    6");
+    EXPECT_EQ(bonds[7], "CONECT    8    9   10   11   12");
+    EXPECT_EQ(bonds[8], "CONECT    8   13   14");
+    EXPECT_EQ(bonds[14], "CONECT   14    8");
+    std::string const psf = read_text_file(folder / "topology.psf");
+    EXPECT_NE(psf.find("      12 !NBOND: bonds\n"), std::string::npos);
+    EXPECT_NE(psf.find("       8      14\n"), std::string::npos);
+}
+
 TEST(Topology, NamesAndNumbersWrapAsThePdbAllows) {
     TemporaryFolder const folder;
     Frame frame;

@@ -26,27 +26,6 @@ struct Name<Quad> {
     static constexpr char const* value = "113 bits";
 };
 
-/// A decimal number ("-0.00123", "1.5e-12") in any scalar, to a few units in the last place.
-template <class S>
-S parse(std::string const& text) {
-    S value(0);
-    int exponent = 0;
-    bool behind_point = false;
-    std::size_t i = text[0] == '-' ? 1 : 0;
-    for (; i < text.size() && text[i] != 'e'; ++i) {
-        if (text[i] == '.') {
-            behind_point = true;
-            continue;
-        }
-        value = value * S(10) + S(text[i] - '0');
-        exponent -= behind_point ? 1 : 0;
-    }
-    if (i < text.size()) exponent += std::stoi(text.substr(i + 1));
-    S power(1);
-    for (int k = 0; k < std::abs(exponent); ++k) power = power * S(10);
-    value = exponent < 0 ? S(value / power) : S(value * power);
-    return text[0] == '-' ? S(-value) : value;
-}
 /// Digits as vectors along axis `component`.
 template <class S>
 std::vector<Vector<S, 3>> from_digits(std::vector<std::string> const& digits, int component) {

@@ -199,7 +199,11 @@ std::map<std::string, std::vector<Place>> places_of_generators() {
         {"elastic_rod", "{bodies: 3, mass: 1, length: 1, radius: 1, bend: 9, twist: 9}"},
         {"polygon", "{bodies: 3, joint: spherical}"},
         {"freely_jointed", "{beads: 3, length: 1}"},
-        {"worm_like", "{bodies: 3, length: 1, persistence: 9}"}};
+        {"worm_like", "{bodies: 3, length: 1, persistence: 9}"},
+        {"star", "{arms: 3, arm_length: 2, length: 1}"},
+        {"brush", "{backbone: 3, side_length: 2, length: 1}"},
+        {"dendrimer", "{generations: 2, length: 1}"},
+        {"random_tree", "{beads: 9, length: 1}"}};
     std::map<std::string, std::vector<Place>> places{
         {"generator", {{generated("{}"), "chains[0].generator."}}},
         {"distribution",

@@ -7,6 +7,8 @@ namespace dca {
 // Host solvers that are compiled in other files of this folder.
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Executor const&,
                                               Communicator const&);
+std::unique_ptr<ChainSolver> make_branched_solver(ChainGroup const&, Executor const&,
+                                                  Communicator const&);
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor const&,
                                                   Communicator const&);
 std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor const&,
@@ -19,6 +21,7 @@ std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor 
                                               Communicator const& communicator) {
     if (group.handles == Handles::articulated)
         return dca::make_articulated_solver(group, executor, communicator);
+    if (group.is_branched()) return dca::make_branched_solver(group, executor, communicator);
     if (group.beads) return dca::make_bead_solver(group, executor, communicator);
     if (group.axes == Axes::world) return dca::make_absolute_solver(group, executor, communicator);
     if (group.directions == 2)

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <future>
@@ -22,6 +21,7 @@ namespace catena {
 namespace {
 
 constexpr std::int64_t most_pdb_serials = 99999;  // largest serial number in five decimal columns
+constexpr std::size_t most_in_record = 4;         // bonds in one CONECT record
 
 /// Returns the text with all but printable ASCII replaced, which is all that these formats hold.
 std::string plain(std::string_view text) {
@@ -67,7 +67,11 @@ double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& posi
         for (std::int64_t k = 1; k < chain.count && links.size() < 10000; ++k) {
             auto const site = static_cast<std::size_t>(chain.first + k);
             if (site >= positions.size()) break;
-            links.push_back(norm(positions[site] - positions[site - 1]));
+            std::size_t const inboard =
+                chain.parent.empty() ? site - 1
+                                     : static_cast<std::size_t>(
+                                           chain.first + chain.parent[static_cast<std::size_t>(k)]);
+            links.push_back(norm(positions[site] - positions[inboard]));
         }
     if (links.empty()) return 1;
     auto const middle = links.begin() + static_cast<std::ptrdiff_t>(links.size() / 2);
@@ -95,20 +99,23 @@ void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     }
 }
 
-/// Writes the bonds (CONECT), for each site that before its own.
+/// Writes the bonds (CONECT), for each site that at which its own begins first. A record holds
+/// four.
 void write_bonds(AtomicFile& out, SiteNames const& names, std::int64_t sites) {
-    constexpr std::int64_t none = -1;
-    std::vector<std::array<std::int64_t, 2>> neighbours(static_cast<std::size_t>(sites),
-                                                        {none, none});
+    std::vector<std::vector<std::int64_t>> neighbours(static_cast<std::size_t>(sites));
     for (auto const& [from, to] : names.bonds()) {
-        neighbours[static_cast<std::size_t>(from)][1] = to;
-        neighbours[static_cast<std::size_t>(to)][0] = from;
+        neighbours[static_cast<std::size_t>(from)].push_back(to);
+        auto& of_to = neighbours[static_cast<std::size_t>(to)];
+        of_to.insert(of_to.begin(), from);
     }
     for (std::int64_t site = 0; site < sites; ++site) {
-        std::string text;
-        for (std::int64_t const other : neighbours[static_cast<std::size_t>(site)])
-            if (other != none) text += serial(other + 1);
-        if (!text.empty()) out.write("CONECT" + serial(site + 1) + text + "\n");
+        auto const& others = neighbours[static_cast<std::size_t>(site)];
+        for (std::size_t i = 0; i < others.size(); i += most_in_record) {
+            std::string text;
+            for (std::size_t j = i; j < std::min(others.size(), i + most_in_record); ++j)
+                text += serial(others[j] + 1);
+            out.write("CONECT" + serial(site + 1) + text + "\n");
+        }
     }
 }
 

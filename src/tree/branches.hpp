@@ -1,0 +1,69 @@
+// Branched chains as paths. Each chain is cut into heavy paths, and each path is to a solver what
+// an unbranched chain is: bodies one after the other, with a tree of its own. The paths depend on
+// the parents alone, never on threads.
+//
+// A path goes on with the child that has most bodies outboard of it; among equals with the one of
+// the smallest number. The other children are heads of paths of their own, side paths, which hang
+// on the body. The phase of a path is the number of side paths on the way to the chain's first
+// body. There are at most floor(log2(bodies)) + 1 phases.
+//
+// Places number the bodies anew, path after path and phase after phase; within a phase, paths stand
+// in the order of the places on which they hang. All paths on one body are therefore consecutive.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tree/tree.hpp"
+
+namespace catena::dca {
+
+/// A body with side paths, and its paths [first_path, end_path).
+struct Fork {
+    std::int64_t place = 0;
+    std::int64_t first_path = 0, end_path = 0;
+    std::int64_t paths() const { return end_path - first_path; }
+};
+
+/// Work lists of the paths of one phase, as in Schedule.
+struct PhaseLists {
+    std::vector<Run> runs;
+    std::vector<std::vector<Merge>> levels;
+    std::vector<Root> roots;
+};
+
+/// The paths of branched chains on one rank.
+struct Branches {
+    Branches() = default;
+    /// Cuts chains into paths. `inboard` is the inboard body of each body, -1 for the first bodies
+    /// of chains; it is smaller than the body's own number. `pairwise` as in Partition.
+    Branches(std::span<std::int64_t const> inboard, bool pairwise);
+
+    /// Body at each place.
+    std::vector<std::int64_t> body;
+    /// First place of each path; [paths + 1].
+    std::vector<std::int64_t> first_of_path;
+    /// First path of each phase; [phases + 1].
+    std::vector<std::int64_t> first_of_phase{0};
+    /// Bodies with side paths, in the order of their places, and the first fork of each phase;
+    /// [phases + 1]. The side paths of a phase's forks are those of the next phase.
+    std::vector<Fork> forks;
+    std::vector<std::int64_t> first_fork_of_phase{0};
+    /// Work lists of each phase. Joints have the numbers of places, `none` follows them.
+    std::vector<PhaseLists> lists;
+    /// Numbers of segments and joints in the lists.
+    std::int64_t slots = 0, joints = 0;
+
+    std::int64_t phases() const { return static_cast<std::int64_t>(lists.size()); }
+    std::int64_t paths() const { return std::max<std::int64_t>(0, std::ssize(first_of_path) - 1); }
+    /// Steps of the longest way from a body to a root: merges and eliminations on the paths, and
+    /// the sums over side paths.
+    std::int64_t depth() const { return depth_; }
+
+  private:
+    std::int64_t depth_ = 0;
+};
+
+}  // namespace catena::dca
