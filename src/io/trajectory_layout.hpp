@@ -9,7 +9,8 @@
 //       position, velocity        [frames][sites][3], ground axes, unwrapped
 //       mass, id                  [sites], id from 1
 //   /catena                       format_version, title, length_unit: texts of fixed length
-//       chains                    first, count, beads, ring, name: [chains]
+//       chains                    first, count, beads, ring, name: [chains]; with replicas
+//                                 replica, from 0
 //       members                   if a structure file names residues: identifier, chain [members];
 //                                 member, place, number [sites]: index of the site's member, its
 //                                 place along the member from 0, its residue number in the file

@@ -1,8 +1,12 @@
 // Implements observables: energies, temperature, constraint error and shapes of chains.
 #include "observe/observables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "scene/freedom.hpp"
@@ -110,15 +114,35 @@ Observables::Observables(Scene const& scene, Topology const& topology,
     }
     if (wants("temperature")) columns_.push_back("temperature [K]");
     if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
-    for (auto const& [shape, value] : shape_columns) {
-        if (!wants(shape)) continue;
-        if (scene.chains.size() == 1)
-            columns_.push_back(shape + length);
-        else if (scene.chains.size() <= most_single_chains_)
-            for (ChainSpec const& chain : scene.chains)
-                columns_.push_back(shape + ("_" + chain.name) + length);
-        else
-            columns_.push_back(std::string("mean_") + shape + length);
+    for (auto const& [shape, value] : shape_columns)
+        if (wants(shape)) add_shape_columns(shape, length);
+}
+
+std::vector<Observables::Part> Observables::parts_of_replica() const {
+    std::size_t const chains = scene_.chains_a_replica();
+    if (chains == 1 || chains > most_single_chains_) return {{0, chains, ""}};
+    std::vector<Part> parts;
+    for (std::size_t c = 0; c < chains; ++c)
+        parts.push_back({c, c + 1, "_" + scene_.name_in_file(c)});
+    return parts;
+}
+
+void Observables::add_shape_columns(std::string const& shape, std::string const& unit) {
+    std::size_t const chains = scene_.chains.size();
+    if (scene_.replicas > 1) {
+        for (Part const& part : parts_of_replica()) {
+            columns_.push_back("mean_" + shape + part.suffix + unit);
+            for (std::int64_t r = 1; r <= scene_.replicas; ++r)
+                replica_columns_.push_back(
+                    fmt::format("{}{}_replica_{}{}", shape, part.suffix, r, unit));
+        }
+    } else if (chains == 1) {
+        columns_.push_back(shape + unit);
+    } else if (chains <= most_single_chains_) {
+        for (ChainSpec const& chain : scene_.chains)
+            columns_.push_back(shape + "_" + chain.name + unit);
+    } else {
+        columns_.push_back("mean_" + shape + unit);
     }
 }
 
@@ -165,18 +189,50 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms,
     }
     if (wants("temperature")) row.push_back(temperature_of(scene_, dof_, kinetic));
     if (wants("constraint_error")) row.push_back(constraint_error);
-    for (auto const& [name, value] : shape_columns) {
-        if (!wants(name)) continue;
-        double sum = 0;
-        for (Shape const& shape : shapes_) {
-            double const one = (shape.*value)();
-            sum += one;
-            if (shapes_.size() <= most_single_chains_) row.push_back(one);
-        }
-        if (shapes_.size() > most_single_chains_)
-            row.push_back(sum / static_cast<double>(shapes_.size()));
-    }
+    for (auto const& [name, value] : shape_columns)
+        if (wants(name)) add_shapes(row, value);
     return row;
+}
+
+std::vector<double> Observables::replica_row() const {
+    std::vector<double> row;
+    if (scene_.replicas == 1) return row;
+    for (auto const& [name, value] : shape_columns)
+        for (Part const& part : wants(name) ? parts_of_replica() : std::vector<Part>())
+            add_replicas(row, value, part);
+    return row;
+}
+
+void Observables::add_shapes(std::vector<double>& row, double (Shape::*value)() const) const {
+    auto const mean = [](std::span<double const> values) {
+        return std::accumulate(values.begin(), values.end(), 0.0) /
+               static_cast<double>(values.size());
+    };
+    std::vector<double> values;
+    if (scene_.replicas > 1) {
+        for (Part const& part : parts_of_replica()) {
+            values.clear();
+            add_replicas(values, value, part);
+            row.push_back(mean(values));
+        }
+        return;
+    }
+    for (Shape const& shape : shapes_) values.push_back((shape.*value)());
+    if (values.size() <= most_single_chains_)
+        row.insert(row.end(), values.begin(), values.end());
+    else
+        row.push_back(mean(values));
+}
+
+void Observables::add_replicas(std::vector<double>& row, double (Shape::*value)() const,
+                               Part const& part) const {
+    std::size_t const chains = scene_.chains_a_replica();
+    for (std::size_t begin = 0; begin < shapes_.size(); begin += chains) {
+        double sum = 0;
+        for (std::size_t c = begin + part.first; c < begin + part.last; ++c)
+            sum += (shapes_[c].*value)();
+        row.push_back(sum / static_cast<double>(part.last - part.first));
+    }
 }
 
 }  // namespace catena

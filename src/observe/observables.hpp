@@ -65,8 +65,12 @@ class Observables {
     /// groups of columns. An empty selection means all groups, except the unweighted radius of
     /// gyration, and the temperature with `units: si` without a thermostat.
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
-    /// Returns names with units, e.g. "total_energy [kJ/mol]".
+    /// Returns names with units, e.g. "total_energy [kJ/mol]". Sizes of many chains are means over
+    /// them; with replicas there is a mean for each chain of a replica, "mean_SIZE_CHAIN".
     std::vector<std::string> const& columns() const { return columns_; }
+    /// Returns the columns of each replica: those of the first mean for all replicas, then those of
+    /// the next. Empty without replicas.
+    std::vector<std::string> const& replica_columns() const { return replica_columns_; }
     /// Begins another row: discards what was added.
     void begin();
     /// Adds the next bodies, and their sites' positions in W.
@@ -75,15 +79,31 @@ class Observables {
     double kinetic() const { return kinetic_.value(); }
     /// Returns the values of all columns. Precondition: all bodies of the scene have been added.
     std::vector<double> row(std::vector<EnergyTerm> const& terms, double constraint_error) const;
+    /// Returns the values of all replica_columns(). Precondition: that of row().
+    std::vector<double> replica_row() const;
 
   private:
+    /// Range of the chains of a replica, [first, last), that a mean is taken over.
+    struct Part {
+        std::size_t first, last;
+        std::string suffix;  // of the column's name
+    };
+    /// Parts of a replica, of which each has columns of its own.
+    std::vector<Part> parts_of_replica() const;
+    void add_shape_columns(std::string const& shape, std::string const& unit);
+    /// Appends the sizes of the chains, or means over them.
+    void add_shapes(std::vector<double>& row, double (Shape::*value)() const) const;
+    /// Appends the mean of a part of each replica, replica after replica.
+    void add_replicas(std::vector<double>& row, double (Shape::*value)() const,
+                      Part const& part) const;
+
     /// True if the group of columns is selected and defined.
     bool wants(std::string const& name) const;
     bool has_temperature_;
     Scene const& scene_;
     Topology const& topology_;
     std::int64_t dof_;  // degrees of freedom
-    std::vector<std::string> columns_;
+    std::vector<std::string> columns_, replica_columns_;
     KineticEnergy kinetic_;
     std::size_t chain_ = 0, site_ = 0;  // indices of the next site and its chain in the topology
     Shape shape_;                       // chain of the next site, so far
