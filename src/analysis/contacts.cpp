@@ -80,8 +80,9 @@ struct Contacts::State {
                 auto const first = static_cast<std::size_t>(topology.chains[chain].first);
                 for (std::int64_t i = 0; i < kinds[k].sites; ++i)
                     owner[first + static_cast<std::size_t>(i)] = {
-                        k, c, chain, static_cast<std::size_t>(i / sites_a_row), i,
-                        topology.chains[chain].replica};
+                        k,     c,
+                        chain, static_cast<std::size_t>(i / sites_a_row),
+                        i,     topology.chains[chain].replica};
             }
             within.emplace_back(rows_of(k), rows_of(k));
             CopyValues const none(kinds[k].copies(), kinds[k].together());
@@ -248,8 +249,8 @@ std::vector<ContactMap> Contacts::maps() const {
     State const& s = *state_;
     std::vector<ContactMap> maps;
     for (std::size_t k = 0; k < s.kinds.size(); ++k)
-        maps.push_back(s.map_of(s.within[k], {true, k, k},
-                                static_cast<double>(s.kinds[k].copies())));
+        maps.push_back(
+            s.map_of(s.within[k], {true, k, k}, static_cast<double>(s.kinds[k].copies())));
     // Pairs of chains belong to one replica.
     auto const copies = [&](std::size_t kind) {
         return static_cast<double>(s.kinds[kind].copies_a_replica());

@@ -24,8 +24,8 @@ struct Estimate {
     double between = NAN;
 };
 
-/// Makes the error of a quantity of `replicas` replicas at least that between them. From 16 replicas
-/// on it does not grow with longer blocks.
+/// Makes the error of a quantity of `replicas` replicas at least that between them. From 16
+/// replicas on it does not grow with longer blocks.
 void count_replicas(Estimate&, std::size_t replicas);
 
 /// Returns the scatter of independent values divided by the root of their number; NaN for fewer

@@ -45,8 +45,8 @@ std::string refused_plugins(std::vector<std::string> const& failures) {
 }  // namespace
 
 int useful_threads(BeadSystem const& beads, Communicator const& communicator) {
-    return static_cast<int>(std::min<std::int64_t>(1 + beads.size() / beads_per_thread,
-                                                   cores_of_rank(communicator)));
+    return static_cast<int>(
+        std::min<std::int64_t>(1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
 }
 
 OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads,

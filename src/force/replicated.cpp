@@ -102,8 +102,7 @@ class ReplicatedForces final : public RankForces {
   private:
     void make_context() {
         context_ = std::make_unique<ForceContext>(model_.system, platform_, box_, home_);
-        if (!replica_.empty())
-            context_->keep_apart(ReplicaPlaces(replica_, reach_));
+        if (!replica_.empty()) context_->keep_apart(ReplicaPlaces(replica_, reach_));
     }
     /// Sets the gathered positions once. Shifts last for a number of calls, and a run must not
     /// depend on when its energies are asked for.
@@ -117,8 +116,8 @@ class ReplicatedForces final : public RankForces {
     Communicator const& communicator_;
     std::optional<Vec3> box_;
     std::optional<Placement> placement_;  // RankPlan::placement
-    double reach_;  // of all forces on replicas, also those of other Contexts, nm
-    ForceContext* home_;                  // RankPlan::home
+    double reach_;        // of all forces on replicas, also those of other Contexts, nm
+    ForceContext* home_;  // RankPlan::home
     /// Number of each particle's bead in the scene, for messages.
     std::vector<std::int64_t> number_of_particle_;
     std::vector<std::int32_t> replica_;  // of each particle; empty without replicas

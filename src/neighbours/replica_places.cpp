@@ -21,8 +21,7 @@ ReplicaPlaces::ReplicaPlaces(std::vector<std::int32_t> replica, double reach)
     for (std::int64_t r = 0; r < count; ++r) {
         Site site{};
         for (std::size_t c = 0; c < 3; ++c)
-            site.at[c] =
-                static_cast<std::int32_t>(lattice.site(r)[c] - lattice.edge()[c] / 2);
+            site.at[c] = static_cast<std::int32_t>(lattice.site(r)[c] - lattice.edge()[c] / 2);
         site_.push_back(site);
     }
 }

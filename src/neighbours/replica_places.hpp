@@ -11,8 +11,8 @@
 
 namespace catena {
 
-/// Places of the replicas, found anew from time to time. A replica's centre is the middle of the box
-/// around its points.
+/// Places of the replicas, found anew from time to time. A replica's centre is the middle of the
+/// box around its points.
 class ReplicaPlaces {
   public:
     /// Distance that points may move away from the box around their replica before places are found
@@ -52,9 +52,7 @@ class ReplicaPlaces {
     struct Site {
         std::int32_t at[3];
     };
-    std::size_t index(std::size_t point) const {
-        return static_cast<std::size_t>(replica_[point]);
-    }
+    std::size_t index(std::size_t point) const { return static_cast<std::size_t>(replica_[point]); }
     std::vector<std::int32_t> replica_;
     double reach_ = 0, farthest_ = 0, spacing_ = 0;
     std::vector<Vec3> centre_;

@@ -56,8 +56,7 @@ std::int64_t read_replicas(Fields const& top, Scene const& frame) {
     if (frame.solver.balance)
         fail(*top.find("solver")->find("balance"), "shares by speeds for replicas",
              "leave it out: ranks get equal numbers of replicas");
-    Node const* const openmm =
-        frame.forces.openmm ? top.find("forces")->find("openmm") : nullptr;
+    Node const* const openmm = frame.forces.openmm ? top.find("forces")->find("openmm") : nullptr;
     for (char const* const key : {"replicate", "split"})
         if (Node const* const way = openmm ? openmm->find(key) : nullptr;
             way && way->text != "false" && way->text != "auto")
@@ -83,7 +82,8 @@ void add_replicas(Scene& scene, Node const& at,
         auto const site = lattice.site(r);
         Vec3 by;
         for (int c = 0; c < 3; ++c)
-            by[c] = (1 + free_space) * width * static_cast<double>(site[static_cast<std::size_t>(c)]);
+            by[c] =
+                (1 + free_space) * width * static_cast<double>(site[static_cast<std::size_t>(c)]);
         for (ChainSpec& chain : all[static_cast<std::size_t>(r)]) {
             translate(chain, by);
             chain.name += fmt::format("-{}", r + 1);

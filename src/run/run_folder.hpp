@@ -55,9 +55,7 @@ class RunFolder {
     /// runs. Empty on ranks other than 0. Collective.
     ObservablesTable table() { return read_table("observables.csv", observables_.get()); }
     /// Returns the table of the replicas, with the same lines; it has no columns without replicas.
-    ObservablesTable table_of_replicas() {
-        return read_table("replicas.csv", of_replicas_.get());
-    }
+    ObservablesTable table_of_replicas() { return read_table("replicas.csv", of_replicas_.get()); }
     /// Closes the tables and writes summary, timeline and report. Collective.
     void finish(std::string const& summary, std::string const& timeline);
 

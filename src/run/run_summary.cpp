@@ -101,9 +101,8 @@ Json statistics_of(SummarySource const& of) {
     if (of.communicator.rank() != 0) return Json::object();
     DynamicsSpec const& dynamics = of.scene.dynamics;
     bool const forgets = is_langevin(dynamics.integrator) && dynamics.friction > 0;
-    Json found =
-        json_of(statistics_of(table, forgets ? Frames::equilibrated : Frames::without_thermostat,
-                              of_replicas));
+    Json found = json_of(statistics_of(
+        table, forgets ? Frames::equilibrated : Frames::without_thermostat, of_replicas));
     for (std::size_t i = 0; i < of.frames.last_row().size(); ++i)
         found["last_observables"][of.frames.columns()[i]] = of.frames.last_row()[i];
     return found;

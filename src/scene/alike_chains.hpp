@@ -13,8 +13,8 @@ namespace catena::scene {
 struct AlikeChains {
     std::size_t first = 0, count = 0;
 };
-/// Returns the chains of the first replica as runs of alike ones, in their order. Chains are alike if size,
-/// contents, base, tip and kind of handles are equal.
+/// Returns the chains of the first replica as runs of alike ones, in their order. Chains are alike
+/// if size, contents, base, tip and kind of handles are equal.
 std::vector<AlikeChains> alike_chains(Scene const&);
 
 /// Returns "beads", "bodies" or "bodies and beads".

@@ -89,7 +89,8 @@ std::string why_not_repeated(OpenMM::Force const& force) {
     if (!can_be_split(force)) return "acts on all particles at once";
     if (knows_places(force)) return "depends on places in space, which replicas do not share";
     if (force.usesPeriodicBoundaryConditions()) return "is periodic";
-    if (std::isinf(reach_of(force))) return "has no cutoff, so that replicas would act on each other";
+    if (std::isinf(reach_of(force)))
+        return "has no cutoff, so that replicas would act on each other";
     return {};
 }
 

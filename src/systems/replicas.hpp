@@ -13,9 +13,9 @@ BeadSystem first_replica(BeadSystem const&);
 /// every rank has the same number of whole replicas.
 BeadSystem replicas_of_rank(BeadSystem const&, int rank, int ranks);
 
-/// Repeats the model of one replica. Particles and terms of a replica follow those of the one before,
-/// and no force joins two replicas if these are farther apart than all cutoffs.
-/// Throws InputError for forces that know places, are periodic, have no cutoff, or are of a kind that
+/// Repeats the model of one replica. Particles and terms of a replica follow those of the one
+/// before, and no force joins two replicas if these are farther apart than all cutoffs. Throws
+/// InputError for forces that know places, are periodic, have no cutoff, or are of a kind that
 /// cannot be repeated.
 void repeat_model(OpenMmModel& model, BeadSystem const& one, std::int64_t replicas);
 
