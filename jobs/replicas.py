@@ -3,7 +3,8 @@
 
 Reads a table of proteins, one a line, with the columns name, ionic (mol/l), temperature (K), ph, rg, rg_error (nm), n (residues), doi and
 sequence; text from # on is a comment. Writes a scene of each protein to FOLDER/scenes, runs it with the seeds 1, 2, ... into FOLDER/NAME-1,
-FOLDER/NAME-2, ..., and prints the table, which is also FOLDER/radii.csv. Runs that are there are kept; unfinished ones go on."""
+FOLDER/NAME-2, ..., and prints the table, which is also FOLDER/radii.csv. Runs that are there are kept; unfinished ones go on.
+On a GPU the scene key `replicas: N` samples N copies in one run (inputs/keys/replicas.md)."""
 import argparse
 import csv
 import json

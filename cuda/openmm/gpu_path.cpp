@@ -32,7 +32,7 @@ class SingleRankPath final : public GpuPath {
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         // concerns the previous evaluation, which has ended together with its step
         refuse_trouble();
-        if (of_this_order_ == 0) order_anew(beads);
+        if (take_strayed() || of_this_order_ == 0) order_anew(beads);
         start(beads, timed);
         put_own(beads);
         put_layers();
@@ -109,6 +109,12 @@ GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
     particles_.trouble = &flags_->data()->trouble;
     particles_.bead = own_->data();
     if (plan_.box) particles_.box = *plan_.box;
+    if (!plan_.replica.empty()) {
+        replicas_ = ReplicaPlaces(plan_.replica, plan_.reach);
+        centres_ = std::make_unique<Buffer<double>>(3 * plan_.replica.size());
+        particles_.centre = centres_->data();
+        particles_.strayed = &flags_->data()->strayed;
+    }
     for (DeviceLayer& layer : plan_.layers)
         layers_.push_back(std::make_unique<GpuLayer>(std::move(layer)));
 }
@@ -145,6 +151,26 @@ std::vector<Vec3> GpuPath::positions() {
     return x;
 }
 
+void GpuPath::place_replicas(std::vector<Vec3> const& x) {
+    replicas_.find(x);
+    std::vector<double> centres;
+    centres.reserve(3 * x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (double const c : replicas_.centre(i).data) centres.push_back(c);
+    upload(*centres_, centres.data(), centres.size());
+    check(cudaStreamSynchronize(stream_), "receive the places of replicas");
+    double const spacing = replicas_.spacing();
+    particles_.box = {{spacing, spacing, spacing}};
+    particles_.farthest = replicas_.farthest();
+}
+
+DeviceBead GpuPath::bead_of_replica(std::size_t i) const {
+    DeviceBead bead;
+    bead.place = place_[static_cast<std::size_t>(plan_.particle[i])];
+    for (int c = 0; c < 3; ++c) bead.cell[c] = -replicas_.site(i)[c];
+    return bead;
+}
+
 void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
                     Vec3 const& middle) {
     particles_.origin = plan_.shifted ? middle : Vec3::zero();
@@ -157,7 +183,15 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
                 of_particle[3 * static_cast<std::size_t>(particle[i]) +
                             static_cast<std::size_t>(c)] = (position[i] - particles_.origin)[c];
     };
-    set(plan_.particle, x);
+    if (replicas_.empty()) {
+        set(plan_.particle, x);
+    } else {
+        place_replicas(x);
+        std::vector<Vec3> placed(x.size());
+        for (std::size_t i = 0; i < x.size(); ++i) placed[i] = x[i] - replicas_.shift(i);
+        particles_.origin = Vec3::zero();
+        set(plan_.particle, placed);
+    }
     for (Others const& more : others) set(more.particle, more.position);
     std::vector<int> const& particle_at = openmm_->order(of_particle);
     place_.resize(particles);
@@ -165,7 +199,8 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
         place_[static_cast<std::size_t>(particle_at[i])] = static_cast<std::int32_t>(i);
     for (auto const& layer : layers_) layer->order(of_particle, place_);
     std::vector<DeviceBead> beads(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_of(plan_.particle[i], x[i]);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        beads[i] = replicas_.empty() ? bead_of(plan_.particle[i], x[i]) : bead_of_replica(i);
     upload(*own_, beads.data(), beads.size());
     check(cudaStreamSynchronize(stream_), "receive OpenMM's order");
     for (DeviceBeads* group : beads_)

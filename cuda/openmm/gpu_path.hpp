@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cuda/device/owners.hpp"
@@ -14,6 +15,7 @@
 #include "cuda/openmm/room.hpp"
 #include "neighbours/bead_tables.hpp"
 #include "neighbours/device_path.hpp"
+#include "neighbours/replica_places.hpp"
 
 namespace catena::cuda {
 
@@ -56,9 +58,10 @@ class GpuPath : public DevicePath {
 
     /// Flags that kernels set in pinned memory. The flag `trouble` is the index of an own bead
     /// whose position or force is not finite, `of_ghosts` that of a ghost; -1: none. The
-    /// flag `far` is 1 if a bead has moved too far for the current lists.
+    /// flag `far` is 1 if a bead has moved too far for the current lists, `strayed` if one is too
+    /// far from the centre of its replica.
     struct Flags {
-        std::int64_t trouble = -1, far = 0, of_ghosts = -1;
+        std::int64_t trouble = -1, far = 0, of_ghosts = -1, strayed = 0;
     };
     /// Events that time an evaluation and that order the streams of chains and OpenMM.
     struct Events {
@@ -80,6 +83,9 @@ class GpuPath : public DevicePath {
     /// Returns the number of an own bead whose position or force is not finite, or -1, and resets
     /// the flag.
     std::int64_t take_trouble();
+    /// True if a bead of the last evaluation was too far from the centre of its replica; resets the
+    /// flag.
+    bool take_strayed() { return std::exchange(flags_->data()->strayed, 0) != 0; }
     /// Particles of the Context that are not own beads, with their positions in nm.
     struct Others {
         std::span<int const> particle;
@@ -89,6 +95,10 @@ class GpuPath : public DevicePath {
     /// `others`: the Context's other particles. `middle` becomes the origin if all particles may be
     /// moved by one vector.
     void order(std::vector<Vec3> const& x, std::span<Others const> others, Vec3 const& middle);
+    /// Finds the places of replicas for the own beads at `x`, nm.
+    void place_replicas(std::vector<Vec3> const& x);
+    /// Returns the place of own bead i in OpenMM's arrays, and the place of its replica.
+    DeviceBead bead_of_replica(std::size_t i) const;
     /// Returns the place in OpenMM's arrays and the periodic cell of a particle at `x`.
     DeviceBead bead_of(int particle, Vec3 const& x) const {
         return bead_at(place_[static_cast<std::size_t>(particle)], x, plan_.box);
@@ -128,6 +138,8 @@ class GpuPath : public DevicePath {
     std::unique_ptr<PinnedBuffer<Flags>> flags_;
     std::unique_ptr<Events> events_;
     std::unique_ptr<Buffer<DeviceBead>> own_;
+    ReplicaPlaces replicas_;                   // of own beads; empty without replicas
+    std::unique_ptr<Buffer<double>> centres_;  // of the replica of each own bead, x, y, z, nm
     ListedPositions listed_;
     DeviceParticles particles_;
     std::vector<std::int32_t> place_;  // place of each particle in OpenMM's arrays

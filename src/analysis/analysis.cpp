@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "analysis/chain_numbers.hpp"
 #include "analysis/density.hpp"
@@ -107,7 +109,7 @@ void report_contacts(Analysis& to, Contacts const& contacts) {
         if (to.kinds[k].sites > Contacts::least_separation)
             to.quantities.push_back({"contacts_within", kind, "", numbers.within.estimate(),
                                      basis + fmt::format(", s >= {}", Contacts::least_separation)});
-        bool const others = to.kinds.size() > 1 || to.kinds[k].copies() > 1;
+        bool const others = to.kinds.size() > 1 || to.kinds[k].copies_a_replica() > 1;
         if (others)
             to.quantities.push_back(
                 {"contacts_between", kind, "", numbers.between.estimate(), basis + ", per chain"});
@@ -151,6 +153,22 @@ void note_complexes(Analysis& to, Topology const& topology) {
                         "member as a chain",
                         complexes == 1 ? "the members of chain" : "the members of chains such as",
                         topology.chains[first].name));
+}
+
+/// Makes errors those between replicas where these are larger, and says so.
+void count_replicas(Analysis& to) {
+    std::map<std::string, std::size_t> replicas;
+    std::size_t most = 1;
+    for (Kind const& kind : to.kinds) {
+        replicas[kind.name] = kind.replicas;
+        most = std::max(most, kind.replicas);
+    }
+    if (most == 1) return;
+    for (Quantity& each : to.quantities) count_replicas(each.value, replicas[each.kind]);
+    for (Curve& curve : to.curves)
+        for (Estimate& each : curve.y) count_replicas(each, replicas[curve.kind]);
+    to.notes.push_back(fmt::format(
+        "{} replicas are independent of each other: errors are at least those between them", most));
 }
 
 Analysis frame_of(TrajectoryFile const& trajectory, Options const& options) {
@@ -200,6 +218,7 @@ Analysis analyse(TrajectoryFile const& trajectory, Options const& options) {
     if (contacts) report_contacts(to, *contacts);
     if (profile) report_slab(to, *profile, topology.si);
     note_uneven(to, even);
+    count_replicas(to);
     return to;
 }
 

@@ -46,9 +46,9 @@ ChainNumbers::ChainNumbers(Topology const& topology, Kind const& kind, std::int6
     : topology_(topology),
       kind_(kind),
       is_complex_(is_complex(topology, kind.chains.front())),
-      radius_(kind.copies()),
-      end_to_end_(kind.copies()),
-      asphericity_(kind.copies()),
+      radius_(kind.copies(), kind.together()),
+      end_to_end_(kind.copies(), kind.together()),
+      asphericity_(kind.copies(), kind.together()),
       internal_(kind, frames) {}
 
 void ChainNumbers::add(Snapshot const& snapshot) {

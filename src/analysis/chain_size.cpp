@@ -57,9 +57,9 @@ InternalMeans::InternalMeans(Kind const& kind, std::int64_t frames)
     : ring_(kind.ring && kind.sites > 2),
       separations_(spaced_numbers(largest_separation(kind.sites, ring_))),
       bond_separations_(spaced_numbers(largest_separation(bonds_of(kind), ring_))),
-      distances_(separations_.size(), kind.copies(), frames),
-      cosines_(bond_separations_.size(), kind.copies(), frames),
-      length_(1, kind.copies(), frames) {}
+      distances_(separations_.size(), kind.copies(), frames, kind.together()),
+      cosines_(bond_separations_.size(), kind.copies(), frames, kind.together()),
+      length_(1, kind.copies(), frames, kind.together()) {}
 
 void InternalMeans::add(std::size_t copy, std::span<Vec3 const> x) {
     if (x.size() < 2) return;

@@ -61,6 +61,7 @@ class MapCounts {
 struct Owner {
     std::size_t kind, copy, chain, row;
     std::int64_t place;  // along its chain
+    std::int64_t replica;
 };
 
 /// True if two sites of a chain are `least_separation` links or more apart.
@@ -89,10 +90,13 @@ struct Contacts::State {
                 auto const first = static_cast<std::size_t>(topology.chains[chain].first);
                 for (std::int64_t i = 0; i < kinds[k].sites; ++i)
                     owner[first + static_cast<std::size_t>(i)] = {
-                        k, c, chain, static_cast<std::size_t>(i / sites_a_row), i};
+                        k,     c,
+                        chain, static_cast<std::size_t>(i / sites_a_row),
+                        i,     topology.chains[chain].replica};
             }
             within.emplace_back(rows_of(k), rows_of(k));
-            numbers.push_back({CopyValues(kinds[k].copies()), CopyValues(kinds[k].copies())});
+            CopyValues const none(kinds[k].copies(), kinds[k].together());
+            numbers.push_back({none, none});
             first_copy.push_back(copies);
             copies += kinds[k].copies();
         }
@@ -106,7 +110,7 @@ struct Contacts::State {
     }
     /// True if there is a map for chains of two kinds, a <= b.
     bool has_pairs(std::size_t a, std::size_t b) const {
-        return a == b ? kinds[a].copies() > 1 : kinds.size() <= most_paired_kinds;
+        return a == b ? kinds[a].copies_a_replica() > 1 : kinds.size() <= most_paired_kinds;
     }
     /// Index in `between` of two kinds, a <= b.
     std::size_t pair(std::size_t a, std::size_t b) const {
@@ -138,6 +142,7 @@ struct Contacts::State {
     /// Counts a pair of sites in neighbouring cells if it is a contact.
     void look_at(Snapshot const& s, Grid const& grid, std::size_t p, std::size_t q) {
         double const most = cutoff * cutoff;
+        if (owner[p].replica != owner[q].replica) return;
         Vec3 const apart = s.position[p] - s.position[q];
         bool const near_image = grid.squared_distance(s.position[p], s.position[q]) <= most;
         if (owner[p].chain != owner[q].chain) {
@@ -253,16 +258,19 @@ std::vector<ContactNumbers> const& Contacts::numbers() const { return state_->nu
 std::vector<ContactMap> Contacts::maps() const {
     State const& s = *state_;
     std::vector<ContactMap> maps;
-    auto const copies = [&](std::size_t kind) {
-        return static_cast<double>(s.kinds[kind].copies());
-    };
     for (std::size_t k = 0; k < s.kinds.size(); ++k)
-        maps.push_back(s.map_of(s.within[k], {true, k, k}, copies(k)));
+        maps.push_back(
+            s.map_of(s.within[k], {true, k, k}, static_cast<double>(s.kinds[k].copies())));
+    // Pairs of chains belong to one replica.
+    auto const copies = [&](std::size_t kind) {
+        return static_cast<double>(s.kinds[kind].copies_a_replica());
+    };
     for (std::size_t a = 0; a < s.kinds.size(); ++a)
         for (std::size_t b = a; b < s.kinds.size(); ++b)
             if (s.has_pairs(a, b))
                 maps.push_back(s.map_of(s.between[s.pair(a, b)], {false, a, b},
-                                        copies(a) * (a == b ? copies(a) - 1 : copies(b))));
+                                        static_cast<double>(s.kinds[a].replicas) * copies(a) *
+                                            (a == b ? copies(a) - 1 : copies(b))));
     return maps;
 }
 

@@ -33,14 +33,21 @@ double error_between(std::span<double const> values) {
     return std::sqrt(squares / (count * (count - 1)));
 }
 
+void count_replicas(Estimate& of, std::size_t replicas) {
+    std::size_t constexpr many = 16;
+    if (replicas < 2 || std::isnan(of.between)) return;
+    of.error = std::isnan(of.error) ? of.between : std::max(of.error, of.between);
+    of.plateau = of.plateau || replicas >= many;
+}
+
 Estimate CopyValues::estimate() const {
     std::size_t const frames = values_.size() / copies_;
-    std::vector<double> of_frame(frames, 0.0), of_copy(copies_, 0.0);
+    std::vector<double> of_frame(frames, 0.0), of_copy(copies_ / together_, 0.0);
     for (std::size_t f = 0; f < frames; ++f)
         for (std::size_t c = 0; c < copies_; ++c) {
             double const value = values_[f * copies_ + c];
             of_frame[f] += value / static_cast<double>(copies_);
-            of_copy[c] += value / static_cast<double>(frames);
+            of_copy[c / together_] += value / static_cast<double>(frames * together_);
         }
     Blocked const found = blocked(of_frame);
     return {found.mean, found.error, found.plateau, error_between(of_copy)};
@@ -86,15 +93,19 @@ Blocked BlockMeans::error_of(std::span<double const> weights) const {
     return blocked_mean({series(weights)});
 }
 
-CurveMeans::CurveMeans(std::size_t width, std::size_t copies, std::int64_t frames)
-    : blocks_(width, frames), copies_(copies), copy_sums_(width * copies, 0.0) {}
+CurveMeans::CurveMeans(std::size_t width, std::size_t copies, std::int64_t frames,
+                       std::size_t together)
+    : blocks_(width, frames),
+      copies_(copies),
+      together_(together),
+      copy_sums_(width * (copies / together), 0.0) {}
 
 void CurveMeans::add(std::size_t copy, std::span<double const> curve) {
     std::span<double> const row = blocks_.row();
-    double* const own = copy_sums_.data() + copy * row.size();
+    double* const own = copy_sums_.data() + copy / together_ * row.size();
     for (std::size_t k = 0; k < row.size(); ++k) {
         row[k] += curve[k] / static_cast<double>(copies_);
-        own[k] += curve[k];
+        own[k] += curve[k] / static_cast<double>(together_);
     }
 }
 
@@ -112,11 +123,11 @@ std::vector<double> CurveMeans::of_copy(std::size_t copy) const {
 }
 
 Estimate CurveMeans::at(std::size_t point) const {
-    std::vector<double> of_copy(copies_);
+    std::vector<double> of_copy(copies());
     double mean = 0;
-    for (std::size_t c = 0; c < copies_; ++c) {
+    for (std::size_t c = 0; c < copies(); ++c) {
         of_copy[c] = copy_sums_[c * blocks_.width() + point] / static_cast<double>(frames_);
-        mean += of_copy[c] / static_cast<double>(copies_);
+        mean += of_copy[c] / static_cast<double>(copies());
     }
     Blocked const found = blocked(blocks_.series(point));
     return {mean, found.error, found.plateau, error_between(of_copy)};

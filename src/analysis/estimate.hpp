@@ -14,14 +14,19 @@ namespace catena::analysis {
 struct Estimate {
     double mean = NAN;
     /// Error by blocking of the mean over all copies as one time series. It assumes nothing about
-    /// copies, which may interact. NaN if there are too few frames.
+    /// copies, which may interact. With replicas it is at least `between`. NaN if there are too few
+    /// frames.
     double error = NAN;
     /// False if longer blocks than the series allows might give a larger error.
     bool plateau = false;
-    /// Scatter of the copies' own means, divided by the root of their number. It assumes that
-    /// copies are independent, and nothing about time. NaN for a single copy.
+    /// Scatter of the copies' own means, or those of replicas, divided by the root of their number.
+    /// It assumes that copies are independent, and nothing about time. NaN for a single copy.
     double between = NAN;
 };
+
+/// Makes the error of a quantity of `replicas` replicas at least that between them. From 16
+/// replicas on it does not grow with longer blocks.
+void count_replicas(Estimate&, std::size_t replicas);
 
 /// Returns the scatter of independent values divided by the root of their number; NaN for fewer
 /// than two.
@@ -30,7 +35,9 @@ double error_between(std::span<double const> values);
 /// Values of a scalar quantity in all frames, for all copies of a chain.
 class CopyValues {
   public:
-    explicit CopyValues(std::size_t copies = 1) : copies_(copies) {}
+    /// `together`: number of consecutive copies that are not independent (Kind::together()).
+    explicit CopyValues(std::size_t copies = 1, std::size_t together = 1)
+        : copies_(copies), together_(together) {}
     /// Appends the value of the next copy; copies follow one another, then frames.
     void add(double value) { values_.push_back(value); }
     std::size_t copies() const { return copies_; }
@@ -39,7 +46,7 @@ class CopyValues {
     Estimate estimate() const;
 
   private:
-    std::size_t copies_;
+    std::size_t copies_, together_;
     std::vector<double> values_;
 };
 
@@ -75,23 +82,26 @@ class BlockMeans {
 /// copy.
 class CurveMeans {
   public:
-    CurveMeans(std::size_t width, std::size_t copies, std::int64_t frames);
+    /// `together`: number of consecutive copies that are not independent (Kind::together()).
+    CurveMeans(std::size_t width, std::size_t copies, std::int64_t frames,
+               std::size_t together = 1);
     /// Adds the curve of one copy in the current frame.
     void add(std::size_t copy, std::span<double const> curve);
     void end_frame();
 
     BlockMeans const& blocks() const { return blocks_; }
-    std::size_t copies() const { return copies_; }
-    /// Mean curve of one copy.
+    /// Number of independent copies, or of groups of copies that are.
+    std::size_t copies() const { return copies_ / together_; }
+    /// Mean curve of one of them.
     std::vector<double> of_copy(std::size_t copy) const;
     /// Estimate at one point of the curve.
     Estimate at(std::size_t point) const;
 
   private:
     BlockMeans blocks_;
-    std::size_t copies_;
+    std::size_t copies_, together_;
     std::int64_t frames_ = 0;
-    std::vector<double> copy_sums_;  // [copy][point]
+    std::vector<double> copy_sums_;  // [copy or group of copies][point]
 };
 
 /// Returns the numbers 1 to 128 and then about 16 per doubling, none above `most`.

@@ -24,6 +24,16 @@ std::string signature(Topology const& topology, Topology::Chain const& chain) {
     return key;
 }
 
+/// Number of replicas that have the chains; 1 unless all have the same number of them.
+std::size_t replicas_of(Topology const& topology, std::vector<std::size_t> const& chains) {
+    std::map<std::int64_t, std::size_t> number;
+    for (std::size_t const c : chains) ++number[topology.chains[c].replica];
+    bool const alike = std::all_of(number.begin(), number.end(), [&](auto const& each) {
+        return each.second == number.begin()->second;
+    });
+    return alike ? number.size() : 1;
+}
+
 /// Returns the beginning that all names share, without the digits and separators at its end.
 std::string shared_name(Topology const& topology, std::vector<std::size_t> const& chains) {
     std::string name = topology.chains[chains.front()].name;
@@ -68,11 +78,12 @@ std::vector<Kind> kinds_of(Topology const& topology, bool by_members) {
         Topology::Chain const& chain = topology.chains[c];
         if (chain.count == 0) continue;
         auto const [found, is_new] = known.emplace(signature(topology, chain), kinds.size());
-        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}, chain.parent});
+        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}, 1, chain.parent});
         kinds[found->second].chains.push_back(c);
     }
     std::set<std::string> taken;
     for (Kind& kind : kinds) {
+        kind.replicas = replicas_of(topology, kind.chains);
         std::string const name = by_members ? name_of_members(topology, kind.chains)
                                             : shared_name(topology, kind.chains);
         kind.name = name;

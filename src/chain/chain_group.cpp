@@ -434,7 +434,8 @@ std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes ax
             static_cast<int>(i));
     // Chains of one rank should lie close together, so that ranks have few ghosts of each other.
     // Results do not depend on the order.
-    bool const together = scene.forces.openmm && communicator.size() > 1;
+    // Replicas are dealt out in their order.
+    bool const together = scene.forces.openmm && communicator.size() > 1 && scene.replicas == 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (auto& [kind, members] : chains) {
         ChainSpec const& any = scene.chains[members.front()];

@@ -103,6 +103,9 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("units",
                scene.si ? "si: numbers are used without conversion" : "md: nm, ps, amu, kJ/mol");
     text.entry("chains", std::to_string(scene.chains.size()));
+    if (scene.replicas > 1)
+        text.entry("replicas",
+                   fmt::format("{}, of {} chains each", scene.replicas, scene.chains_a_replica()));
     text.entry("bodies", std::to_string(scene.bodies()));
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
     text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");
@@ -161,6 +164,7 @@ Outcome check_scene(Scene scene, Communicator const& communicator, bool json) {
         {"title", scene.title},
         {"units", scene.si ? "si" : "md"},
         {"chains", chains_json(scene)},
+        {"replicas", scene.replicas},
         {"bodies", scene.bodies()},
         {"dof", degrees_of_freedom(scene)},
         {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},

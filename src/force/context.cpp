@@ -64,6 +64,12 @@ ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system,
 }
 
 void ForceContext::find_places(std::span<Vec3 const> positions, std::size_t centred) {
+    if (!replicas_.empty()) {
+        replicas_.find(positions);
+        place_.resize(positions.size());
+        for (std::size_t i = 0; i < positions.size(); ++i) place_[i] = replicas_.shift(i);
+        return;
+    }
     bool const shifted = placement_ == Placement::shifted && centred > 0;
     place_.assign(positions.size(), shifted ? middle_of(positions.first(centred)) : Vec3::zero());
     if (placement_ != Placement::wrapped) return;
@@ -75,6 +81,7 @@ void ForceContext::find_places(std::span<Vec3 const> positions, std::size_t cent
 /// Beads move far less than these limits in a time step. They exceed them if a state has been set,
 /// or the frame of another copy.
 bool ForceContext::have_strayed(std::span<Vec3 const> positions, std::size_t centred) const {
+    if (!replicas_.empty()) return !replicas_.hold(positions);
     // Single precision resolves 1e-6 nm up to 16 nm from the origin, but only 6e-5 nm at 1000 nm.
     double constexpr farthest = 10;
     if (placement_ == Placement::shifted)

@@ -8,10 +8,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "force/platform.hpp"
 #include "math/linear.hpp"
+#include "neighbours/replica_places.hpp"
 
 namespace catena {
 
@@ -40,6 +42,9 @@ class ForceContext {
     ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform,
                  std::optional<Vec3> const& box, ForceContext* home = nullptr);
 
+    /// Gives each replica a place of its own, which replaces the common shift. Precondition: the
+    /// placement is Placement::shifted.
+    void keep_apart(ReplicaPlaces places) { replicas_ = std::move(places); }
     /// Number of particles, those of ghosts and spares included.
     std::int64_t size() const { return std::ssize(positions_); }
 
@@ -82,6 +87,7 @@ class ForceContext {
     std::vector<OpenMM::Vec3> positions_;
     /// Vector subtracted from each particle's coordinates, nm.
     std::vector<Vec3> place_;
+    ReplicaPlaces replicas_;  // empty without replicas
     /// Number of set_positions() calls that `place_` serves, and number of calls since it was
     /// computed.
     int evaluations_, placed_for_ = 0;

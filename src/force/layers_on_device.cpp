@@ -5,6 +5,7 @@
 #include "error.hpp"
 #include "force/rank_forces.hpp"
 #include "systems/force_layers.hpp"
+#include "systems/subset.hpp"
 
 namespace catena {
 namespace {
@@ -23,6 +24,9 @@ class LayersOnDevice final : public RankForces {
     LayersOnDevice(RankPlan plan, std::vector<ForceLayer> const& layers, MakeRankForces make) {
         plan.placement = common_placement(plan.model, layers);
         if (plan.placement == Placement::wrapped) plan.box = plan.beads.box;
+        for (ForceLayer const& layer : layers)
+            if (plan.beads.replicas > 1)
+                plan.longest_reach = std::max(plan.longest_reach, reach_of(*layer.model.system));
         rest_ = make(plan);
         for (ForceLayer const& layer : layers) {
             RankPlan const of_layer{.model = layer.model,

@@ -16,6 +16,7 @@
 #include "force/contacts.hpp"
 #include "force/path.hpp"
 #include "force/rank_forces.hpp"
+#include "force/replicas_of_ranks.hpp"
 #include "force/worker.hpp"
 #include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
@@ -24,6 +25,7 @@
 #include "systems/box.hpp"
 #include "systems/extra_forces.hpp"
 #include "systems/force_layers.hpp"
+#include "systems/replicas.hpp"
 #include "systems/subset.hpp"
 
 namespace catena {
@@ -349,9 +351,12 @@ OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads,
     if (!built_in_table(spec.builder) && !(spec.builder.empty() && !spec.system.empty()))
         throw InputError(fmt::format("`{}` is not a builder of OpenMM's forces", spec.builder),
                          where, "use builder: calvados2, or system: and topology:");
-    OpenMmModel model =
-        spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
-    add_extra_forces(model, spec, beads);
+    bool const repeats = beads.replicas > 1;
+    BeadSystem const of_one = repeats ? first_replica(beads) : BeadSystem();
+    BeadSystem const& one = repeats ? of_one : beads;
+    OpenMmModel model = spec.system.empty() ? calvados2_model(spec, one) : system_model(spec, one);
+    add_extra_forces(model, spec, one);
+    if (repeats) repeat_model(model, one, beads.replicas);
     if (communicator.size() > 1 && !spec.replicate)
         refuse_what_cannot_be_split(model, where, communicator.size());
     return model;
@@ -410,10 +415,34 @@ auto accepted(std::string const& where, Action const& action) {
     }
 }
 
+std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const& beads,
+                                        Communicator const& communicator,
+                                        ChainsOnDevice const& chains, std::optional<double> reach);
+
+/// Makes the forces on replicas that are dealt out to ranks. Collective.
+std::unique_ptr<OpenMmForce> make_forces_of_replicas(OpenMmSpec spec, BeadSystem const& beads,
+                                                     Communicator const& communicator,
+                                                     ChainsOnDevice chains,
+                                                     std::optional<double> reach) {
+    if (chains.why_not.empty())
+        chains.why_not = "replicas are dealt out to several ranks: start a run for each GPU";
+    std::unique_ptr<Communicator> alone = serial_communicator();
+    std::unique_ptr<OpenMmForce> force;
+    on_every_rank(communicator, [&] {
+        BeadSystem const own = replicas_of_rank(beads, communicator.rank(), communicator.size());
+        // A serial communicator would count the cores of all ranks.
+        if (spec.threads == 0) spec.threads = useful_threads(own, communicator);
+        force = make_force(spec, own, *alone, chains, reach);
+    });
+    return replicas_of_ranks(std::move(alone), std::move(force), communicator);
+}
+
 /// Makes the forces; `reach`: limit of pair forces, nm, if given. Collective.
 std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const& beads,
                                         Communicator const& communicator,
                                         ChainsOnDevice const& chains, std::optional<double> reach) {
+    if (beads.replicas > 1 && communicator.size() > 1)
+        return make_forces_of_replicas(spec, beads, communicator, chains, reach);
     std::string const where = beads.scene_file + ": forces.openmm";
     OpenMmModel model;
     OpenMmPlatform platform;

@@ -3,6 +3,7 @@
 
 #include <OpenMM.h>
 
+#include "error.hpp"
 #include "force/platform.hpp"
 #include "structure/calvados2.hpp"
 #include "systems/model.hpp"
@@ -84,6 +85,10 @@ std::unique_ptr<OpenMmIntegrator> make_openmm_integrator(OpenMmSpec const& spec,
                                                          Communicator const& communicator,
                                                          OwnLinks links, OwnRun const& run,
                                                          std::vector<Vec3> const& positions) {
+    if (beads.replicas > 1)
+        throw InputError("OpenMM's own integrator does not keep replicas apart",
+                         beads.scene_file + ": replicas",
+                         "leave it out; `catena bench sampling --copies N` repeats a chain");
     return std::make_unique<Own>(spec, beads, communicator, links, run, positions);
 }
 

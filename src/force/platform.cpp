@@ -44,6 +44,11 @@ std::string refused_plugins(std::vector<std::string> const& failures) {
 
 }  // namespace
 
+int useful_threads(BeadSystem const& beads, Communicator const& communicator) {
+    return static_cast<int>(
+        std::min<std::int64_t>(1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
+}
+
 OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads,
                                Communicator const& communicator, int device) {
     auto const& failures = load_openmm_plugins();
@@ -71,10 +76,8 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads,
         if (contains(known, property)) chosen.properties[property] = value;
     };
     if (name == "CPU") {
-        auto const useful = static_cast<int>(std::min<std::int64_t>(
-            1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
         require_possible_threads(spec.threads, openmm_key(beads.scene_file, "threads"));
-        chosen.threads = spec.threads > 0 ? spec.threads : useful;
+        chosen.threads = spec.threads > 0 ? spec.threads : useful_threads(beads, communicator);
         set("Threads", std::to_string(chosen.threads));
     } else if (!chosen.on_cpu()) {
         set("Precision", spec.precision.empty() ? "mixed" : spec.precision);

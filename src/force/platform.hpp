@@ -25,6 +25,10 @@ struct OpenMmPlatform {
     bool on_cpu() const { return name() == "CPU" || name() == "Reference"; }
 };
 
+/// Returns the number of threads of platform CPU for a rank's beads: its cores, at most one per 500
+/// beads.
+int useful_threads(BeadSystem const&, Communicator const&);
+
 /// Returns the platform that the scene names. Otherwise it is CUDA if present and if the rank's
 /// chains are on GPU `device` (-1: none), else CPU if present, else Reference. CUDA uses the
 /// chains' GPU unless the scene names another.

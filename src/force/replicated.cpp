@@ -1,10 +1,12 @@
 // Forces of the whole System on each rank: for one rank, or for `replicate`.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
 #include "force/rank_forces.hpp"
+#include "systems/subset.hpp"
 
 namespace catena {
 
@@ -19,6 +21,9 @@ class ReplicatedForces final : public RankForces {
           communicator_(plan.communicator),
           box_(plan.box),
           placement_(plan.placement),
+          reach_(plan.beads.replicas > 1
+                     ? std::max(plan.longest_reach, reach_of(*plan.model.system))
+                     : 0),
           home_(plan.home) {
         BeadSystem const& beads = plan.beads;
         std::vector<int> const particle_of_bead = particles_of_beads(model_.bead_of_particle);
@@ -27,8 +32,11 @@ class ReplicatedForces final : public RankForces {
             bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
             for (std::int64_t const bead : of_rank) particle_.push_back(particle_of_bead[bead]);
         }
-        for (std::int64_t const bead : model_.bead_of_particle)
+        for (std::int64_t const bead : model_.bead_of_particle) {
             number_of_particle_.push_back(beads.name(bead));
+            if (beads.replicas > 1)
+                replica_.push_back(static_cast<std::int32_t>(bead / beads.beads_a_replica()));
+        }
         first_ = beads.first_of_rank[communicator_.rank()];
         if (first_ < beads.first_of_rank[communicator_.rank() + 1]) make_context();
     }
@@ -70,6 +78,11 @@ class ReplicatedForces final : public RankForces {
         plan.shifted = placement == Placement::shifted;
         plan.overlap = overlap;
         plan.keeps_list = why_not_by_pairs(*model_.system).empty();
+        if (!replica_.empty()) {
+            plan.reach = reach_;
+            for (std::int64_t const particle : particle_)
+                plan.replica.push_back(replica_[static_cast<std::size_t>(particle)]);
+        }
         return plan;
     }
     ForceContext* device_context() override { return context_.get(); }
@@ -89,6 +102,7 @@ class ReplicatedForces final : public RankForces {
   private:
     void make_context() {
         context_ = std::make_unique<ForceContext>(model_.system, platform_, box_, home_);
+        if (!replica_.empty()) context_->keep_apart(ReplicaPlaces(replica_, reach_));
     }
     /// Sets the gathered positions once. Shifts last for a number of calls, and a run must not
     /// depend on when its energies are asked for.
@@ -102,9 +116,11 @@ class ReplicatedForces final : public RankForces {
     Communicator const& communicator_;
     std::optional<Vec3> box_;
     std::optional<Placement> placement_;  // RankPlan::placement
-    ForceContext* home_;                  // RankPlan::home
+    double reach_;        // of all forces on replicas, also those of other Contexts, nm
+    ForceContext* home_;  // RankPlan::home
     /// Number of each particle's bead in the scene, for messages.
     std::vector<std::int64_t> number_of_particle_;
+    std::vector<std::int32_t> replica_;  // of each particle; empty without replicas
     /// Particle of each bead in the order of by_rank, and bytes of each rank's positions.
     std::vector<std::int64_t> particle_, bytes_of_rank_;
     // index of the rank's first own bead in the order of by_rank

@@ -195,15 +195,20 @@ void TrajectoryFile::read_chains() {
     };
     std::vector<std::int64_t> const first = list("first"), count = list("count"),
                                     beads = list("beads"), ring = list("ring");
+    std::vector<std::int64_t> const replica = has(root, "catena/chains/replica")
+                                                  ? list("replica")
+                                                  : std::vector<std::int64_t>(first.size(), 0);
     std::vector<std::string> const names = read_texts(root, "catena/chains/name");
     topology_.chains.clear();
     std::int64_t sites = 0;
     bool sound = count.size() == first.size() && beads.size() == first.size() &&
-                 ring.size() == first.size() && names.size() == first.size();
+                 ring.size() == first.size() && names.size() == first.size() &&
+                 replica.size() == first.size();
     for (std::size_t c = 0; sound && c < first.size(); ++c) {
         sound = first[c] == sites && count[c] >= 0;
         sites += count[c];
-        topology_.chains.push_back({names[c], first[c], count[c], beads[c] != 0, ring[c] != 0});
+        topology_.chains.push_back(
+            {names[c], first[c], count[c], beads[c] != 0, ring[c] != 0, replica[c]});
     }
     std::vector<hsize_t> const row{topology_.mass.size(), 3};
     auto const is_mass = [](double mass) { return std::isfinite(mass) && mass > 0; };

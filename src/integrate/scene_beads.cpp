@@ -88,6 +88,7 @@ BeadSystem bead_system_of(Scene const& scene) {
     system.box = scene.box;
     system.scene_file = scene.file;
     system.threads = scene.solver.threads;
+    system.replicas = scene.replicas;
     return system;
 }
 

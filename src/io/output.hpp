@@ -31,6 +31,7 @@ struct Topology {
         std::int64_t first = 0, count = 0;  // sites [first, first + count)
         bool beads = true;                  // every site is a bead
         bool ring = false;
+        std::int64_t replica = 0;  // chains of different replicas do not interact
         /// Site on which each site hangs, counted from 0 within the chain, -1 for the first; empty
         /// for an unbranched chain.
         std::vector<std::int64_t> parent = {};

@@ -132,13 +132,14 @@ class Builder {
     /// Writes /catena/chains.
     void describe_chains(Place const& own) {
         Group const chains = make_group(own, "chains");
-        std::vector<std::int64_t> first, count, beads, ring;
+        std::vector<std::int64_t> first, count, beads, ring, replica;
         std::vector<std::string> name;
         for (Topology::Chain const& chain : topology_.chains) {
             first.push_back(chain.first);
             count.push_back(chain.count);
             beads.push_back(chain.beads);
             ring.push_back(chain.ring);
+            replica.push_back(chain.replica);
             name.push_back(chain.name);
         }
         put_array(at(chains), "first", first);
@@ -146,6 +147,7 @@ class Builder {
         put_array(at(chains), "beads", beads);
         put_array(at(chains), "ring", ring);
         put_array(at(chains), "name", name);
+        if (!replica.empty() && replica.back() > 0) put_array(at(chains), "replica", replica);
     }
 
     bool is_branched() const {

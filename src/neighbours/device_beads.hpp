@@ -33,6 +33,12 @@ struct DeviceParticles {
     std::int64_t places = 0;
     /// Offset that is subtracted from all positions, and edges of the periodic box, nm.
     Vec3 origin = Vec3::zero(), box = Vec3::zero();
+    /// With replicas, else null: x, y, z that replace `origin` for each bead, nm. `box` is then the
+    /// distance between the places of replicas, and cells are places. `strayed` is set to 1 if a
+    /// coordinate relative to `centre` exceeds `farthest`, nm.
+    double const* centre = nullptr;
+    double farthest = 0;
+    std::int64_t* strayed = nullptr;
     /// Positions when OpenMM built its neighbour list, in the layout of `position` or
     /// `double_position`; null: no check. `far` is set to 1 if a particle has moved farther than
     /// `farthest_squared` allows (nm^2).
@@ -51,6 +57,7 @@ struct DeviceParticles {
     DeviceParticles from(std::int64_t bead_index) const {
         DeviceParticles rest = *this;
         rest.bead += bead_index;
+        if (centre) rest.centre += 3 * bead_index;
         rest.first += bead_index;
         return rest;
     }
@@ -60,7 +67,9 @@ struct DeviceParticles {
         std::int64_t const at = 4 * static_cast<std::int64_t>(b.place);
         float away = 0;
         for (int c = 0; c < 3; ++c) {
-            double const y = x[c] - origin[c] - box[c] * bead[k].cell[c];
+            double const local = x[c] - (centre ? centre[3 * k + c] : origin[c]);
+            if (strayed && !(std::fabs(local) <= farthest)) *strayed = 1;
+            double const y = local - box[c] * bead[k].cell[c];
             if (!(std::fabs(y) < far_away)) *trouble = first + k;
             if (double_position) {
                 double_position[at + c] = y;

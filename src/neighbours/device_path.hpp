@@ -42,6 +42,10 @@ struct DevicePathPlan {
     bool overlap = true;      // true if the chains' own work overlaps with OpenMM's
     bool keeps_list = false;  // true if all pair forces use the shared neighbour list
     Halo* halo = nullptr;     // null on a single rank
+    /// Replica of each own bead; empty without replicas, which are kept farther apart than `reach`
+    /// (nm, ReplicaPlaces).
+    std::vector<std::int32_t> replica = {};
+    double reach = 0;
     /// Layers whose forces are added to those of the path's Context. On several ranks, these share
     /// out pairs.
     std::vector<DeviceLayer> layers = {};

@@ -1,8 +1,12 @@
 // Implements observables: energies, temperature, constraint error and shapes of chains.
 #include "observe/observables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "scene/freedom.hpp"
@@ -111,18 +115,30 @@ Observables::Observables(Scene const& scene, Topology const& topology,
     }
     if (wants("temperature")) columns_.push_back("temperature [K]");
     if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
-    for (auto const& [shape, value] : shape_columns) {
-        if (!wants(shape)) continue;
-        std::size_t const chains = scene.chains.size();
-        bool any = false;
-        for (std::size_t c = 0; c < chains; ++c) {
-            if (!has_shape(shape, c)) continue;
-            any = true;
-            if (chains > most_single_chains_) break;
-            columns_.push_back(shape + (chains == 1 ? "" : "_" + scene.chains[c].name) + length);
-        }
-        if (any && chains > most_single_chains_)
-            columns_.push_back(std::string("mean_") + shape + length);
+    for (auto const& [shape, value] : shape_columns)
+        if (wants(shape)) add_shape_columns(shape, length);
+}
+
+std::vector<Observables::Part> Observables::parts_of(std::string const& shape) const {
+    std::size_t const chains = scene_.chains_a_replica();
+    std::vector<Part> parts;
+    Part all;
+    for (std::size_t c = 0; c < chains; ++c) {
+        if (!has_shape(shape, c)) continue;
+        all.chains.push_back(c);
+        parts.push_back({{c}, "_" + scene_.name_in_file(c)});
+    }
+    if (parts.empty() || (chains > 1 && chains <= most_single_chains_)) return parts;
+    return {all};
+}
+
+void Observables::add_shape_columns(std::string const& shape, std::string const& unit) {
+    bool const is_mean = scene_.replicas > 1 || scene_.chains.size() > most_single_chains_;
+    for (Part const& part : parts_of(shape)) {
+        columns_.push_back((is_mean ? "mean_" : "") + shape + part.suffix + unit);
+        for (std::int64_t r = 1; scene_.replicas > 1 && r <= scene_.replicas; ++r)
+            replica_columns_.push_back(
+                fmt::format("{}{}_replica_{}{}", shape, part.suffix, r, unit));
     }
 }
 
@@ -175,16 +191,35 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms,
     if (wants("constraint_error")) row.push_back(constraint_error);
     for (auto const& [name, value] : shape_columns) {
         if (!wants(name)) continue;
-        double sum = 0, counted = 0;
-        for (std::size_t c = 0; c < shapes_.size(); ++c) {
-            if (!has_shape(name, c)) continue;
-            double const one = (shapes_[c].*value)();
-            sum += one, ++counted;
-            if (shapes_.size() <= most_single_chains_) row.push_back(one);
+        for (Part const& part : parts_of(name)) {
+            std::vector<double> const values = of_replicas(value, part);
+            row.push_back(std::accumulate(values.begin(), values.end(), 0.0) /
+                          static_cast<double>(values.size()));
         }
-        if (shapes_.size() > most_single_chains_ && counted > 0) row.push_back(sum / counted);
     }
     return row;
+}
+
+std::vector<double> Observables::replica_row() const {
+    std::vector<double> row;
+    if (scene_.replicas == 1) return row;
+    for (auto const& [name, value] : shape_columns)
+        for (Part const& part : wants(name) ? parts_of(name) : std::vector<Part>()) {
+            std::vector<double> const values = of_replicas(value, part);
+            row.insert(row.end(), values.begin(), values.end());
+        }
+    return row;
+}
+
+std::vector<double> Observables::of_replicas(double (Shape::*value)() const,
+                                             Part const& part) const {
+    std::vector<double> values;
+    for (std::size_t begin = 0; begin < shapes_.size(); begin += scene_.chains_a_replica()) {
+        double sum = 0;
+        for (std::size_t const c : part.chains) sum += (shapes_[begin + c].*value)();
+        values.push_back(sum / static_cast<double>(part.chains.size()));
+    }
+    return values;
 }
 
 }  // namespace catena

@@ -66,8 +66,12 @@ class Observables {
     /// gyration, and the temperature with `units: si` without a thermostat. Branched chains have no
     /// end-to-end distance.
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
-    /// Returns names with units, e.g. "total_energy [kJ/mol]".
+    /// Returns names with units, e.g. "total_energy [kJ/mol]". Sizes of many chains are means over
+    /// them; with replicas there is a mean for each chain of a replica, "mean_SIZE_CHAIN".
     std::vector<std::string> const& columns() const { return columns_; }
+    /// Returns the columns of each replica: those of the first mean for all replicas, then those of
+    /// the next. Empty without replicas.
+    std::vector<std::string> const& replica_columns() const { return replica_columns_; }
     /// Begins another row: discards what was added.
     void begin();
     /// Adds the next bodies, and their sites' positions in W.
@@ -76,8 +80,22 @@ class Observables {
     double kinetic() const { return kinetic_.value(); }
     /// Returns the values of all columns. Precondition: all bodies of the scene have been added.
     std::vector<double> row(std::vector<EnergyTerm> const& terms, double constraint_error) const;
+    /// Returns the values of all replica_columns(). Precondition: that of row().
+    std::vector<double> replica_row() const;
 
   private:
+    /// Chains of a replica that a mean is taken over.
+    struct Part {
+        std::vector<std::size_t> chains;  // ascending
+        std::string suffix;               // of the column's name
+    };
+    /// Returns the parts of a replica with columns of their own; they have the shape, whose name is
+    /// that of a column.
+    std::vector<Part> parts_of(std::string const& shape) const;
+    void add_shape_columns(std::string const& shape, std::string const& unit);
+    /// Returns the mean over a part's chains for each replica.
+    std::vector<double> of_replicas(double (Shape::*value)() const, Part const& part) const;
+
     /// True if the group of columns is selected and defined.
     bool wants(std::string const& name) const;
     /// True if a chain has the shape, whose name is that of a column.
@@ -86,7 +104,7 @@ class Observables {
     Scene const& scene_;
     Topology const& topology_;
     std::int64_t dof_;  // degrees of freedom
-    std::vector<std::string> columns_;
+    std::vector<std::string> columns_, replica_columns_;
     KineticEnergy kinetic_;
     std::size_t chain_ = 0, site_ = 0;  // indices of the next site and its chain in the topology
     Shape shape_;                       // chain of the next site, so far

@@ -34,9 +34,11 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
             chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == count);
         if (chain.tip == Tip::jointed) topology_.tips.push_back(std::ssize(topology_.chains));
         add_members(chain.members, static_cast<std::int64_t>(first));
-        topology_.chains.push_back({chain.name, static_cast<std::int64_t>(first),
-                                    static_cast<std::int64_t>(count), all_beads, chain.is_ring(),
-                                    chain.parent});
+        topology_.chains.push_back(
+            {chain.name, static_cast<std::int64_t>(first), static_cast<std::int64_t>(count),
+             all_beads, chain.is_ring(),
+             static_cast<std::int64_t>(topology_.chains.size() / scene.chains_a_replica()),
+             chain.parent});
     }
 }
 

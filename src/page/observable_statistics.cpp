@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
+#include "error.hpp"
 #include "math/blocking.hpp"
 #include "math/equilibration.hpp"
 #include "page/html.hpp"
@@ -62,7 +65,62 @@ ObservableStatistics statistics_of_column(ObservablesTable const& table, std::si
     std::vector<double> const& all = table.columns[k];
     std::vector<double> const rest(all.begin() + static_cast<std::ptrdiff_t>(left_out), all.end());
     Blocked const found = blocked_mean({rest});
-    return {name, unit, found.mean, found.error, found.plateau, std::ssize(rest), all.back()};
+    return {.name = name,
+            .unit = unit,
+            .mean = found.mean,
+            .standard_error = found.error,
+            .converged = found.plateau,
+            .samples = std::ssize(rest),
+            .last = all.back()};
+}
+
+/// Series of the replicas of each mean over them, from frame `left_out` on.
+std::vector<CopySeries> series_of(ObservablesTable const& of_replicas, std::size_t means,
+                                  std::size_t left_out) {
+    std::size_t const replicas = (of_replicas.names.size() - first_observable) / means;
+    std::vector<CopySeries> all(means);
+    for (std::size_t k = 0; k < means * replicas; ++k) {
+        std::vector<double> const& column = of_replicas.columns[first_observable + k];
+        all[k / replicas].emplace_back(column.begin() + static_cast<std::ptrdiff_t>(left_out),
+                                       column.end());
+    }
+    return all;
+}
+
+/// Makes the error of a mean over replicas that of independent series. Replicas forget their start
+/// separately, so that one of them may say more of the error than the mean's time series.
+void count_replicas(ObservableStatistics& of, CopySeries const& series) {
+    std::vector<double> means;
+    for (auto const& replica : series)
+        means.push_back(std::accumulate(replica.begin(), replica.end(), 0.0) /
+                        static_cast<double>(replica.size()));
+    double squares = 0;
+    auto const count = static_cast<double>(means.size());
+    double const mean = std::accumulate(means.begin(), means.end(), 0.0) / count;
+    for (double const each : means) squares += (each - mean) * (each - mean);
+    Blocked const found = blocked_mean(series);
+    of.replicas = std::ssize(series);
+    of.between_replicas = std::sqrt(squares / (count * (count - 1)));
+    of.standard_error = std::max(found.error, of.between_replicas);
+    of.converged = found.plateau;
+}
+
+/// Counts the replicas of all means over them.
+void count_replicas(TableStatistics& found, ObservablesTable const& table,
+                    ObservablesTable const& of_replicas) {
+    if (of_replicas.names.size() <= first_observable) return;
+    if (of_replicas.columns[0] != table.columns[0])
+        throw InputError("the lines of replicas.csv and observables.csv are of different steps",
+                         "replicas.csv", "run the scene again");
+    std::vector<ObservableStatistics*> means;
+    for (ObservableStatistics& each : found.observables)
+        if (each.name.starts_with("mean_")) means.push_back(&each);
+    auto const series = series_of(of_replicas, means.size(), found.left_out);
+    for (std::size_t k = 0; k < means.size(); ++k) count_replicas(*means[k], series[k]);
+    found.says += fmt::format(
+        " Errors of means over {} replicas are those of independent series, and at least the "
+        "scatter of the replicas' own means.",
+        means.empty() ? 0 : means[0]->replicas);
 }
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -75,7 +133,8 @@ std::pair<std::string, std::string> name_and_unit(std::string const& column) {
     return {column.substr(0, open), column.substr(open + 2, column.size() - open - 3)};
 }
 
-TableStatistics statistics_of(ObservablesTable const& table, Frames which) {
+TableStatistics statistics_of(ObservablesTable const& table, Frames which,
+                              ObservablesTable const& of_replicas) {
     TableStatistics found;
     found.frames = table.columns.empty() ? 0 : table.columns[0].size();
     if (found.frames == 0) return found;
@@ -91,18 +150,24 @@ TableStatistics statistics_of(ObservablesTable const& table, Frames which) {
     }
     for (std::size_t k = first_observable; k < table.names.size(); ++k)
         found.observables.push_back(statistics_of_column(table, k, found.left_out));
+    count_replicas(found, table, of_replicas);
     return found;
 }
 
 Json json_of(TableStatistics const& statistics) {
     Json observables = Json::object();
-    for (ObservableStatistics const& each : statistics.observables)
+    for (ObservableStatistics const& each : statistics.observables) {
         observables[each.name] = {{"mean", finite_or_null(each.mean)},
                                   {"standard_error", finite_or_null(each.standard_error)},
                                   {"unit", each.unit},
                                   {"samples", each.samples},
                                   {"converged", each.converged},
                                   {"last", finite_or_null(each.last)}};
+        if (each.replicas > 0)
+            observables[each.name].update(
+                {{"replicas", each.replicas},
+                 {"standard_error_between_replicas", finite_or_null(each.between_replicas)}});
+    }
     return {{"observables", observables},
             {"equilibration",
              {{"frames", statistics.frames},

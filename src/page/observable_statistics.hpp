@@ -25,6 +25,10 @@ struct ObservableStatistics {
     bool converged = false;
     std::int64_t samples = 0;
     double last = NAN;  // value of the last frame
+    /// Number of replicas whose mean this is, 0: of none; scatter of their own means, divided by
+    /// the root of that number. `standard_error` is at least that.
+    std::int64_t replicas = 0;
+    double between_replicas = NAN;
 };
 
 /// Statistics of a run's table, over all frames since the scene's start or the branch.
@@ -40,11 +44,14 @@ struct TableStatistics {
 /// the slowest observable on; the constraint error does not decide. `without_thermostat`: all,
 /// because nothing makes the run forget its start. `all`: all, for a table of unknown origin.
 enum class Frames { equilibrated, without_thermostat, all };
-TableStatistics statistics_of(ObservablesTable const&, Frames);
+/// `of_replicas`: table of the replicas (Observables::replica_columns()), without columns if there
+/// are none. Throws InputError if it has other lines than the table of their means.
+TableStatistics statistics_of(ObservablesTable const&, Frames,
+                              ObservablesTable const& of_replicas = {});
 
 /// Returns {"observables": {name: {"mean", "standard_error", "unit", "samples", "converged",
 /// "last"}}, "equilibration": {"frames", "frames_left_out", "description"}}. A number that is not
-/// finite becomes null.
+/// finite becomes null. Means over replicas have "replicas" and "standard_error_between_replicas".
 nlohmann::ordered_json json_of(TableStatistics const&);
 
 }  // namespace catena

@@ -168,6 +168,7 @@ std::string files_in(fs::path const& folder) {
         {"topology.pdb", "topology for the trajectory"},
         {"topology.cif", "topology for the trajectory"},
         {"observables.csv", "observables"},
+        {"replicas.csv", "observables of each replica"},
         {"checkpoint.h5", "checkpoint for --restart"},
         {"checkpoint.previous.h5", "the checkpoint before"},
         {"summary.json", "the numbers above"},

@@ -40,11 +40,12 @@ Table chain_table(Scene const& scene) {
     for (auto const& [i, count] : scene::alike_chains(scene)) {
         ChainSpec const& first = scene.chains[i];
         if (++rows > most_rows) {
-            table.add({"others", std::to_string(scene.chains.size() - i), "", "", "", "", ""});
+            table.add({"others", std::to_string(scene.chains_a_replica() - i), "", "", "", "", ""});
             break;
         }
         std::string const name =
-            count == 1 ? first.name : first.name + " .. " + scene.chains[i + count - 1].name;
+            count == 1 ? scene.name_in_file(i)
+                       : scene.name_in_file(i) + " .. " + scene.name_in_file(i + count - 1);
         table.add({name, std::to_string(count), std::to_string(first.size()),
                    std::string(first.is_branched() ? "branched " : "") + scene::contents_of(first),
                    base_name(first), scene::tip_name(first), kind_name(first)});

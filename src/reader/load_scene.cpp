@@ -26,6 +26,7 @@
 #include "reader/force_notes.hpp"
 #include "reader/imported.hpp"
 #include "reader/overrides.hpp"
+#include "reader/replicas.hpp"
 #include "reader/sections.hpp"
 #include "reader/structure_entry.hpp"
 #include "reader/system_links.hpp"
@@ -140,6 +141,21 @@ void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene&
         scene::give_places(drafts, frame.box, frame.dynamics.seed);
 }
 
+/// Reads and places the chains of one replica.
+std::vector<ChainSpec> one_replica(Fields const& fields, Scene& made) {
+    // Positions that those of a frame replace need not fit the links.
+    bool const relax = std::exchange(made.relax, made.relax || fields.find("start"));
+    std::vector<scene::Draft> drafts = read_chains(fields, made);
+    made.relax = relax;
+    if (Node const* const cubic = cubic_of(fields)) set_cube(*cubic, drafts, made);
+    scene::check_together(fields.node(), made, drafts);
+    give_places(fields, drafts, made);
+    std::vector<ChainSpec> chains;
+    chains.reserve(drafts.size());
+    for (scene::Draft& draft : drafts) chains.push_back(std::move(draft.chain));
+    return chains;
+}
+
 }  // namespace
 
 std::vector<PredictedChain> load_predictions(std::string const& file,
@@ -174,16 +190,16 @@ Scene parse_scene(std::string const& text, std::string const& name,
     std::unique_ptr<Node> const root = scene::parse_document(text, name);
     for (std::string const& change : overrides) scene::apply_override(*root, change);
     Fields const fields(*root, scene::keys::top);
-    Scene made = read_frame(fields, name);
-    // Positions that those of a frame replace need not fit the links.
-    bool const relax = std::exchange(made.relax, made.relax || fields.find("start"));
-    std::vector<scene::Draft> drafts = read_chains(fields, made);
-    made.relax = relax;
-    if (Node const* const cubic = cubic_of(fields)) set_cube(*cubic, drafts, made);
-    scene::check_together(*root, made, drafts);
-    give_places(fields, drafts, made);
-    made.chains.reserve(drafts.size());
-    for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
+    Scene const frame = read_frame(fields, name);
+    Scene made = frame;
+    made.replicas = scene::read_replicas(fields, frame);
+    made.chains = one_replica(fields, made);
+    if (made.replicas > 1)
+        scene::add_replicas(made, *fields.find("replicas"), [&](std::uint64_t seed) {
+            Scene other = frame;
+            other.dynamics.seed = seed;
+            return one_replica(fields, other);
+        });
     scene::note_missing_forces(made);
     scene::note_step(made);
     scene::note_water(made);

@@ -15,7 +15,7 @@ void FrameWriter::open(std::function<void()> const& look) {
     look();
     folder_ = std::make_unique<RunFolder>(run_.scene, run_.communicator, run_.options);
     observables_ = std::make_unique<Observables>(run_.scene, topology(), at_start_->terms);
-    folder_->open(topology(), columns(), run_.origin.go_on());
+    folder_->open(topology(), *observables_, run_.origin.go_on());
     if (folder_->frames_way().collective && !root)
         sites_ = Sites(run_.scene, run_.system.own_runs());
     if (!folder_->wants_topology()) return;
@@ -104,8 +104,10 @@ void FrameWriter::write(PendingFrame const& frame) {
         for (Vec3 const& x : bodies.motion.position) run_.verdict.note_coordinate(norm(x));
     });
     if (together) put_own(*frame.now.bodies);
-    if (run_.communicator.rank() == 0) judge(frame);
-    folder_->end(frame.at_tips, last_row_);
+    bool const root = run_.communicator.rank() == 0;
+    if (root) judge(frame);
+    folder_->end(frame.at_tips, last_row_,
+                 root ? observables_->replica_row() : std::vector<double>());
 }
 
 void FrameWriter::judge(PendingFrame const& frame) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "error.hpp"
 #include "io/output_file.hpp"
@@ -21,7 +22,8 @@ bool same_folder(fs::path const& a, fs::path const& b) {
 
 char const* const files_of_a_run[] = {
     "trajectory.h5md", "topology.pdb",           "topology.cif", "topology.psf",  "observables.csv",
-    "checkpoint.h5",   "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
+    "checkpoint.h5",   "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html",
+    "replicas.csv"};
 
 }  // namespace
 
@@ -104,7 +106,7 @@ std::string RunFolder::newest_checkpoint() const {
     return {};
 }
 
-void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns,
+void RunFolder::open(Topology const& topology, Observables const& observables,
                      Continuation const& go_on) {
     std::optional<Continuation> const after = appends_ ? std::optional(go_on) : std::nullopt;
     on_first_rank(communicator_, [&] {
@@ -116,8 +118,13 @@ void RunFolder::open(Topology const& topology, std::vector<std::string> const& c
     trajectory_ = std::move(made.writer);
     frames_way_ = made.way;
     on_first_rank(communicator_, [&] {
-        observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after,
-                                                           scene_.si ? "s" : "ps");
+        auto const table = [&](char const* name, std::vector<std::string> const& columns) {
+            return std::make_unique<ObservablesWriter>(path(name), columns, after,
+                                                       scene_.si ? "s" : "ps");
+        };
+        observables_ = table("observables.csv", observables.columns());
+        if (!observables.replica_columns().empty())
+            of_replicas_ = table("replicas.csv", observables.replica_columns());
     });
 }
 
@@ -189,10 +196,14 @@ void RunFolder::put(std::span<Frame const> parts) {
 }
 
 void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces,
-                    std::vector<double> const& observables) {
+                    std::vector<double> const& observables,
+                    std::vector<double> const& of_replicas) {
     with_frames([&] { trajectory_->end(tip_forces); });
-    if (communicator_.rank() == 0)
-        keeping_failure([&] { observables_->write(step_, time_, observables); });
+    if (communicator_.rank() > 0) return;
+    keeping_failure([&] {
+        observables_->write(step_, time_, observables);
+        if (of_replicas_) of_replicas_->write(step_, time_, of_replicas);
+    });
 }
 
 void RunFolder::check() {
@@ -205,7 +216,7 @@ void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const
         [&] { trajectory_->flush(); });  // a restart needs every frame up to the checkpoint's step
     on_disk([&] {
         throw_kept();
-        observables_->flush();
+        each_table([](ObservablesWriter& table) { table.flush(); });
     });
     std::map<std::string, std::int64_t> sizes;
     for (auto const& [name, array] : own) sizes[name] = scene_.bodies() * array.width;
@@ -229,7 +240,7 @@ void RunFolder::finish(std::string const& summary, std::string const& timeline) 
     with_frames([&] { trajectory_->close(); });
     on_disk([&] {
         throw_kept();
-        observables_->close();
+        each_table([](ObservablesWriter& table) { table.close(); });
         replace_text_file(path("summary.json"), summary);
         replace_text_file(path("timeline.json"), timeline);
         write_run_report(folder_);
@@ -237,19 +248,22 @@ void RunFolder::finish(std::string const& summary, std::string const& timeline) 
     });
 }
 
-ObservablesTable RunFolder::table() {
+ObservablesTable RunFolder::read_table(char const* name, ObservablesWriter* writer) {
     ObservablesTable found;
     on_disk([&] {
         throw_kept();
-        observables_->flush();
+        if (!writer) return;
+        writer->flush();
         // A table that was deleted is named by finish(), once the summary is written.
-        if (fs::exists(path("observables.csv"))) found = read_observables(path("observables.csv"));
+        if (fs::exists(path(name))) found = read_observables(path(name));
     });
     return found;
 }
 
 void RunFolder::require_files() const {
-    for (char const* const name : {"trajectory.h5md", "observables.csv"})
+    std::vector<char const*> names{"trajectory.h5md", "observables.csv"};
+    if (of_replicas_) names.push_back("replicas.csv");
+    for (char const* const name : names)
         if (std::error_code ignored; !fs::exists(path(name), ignored))
             throw ComputationError("a file of the run was deleted while it ran (" + path(name) +
                                    "): run it again from the start");

@@ -28,7 +28,7 @@ class RunFolder {
 
     /// Opens the files. `go_on`: step and records to continue from, if the folder is that of the
     /// checkpoint's run. Collective.
-    void open(Topology const&, std::vector<std::string> const& columns, Continuation const& go_on);
+    void open(Topology const&, Observables const&, Continuation const& go_on);
     /// True if the topology's files are to be written: parts of the first state, then
     /// end_topology(). Failures are stored for check().
     bool wants_topology() const { return !appends_; }
@@ -41,7 +41,7 @@ class RunFolder {
     void begin(std::int64_t step, double time);
     void put(std::span<Frame const> parts);
     void end(std::vector<Vector<double, 6>> const& tip_forces,
-             std::vector<double> const& observables);
+             std::vector<double> const& observables, std::vector<double> const& of_replicas);
     /// Throws stored failures of the topology, and of frames that are not written together.
     /// Collective.
     void check();
@@ -53,13 +53,23 @@ class RunFolder {
     ParallelIoMode const& checkpoints_way() const { return checkpoints_way_; }
     /// Returns the table of observables as it stands in its file, with the frames of preceding
     /// runs. Empty on ranks other than 0. Collective.
-    ObservablesTable table();
+    ObservablesTable table() { return read_table("observables.csv", observables_.get()); }
+    /// Returns the table of the replicas, with the same lines; it has no columns without replicas.
+    ObservablesTable table_of_replicas() { return read_table("replicas.csv", of_replicas_.get()); }
     /// Closes the tables and writes summary, timeline and report. Collective.
     void finish(std::string const& summary, std::string const& timeline);
 
     std::string path(std::string const& name) const { return folder_ + "/" + name; }
 
   private:
+    /// Returns a table as it stands in its file; empty without a writer or a file. Collective.
+    ObservablesTable read_table(char const* name, ObservablesWriter* writer);
+    /// Applies `action` to the writers of tables.
+    template <class Action>
+    void each_table(Action const& action) {
+        for (ObservablesWriter* const writer : {observables_.get(), of_replicas_.get()})
+            if (writer) action(*writer);
+    }
     /// Throws InputError if another run writes there, or files there would be lost.
     void refuse_unless_free(RunOptions const&) const;
     /// Returns the checkpoint with which a restart can begin; empty if there is none.
@@ -92,7 +102,7 @@ class RunFolder {
     std::unique_ptr<TopologyWriter> topology_;
     ParallelIoMode frames_way_, checkpoints_way_;
     std::unique_ptr<TrajectoryWriter> trajectory_;
-    std::unique_ptr<ObservablesWriter> observables_;
+    std::unique_ptr<ObservablesWriter> observables_, of_replicas_;
     std::exception_ptr failure_;  // stored failure
     std::int64_t step_ = -1;      // step of the last frame that was begun here
     double time_ = 0;

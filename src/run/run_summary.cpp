@@ -56,6 +56,7 @@ Json system_of(Scene const& scene) {
                 {"bodies", scene.bodies()},
                 {"beads", beads},
                 {"dof", degrees_of_freedom(scene)}};
+    if (scene.replicas > 1) system["replicas"] = scene.replicas;
     if (std::string const charges = assumed_charges(scene); !charges.empty())
         system["net_charge"] = charges;
     if (!scene.box) return system;
@@ -95,12 +96,13 @@ Json run_of(SummarySource const& of) {
 
 /// Statistics of the observables; empty on ranks other than 0. Collective.
 Json statistics_of(SummarySource const& of) {
-    ObservablesTable const table = of.frames.folder().table();
+    ObservablesTable const table = of.frames.folder().table(),
+                           of_replicas = of.frames.folder().table_of_replicas();
     if (of.communicator.rank() != 0) return Json::object();
     DynamicsSpec const& dynamics = of.scene.dynamics;
     bool const forgets = is_langevin(dynamics.integrator) && dynamics.friction > 0;
-    Json found =
-        json_of(statistics_of(table, forgets ? Frames::equilibrated : Frames::without_thermostat));
+    Json found = json_of(statistics_of(
+        table, forgets ? Frames::equilibrated : Frames::without_thermostat, of_replicas));
     for (std::size_t i = 0; i < of.frames.last_row().size(); ++i)
         found["last_observables"][of.frames.columns()[i]] = of.frames.last_row()[i];
     return found;
@@ -181,7 +183,7 @@ Json files_of(SummarySource const& of) {
     for (char const* name : {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5",
                              "summary.json", "timeline.json", "report.html"})
         files[name] = folder.path(name);
-    for (char const* name : {"topology.cif", "topology.psf"})
+    for (char const* name : {"topology.cif", "topology.psf", "replicas.csv"})
         if (std::error_code ignored;
             of.communicator.rank() == 0 && std::filesystem::exists(folder.path(name), ignored))
             files[name] = folder.path(name);

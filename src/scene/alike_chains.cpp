@@ -26,14 +26,15 @@ std::string contents_text(ChainSpec const& chain) {
 }
 
 std::string text_of(Scene const& scene, AlikeChains const& run) {
-    ChainSpec const &first = scene.chains[run.first],
-                    &last = scene.chains[run.first + run.count - 1];
+    ChainSpec const& first = scene.chains[run.first];
     std::string text =
         fmt::format("{} {}{} of {} {}", run.count, first.is_branched() ? "branched " : "",
                     run.count == 1 ? "chain" : "chains", first.size(), contents_text(first));
     if (first.is_ring()) text += " in a ring";
-    return text + (run.count == 1 ? fmt::format(" ({})", first.name)
-                                  : fmt::format(" ({} to {})", first.name, last.name));
+    std::string const name = scene.name_in_file(run.first);
+    return text + (run.count == 1 ? fmt::format(" ({})", name)
+                                  : fmt::format(" ({} to {})", name,
+                                                scene.name_in_file(run.first + run.count - 1)));
 }
 
 std::string text_of(OpenMmSpec const& openmm) {
@@ -60,7 +61,7 @@ std::string tip_name(ChainSpec const& chain) {
 
 std::vector<AlikeChains> alike_chains(Scene const& scene) {
     std::vector<AlikeChains> runs;
-    for (std::size_t i = 0; i < scene.chains.size(); ++i) {
+    for (std::size_t i = 0; i < scene.chains_a_replica(); ++i) {
         if (!runs.empty() && alike(scene.chains[runs.back().first], scene.chains[i]))
             ++runs.back().count;
         else
@@ -75,7 +76,8 @@ std::string chains_text(Scene const& scene) {
     for (std::size_t i = 0; i < runs.size() && i < most_named; ++i)
         text += (i == 0 ? "" : "; ") + text_of(scene, runs[i]);
     if (runs.size() > most_named)
-        text += fmt::format("; {} other chains", scene.chains.size() - runs[most_named].first);
+        text += fmt::format("; {} other chains", scene.chains_a_replica() - runs[most_named].first);
+    if (scene.replicas > 1) text += fmt::format("; {} replicas", scene.replicas);
     return text;
 }
 

@@ -13,8 +13,8 @@ namespace catena::scene {
 struct AlikeChains {
     std::size_t first = 0, count = 0;
 };
-/// Returns the scene's chains as runs of alike ones, in their order. Chains are alike if size,
-/// contents, base, tip and kind of handles are equal.
+/// Returns the chains of the first replica as runs of alike ones, in their order. Chains are alike
+/// if size, contents, base, tip and kind of handles are equal.
 std::vector<AlikeChains> alike_chains(Scene const&);
 
 /// Returns "beads", "bodies" or "bodies and beads".
@@ -23,7 +23,8 @@ char const* contents_of(ChainSpec const&);
 std::string tip_name(ChainSpec const&);
 
 /// Returns the chains in words: "20 chains of 163 beads (fus-1 to fus-20)". Alike chains are named
-/// once, and long lists end with a count.
+/// once, and long lists end with a count. Chains of a replica count once: "1 chain of 140 beads
+/// (asyn); 256 replicas".
 std::string chains_text(Scene const&);
 /// Returns what acts on the chains in words: the force model of OpenMM, gravity and drag; empty if
 /// nothing does.

@@ -111,6 +111,7 @@ std::vector<DecidingValue> deciding_values(Scene const& scene) {
     add_forces(values, scene.forces);
     add(values, "box", scene.box ? text_of(*scene.box) : "none");
     add(values, "units", scene.si ? "si" : "md", Role::fixed);
+    if (scene.replicas > 1) add(values, "replicas", scene.replicas, Role::fixed);
     add_chains(values, scene.chains);
     if (scene.relax) add(values, "relax", true, Role::start);
     return values;

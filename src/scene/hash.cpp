@@ -176,6 +176,7 @@ std::string fingerprint(Scene const& scene) {
     add_named(print, "fixman", d.fixman);
     add_named(print, "tolerance", d.tolerance > 0, d.tolerance);
     add_named(print, "relax", scene.relax);
+    add_named(print, "replicas", scene.replicas > 1, scene.replicas);
     return print.text();
 }
 

@@ -9,6 +9,11 @@
 
 namespace catena {
 
+std::string Scene::name_in_file(std::size_t chain) const {
+    std::string const& name = chains[chain].name;
+    return replicas > 1 ? name.substr(0, name.rfind('-')) : name;
+}
+
 std::int64_t Scene::bodies() const {
     std::int64_t sum = 0;
     for (ChainSpec const& chain : chains) sum += static_cast<std::int64_t>(chain.size());

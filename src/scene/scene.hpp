@@ -355,6 +355,9 @@ struct Scene {
     std::string title;
     bool si = false;  // `units: si`
     std::vector<ChainSpec> chains;
+    /// Number of replicas, which exert no forces on each other. The chains of a replica follow one
+    /// another, and all replicas have the same chains.
+    std::int64_t replicas = 1;
     /// Edges of the periodic box.
     std::optional<Vec3> box;
     ForceSpec forces;
@@ -374,6 +377,12 @@ struct Scene {
     /// Boltzmann constant in the scene's units: kJ/mol/K or J/K.
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;
+    /// Returns the name of a chain without the number of its replica, as the scene file has it.
+    std::string name_in_file(std::size_t chain) const;
+    /// Number of chains of one replica.
+    std::size_t chains_a_replica() const {
+        return chains.size() / static_cast<std::size_t>(replicas);
+    }
     /// Appends a note unless it is among the last thousand.
     void note(std::string text);
 };

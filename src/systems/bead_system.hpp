@@ -46,7 +46,13 @@ struct BeadSystem {
     std::string scene_file;  // for messages
     int threads = 0;         // for the search for ghosts; 0: the rank's cores
 
+    /// Number of replicas, which exert no forces on each other. Their beads follow one another, and
+    /// all replicas have the same beads.
+    std::int64_t replicas = 1;
+
     std::int64_t size() const { return static_cast<std::int64_t>(mass.size()); }
+    /// Number of beads of one replica.
+    std::int64_t beads_a_replica() const { return size() / replicas; }
     /// Beads that the rank owns, in the order of by_rank.
     std::vector<std::int64_t> beads_of(int rank) const;
     /// Number of a bead in the scene, for messages.

@@ -1,6 +1,7 @@
 // Implements the copies of bonded forces, with one overload per kind.
 #include "systems/bonded_forces.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace catena {
@@ -32,7 +33,7 @@ std::unique_ptr<Force> copy_terms(HarmonicBondForce const& from, TermFilter& fil
         int a, b;
         double length, k;
         from.getBondParameters(i, a, b, length, k);
-        if (filter.keep({&a, &b})) to->addBond(a, b, length, k);
+        filter.each({&a, &b}, [&] { to->addBond(a, b, length, k); });
     }
     return to;
 }
@@ -44,7 +45,7 @@ std::unique_ptr<Force> copy_terms(HarmonicAngleForce const& from, TermFilter& fi
         int a, b, c;
         double angle, k;
         from.getAngleParameters(i, a, b, c, angle, k);
-        if (filter.keep({&a, &b, &c})) to->addAngle(a, b, c, angle, k);
+        filter.each({&a, &b, &c}, [&] { to->addAngle(a, b, c, angle, k); });
     }
     return to;
 }
@@ -56,7 +57,7 @@ std::unique_ptr<Force> copy_terms(PeriodicTorsionForce const& from, TermFilter& 
         int a, b, c, d, periodicity;
         double phase, k;
         from.getTorsionParameters(i, a, b, c, d, periodicity, phase, k);
-        if (filter.keep({&a, &b, &c, &d})) to->addTorsion(a, b, c, d, periodicity, phase, k);
+        filter.each({&a, &b, &c, &d}, [&] { to->addTorsion(a, b, c, d, periodicity, phase, k); });
     }
     return to;
 }
@@ -68,7 +69,7 @@ std::unique_ptr<Force> copy_terms(RBTorsionForce const& from, TermFilter& filter
         int a, b, c, d;
         double c0, c1, c2, c3, c4, c5;
         from.getTorsionParameters(i, a, b, c, d, c0, c1, c2, c3, c4, c5);
-        if (filter.keep({&a, &b, &c, &d})) to->addTorsion(a, b, c, d, c0, c1, c2, c3, c4, c5);
+        filter.each({&a, &b, &c, &d}, [&] { to->addTorsion(a, b, c, d, c0, c1, c2, c3, c4, c5); });
     }
     return to;
 }
@@ -83,7 +84,7 @@ std::unique_ptr<Force> copy_terms(CustomBondForce const& from, TermFilter& filte
     for (int i = 0; i < from.getNumBonds(); ++i) {
         int a, b;
         from.getBondParameters(i, a, b, parameters);
-        if (filter.keep({&a, &b})) to->addBond(a, b, parameters);
+        filter.each({&a, &b}, [&] { to->addBond(a, b, parameters); });
     }
     return to;
 }
@@ -98,7 +99,7 @@ std::unique_ptr<Force> copy_terms(CustomAngleForce const& from, TermFilter& filt
     for (int i = 0; i < from.getNumAngles(); ++i) {
         int a, b, c;
         from.getAngleParameters(i, a, b, c, parameters);
-        if (filter.keep({&a, &b, &c})) to->addAngle(a, b, c, parameters);
+        filter.each({&a, &b, &c}, [&] { to->addAngle(a, b, c, parameters); });
     }
     return to;
 }
@@ -113,7 +114,7 @@ std::unique_ptr<Force> copy_terms(CustomTorsionForce const& from, TermFilter& fi
     for (int i = 0; i < from.getNumTorsions(); ++i) {
         int a, b, c, d;
         from.getTorsionParameters(i, a, b, c, d, parameters);
-        if (filter.keep({&a, &b, &c, &d})) to->addTorsion(a, b, c, d, parameters);
+        filter.each({&a, &b, &c, &d}, [&] { to->addTorsion(a, b, c, d, parameters); });
     }
     return to;
 }
@@ -127,7 +128,7 @@ std::unique_ptr<Force> copy_terms(CustomExternalForce const& from, TermFilter& f
     for (int i = 0; i < from.getNumParticles(); ++i) {
         int a;
         from.getParticleParameters(i, a, parameters);
-        if (filter.keep({&a})) to->addParticle(a, parameters);
+        filter.each({&a}, [&] { to->addParticle(a, parameters); });
     }
     return to;
 }
@@ -141,10 +142,10 @@ void copy_tables(Source const& from, Source& to) {
 }
 
 /// Passes a term with any number of particles to the filter.
-bool keep_all(TermFilter& filter, std::vector<int>& particles) {
+void each_of(TermFilter& filter, std::vector<int>& particles, std::function<void()> const& add) {
     std::vector<int*> pointers;
     for (int& p : particles) pointers.push_back(&p);
-    return !pointers.empty() && filter.keep(std::span<int* const>(pointers));
+    if (!pointers.empty()) filter.each(std::span<int* const>(pointers), add);
 }
 
 /// Copies all of a force with energy function and tables but its terms.
@@ -165,7 +166,7 @@ std::unique_ptr<Force> copy_terms(CustomCompoundBondForce const& from, TermFilte
     std::vector<double> parameters;
     for (int i = 0; i < from.getNumBonds(); ++i) {
         from.getBondParameters(i, particles, parameters);
-        if (keep_all(filter, particles)) to->addBond(particles, parameters);
+        each_of(filter, particles, [&] { to->addBond(particles, parameters); });
     }
     return to;
 }
@@ -175,7 +176,7 @@ std::unique_ptr<Force> copy_terms(CustomCentroidBondForce const& from, TermFilte
     auto to = std::make_unique<CustomCentroidBondForce>(from.getNumGroupsPerBond(),
                                                         from.getEnergyFunction());
     copy_all_but_terms(from, *to);
-    std::vector<int> groups, members, all;
+    std::vector<int> groups, copied, members, all;
     std::vector<double> parameters, weights;
     for (int i = 0; i < from.getNumBonds(); ++i) {
         from.getBondParameters(i, groups, parameters);
@@ -184,15 +185,17 @@ std::unique_ptr<Force> copy_terms(CustomCentroidBondForce const& from, TermFilte
             from.getGroupParameters(group, members, weights);
             all.insert(all.end(), members.begin(), members.end());
         }
-        if (!keep_all(filter, all)) continue;
-        auto next = all.begin();
-        for (int& group : groups) {
-            from.getGroupParameters(group, members, weights);
-            auto const end = next + static_cast<std::ptrdiff_t>(members.size());
-            group = to->addGroup({next, end}, weights);
-            next = end;
-        }
-        to->addBond(groups, parameters);
+        each_of(filter, all, [&] {
+            auto next = all.begin();
+            copied.clear();
+            for (int const group : groups) {
+                from.getGroupParameters(group, members, weights);
+                auto const end = next + static_cast<std::ptrdiff_t>(members.size());
+                copied.push_back(to->addGroup({next, end}, weights));
+                next = end;
+            }
+            to->addBond(copied, parameters);
+        });
     }
     return to;
 }

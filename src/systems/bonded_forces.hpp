@@ -3,6 +3,7 @@
 
 #include <OpenMM.h>
 
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -17,6 +18,14 @@ class TermFilter {
     virtual bool keep(std::span<int* const> particles) = 0;
     bool keep(std::initializer_list<int*> particles) {
         return keep(std::span<int* const>(particles.begin(), particles.size()));
+    }
+    /// Calls `add` for each copy of the term to make, with the particles' numbers set: by default
+    /// once if the term is kept.
+    virtual void each(std::span<int* const> particles, std::function<void()> const& add) {
+        if (keep(particles)) add();
+    }
+    void each(std::initializer_list<int*> particles, std::function<void()> const& add) {
+        each(std::span<int* const>(particles.begin(), particles.size()), add);
     }
 };
 

@@ -30,14 +30,15 @@ struct Group {
     double charge;
 };
 
-/// The parts of a BeadSystem that charges depend on.
+/// The parts of a BeadSystem that charges depend on, of one replica.
 BeadSystem charged_beads(Scene const& scene) {
     BeadSystem beads;
     beads.chain_offset.push_back(0);
-    for (ChainSpec const& chain : scene.chains) {
+    for (std::size_t c = 0; c < scene.chains_a_replica(); ++c) {
+        ChainSpec const& chain = scene.chains[c];
         auto const& names = chain.is_beads() ? chain.beads.residue : chain.carried().residue;
         beads.residue.insert(beads.residue.end(), names.begin(), names.end());
-        beads.chain_name.push_back(chain.name);
+        beads.chain_name.push_back(scene.name_in_file(c));
         beads.chain_offset.push_back(std::ssize(beads.residue));
     }
     return beads;
@@ -100,6 +101,7 @@ std::string assumed_charges(Scene const& scene) {
         charge_text(bead_charges(spec, residues, beads), beads).substr(charge_heading.size());
     if (std::find(beads.residue.begin(), beads.residue.end(), "HIS") != beads.residue.end())
         text += "; " + histidine_text(spec, residues, beads.residue);
+    if (scene.replicas > 1) text += "; in each replica";
     return text;
 }
 

@@ -105,7 +105,8 @@ BeadSystem beads_of(std::vector<std::int64_t> const& bead, BeadSystem const& all
         some.first_of_rank.push_back(static_cast<std::int64_t>(some.by_rank.size()));
     }
     if (all.by_rank.empty()) some.by_rank.clear();
-    some.number = bead;
+    for (std::int64_t const b : bead) some.number.push_back(all.name(b));
+    some.replicas = all.replicas;
     some.box = all.box;
     some.scene_file = all.scene_file;
     some.threads = all.threads;

@@ -4,6 +4,7 @@
 #include "systems/subset.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -77,6 +78,8 @@ class Renumbering : public TermFilter {
         : particles_(subset.particles),
           after_(subset.after),
           own_count_(subset.own),
+          fixed_count_(subset.fixed),
+          repetitions_(subset.repetitions),
           index_(particle_count, -1) {
         for (int i = 0; i < subset.fixed; ++i) index_[particles_[i]] = i;
     }
@@ -95,19 +98,31 @@ class Renumbering : public TermFilter {
         for (int* p : particles) *p = index_[*p];
         return true;
     }
+    void each(std::span<int* const> particles, std::function<void()> const& add) override {
+        if (keep(particles)) repeat(particles, add);
+    }
+    using TermFilter::each;
+    /// Calls `add` for each repetition of a pair that is permanently in the subset.
+    void each_pair(std::initializer_list<int*> pair, std::function<void()> const& add) const {
+        std::span<int* const> const particles(pair.begin(), pair.size());
+        if (keep_pair(particles)) repeat(particles, add);
+    }
     std::vector<int> const& particles() const { return particles_; }
     std::vector<int> const& after() const { return after_; }
+    int repetitions() const { return repetitions_; }
 
   private:
+    void repeat(std::span<int* const> particles, std::function<void()> const& add) const {
+        for (int r = 0; r < repetitions_; ++r) {
+            if (r > 0)
+                for (int* const p : particles) *p += fixed_count_;
+            add();
+        }
+    }
     std::vector<int> const &particles_, &after_;
-    int own_count_;
+    int own_count_, fixed_count_, repetitions_;
     std::vector<int> index_;  // index in the subset; -1: not permanently in it
 };
-
-/// Renumbers the particles in place; returns false if one of them is not permanently in the subset.
-bool keep_pair(Renumbering const& subset, std::initializer_list<int*> particles) {
-    return subset.keep_pair({particles.begin(), particles.size()});
-}
 
 template <class Source>
 void copy_globals(Source const& from, Source& to) {
@@ -163,8 +178,7 @@ void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const
                              CustomNonbondedForce& to) {
     auto const renumbered = [&](std::set<int> const& all) {
         std::set<int> kept;
-        for (int p : all)
-            if (keep_pair(subset, {&p})) kept.insert(p);
+        for (int p : all) subset.each_pair({&p}, [&] { kept.insert(p); });
         return kept;
     };
     std::set<int> one, other;
@@ -189,14 +203,15 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
                                  from.getTabulatedFunction(i).Copy());
     copy_computed_values(from, *to);
     std::vector<double> parameters;
-    for (int p : subset.particles()) {
-        from.getParticleParameters(p, parameters);
-        to->addParticle(parameters);
-    }
+    for (int r = 0; r < subset.repetitions(); ++r)
+        for (int p : subset.particles()) {
+            from.getParticleParameters(p, parameters);
+            to->addParticle(parameters);
+        }
     for (int i = 0; i < from.getNumExclusions(); ++i) {
         int a, b;
         from.getExclusionParticles(i, a, b);
-        if (keep_pair(subset, {&a, &b})) to->addExclusion(a, b);
+        subset.each_pair({&a, &b}, [&] { to->addExclusion(a, b); });
     }
     for (int const k : subset.after()) to->addExclusion(k - 1, k);
     copy_interaction_groups(from, subset, *to);
@@ -206,12 +221,15 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
 /// Copies exceptions with their offsets. An exception between two ghosts must stay an exclusion,
 /// but its energy is not needed.
 void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, NonbondedForce& to) {
-    std::vector<int> index(from.getNumExceptions(), -1);
+    std::vector<std::vector<int>> index(static_cast<std::size_t>(from.getNumExceptions()));
     for (int i = 0; i < from.getNumExceptions(); ++i) {
         int a, b;
         double charge, sigma, epsilon;
         from.getExceptionParameters(i, a, b, charge, sigma, epsilon);
-        if (keep_pair(subset, {&a, &b})) index[i] = to.addException(a, b, charge, sigma, epsilon);
+        subset.each_pair({&a, &b}, [&] {
+            index[static_cast<std::size_t>(i)].push_back(
+                to.addException(a, b, charge, sigma, epsilon));
+        });
     }
     for (int const k : subset.after()) to.addException(k - 1, k, 0, 1, 0);
     std::string parameter;
@@ -219,8 +237,8 @@ void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, Nonb
         int exception;
         double charge, sigma, epsilon;
         from.getExceptionParameterOffset(i, parameter, exception, charge, sigma, epsilon);
-        if (index[exception] >= 0)
-            to.addExceptionParameterOffset(parameter, index[exception], charge, sigma, epsilon);
+        for (int const copied : index[static_cast<std::size_t>(exception)])
+            to.addExceptionParameterOffset(parameter, copied, charge, sigma, epsilon);
     }
 }
 
@@ -237,16 +255,17 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     to->setUseDispersionCorrection(false);  // the correction adds no force
     copy_globals(from, *to);
     double charge, sigma, epsilon;
-    for (int p : subset.particles()) {
-        from.getParticleParameters(p, charge, sigma, epsilon);
-        to->addParticle(charge, sigma, epsilon);
-    }
+    for (int r = 0; r < subset.repetitions(); ++r)
+        for (int p : subset.particles()) {
+            from.getParticleParameters(p, charge, sigma, epsilon);
+            to->addParticle(charge, sigma, epsilon);
+        }
     std::string parameter;
     for (int i = 0; i < from.getNumParticleParameterOffsets(); ++i) {
         int p;
         from.getParticleParameterOffset(i, parameter, p, charge, sigma, epsilon);
-        if (keep_pair(subset, {&p}))
-            to->addParticleParameterOffset(parameter, p, charge, sigma, epsilon);
+        subset.each_pair(
+            {&p}, [&] { to->addParticleParameterOffset(parameter, p, charge, sigma, epsilon); });
     }
     copy_exceptions(from, subset, *to);
     return to;
@@ -368,7 +387,8 @@ std::unique_ptr<System> system_of(Subset const& subset, System const& whole,
     OpenMM::Vec3 a, b, c;
     whole.getDefaultPeriodicBoxVectors(a, b, c);
     system->setDefaultPeriodicBoxVectors(a, b, c);
-    for (int p : subset.particles) system->addParticle(whole.getParticleMass(p));
+    for (int r = 0; r < subset.repetitions; ++r)
+        for (int p : subset.particles) system->addParticle(whole.getParticleMass(p));
     Renumbering renumbering(whole.getNumParticles(), subset);
     for (int const i : forces) {
         Force const& from = whole.getForce(i);

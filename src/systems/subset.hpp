@@ -44,6 +44,9 @@ struct Subset {
     /// Exchangeable particles, by their index here, that OpenMM treats as one molecule with the
     /// preceding particle.
     std::vector<int> after = {};
+    /// Number of times that the fixed particles and all their terms are repeated; the repetitions
+    /// follow one another. Above 1 all particles must be own ones.
+    int repetitions = 1;
 };
 
 /// True if particles of a Subset's System can be exchanged. Parameters can be exchanged, members of

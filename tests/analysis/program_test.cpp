@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "io/output_file.hpp"
 #include "tests/analysis/sample_trajectory.hpp"
@@ -76,6 +77,32 @@ TEST_F(Trajectories, AnAnalysisPrintsItsTableAndWritesItsFiles) {
     EXPECT_FALSE(is_there("run/analysis/density.csv"));
     EXPECT_NE(read_text_file(folder_ / "run/analysis/summary.csv").find("asphericity,chain,,"),
               std::string::npos);
+}
+
+/// Six replicas of two chains, all at the same places: no contacts between replicas.
+TEST_F(Trajectories, ReplicasAreIndependent) {
+    Topology topology = topology_of({12, 12, 12, 12, 12, 12, 12, 12, 12, 12, 12, 12});
+    write("together", {0, 10, 20, 30}, topology);
+    for (std::size_t c = 0; c < topology.chains.size(); ++c)
+        topology.chains[c].replica = static_cast<std::int64_t>(c / 2);
+    write("replicas", {0, 10, 20, 30}, topology);
+    auto const contacts = [&](std::string const& name) {
+        Ended const e = in_folder({"analyse", name, "--json", name + ".json"});
+        expect_good(e);
+        EXPECT_EQ(e.out.find("6 replicas are independent of each other") != std::string::npos,
+                  name == "replicas");
+        for (auto const& each :
+             nlohmann::json::parse(std::ifstream(folder_ / name + ".json")).at("quantities"))
+            if (each.at("name") == "radius_of_gyration") {
+                EXPECT_EQ(each.at("error_by_blocking") >= each.at("error_between_copies"), true);
+            } else if (each.at("name") == "contacts_between") {
+                return each.at("value").get<double>();
+            }
+        return -1.0;
+    };
+    double const together = contacts("together"), replicas = contacts("replicas");
+    EXPECT_GT(replicas, 0);
+    EXPECT_GT(together, 5 * replicas);
 }
 
 TEST_F(Trajectories, WhatCannotBeComputedIsRefusedInOneLine) {

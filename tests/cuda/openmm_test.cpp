@@ -342,6 +342,20 @@ INSTANTIATE_TEST_SUITE_P(
              "box: {periodic: [60, 60, 60]}"},
         Case{"domains_in_layers", "{name: a, count: 2, " CATENA_TEST_DOMAINS "}",
              "box: {periodic: [40, 40, 40]}", true},
+        // Two chains a replica, and so many replicas that OpenMM keeps a list of pairs.
+        Case{"replicas",
+             "{name: a, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
+             "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
+             "replicas: 5"},
+        Case{"many_replicas",
+             "{name: a, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
+             "thermal}",
+             "replicas: 40"},
+        Case{"replicas_of_domains", "{name: a, " CATENA_TEST_DOMAINS "}", "replicas: 3"},
+        Case{"replicas_in_layers",
+             "{name: a, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
+             "thermal}",
+             "replicas: 5", true},
         Case{"layers",
              "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, "
              "velocities: "

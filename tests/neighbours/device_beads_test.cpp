@@ -150,5 +150,29 @@ TEST(DeviceBeads, ABeadsCellIsTheBoxesThatItIsAway) {
     EXPECT_EQ(bead_at(7, {{-0.1, 5, 21}}, std::nullopt).place, 7);
 }
 
+TEST(DeviceBeads, OfReplicasGoToTheirPlaces) {
+    Arrays a;
+    std::vector<double> const centre{0, 0, 0, 1000, 0, -2000, 5, 5, 5};
+    std::int64_t strayed = 0;
+    DeviceParticles p = a.mixed();
+    p.centre = centre.data();
+    p.box = {{30, 30, 30}};
+    p.farthest = 12;
+    p.strayed = &strayed;
+    p.put(1, {{1001, 2, -1990}});  // cells 1, 0, -2
+    EXPECT_EQ(a.position[0], 1.0f - 30);
+    EXPECT_EQ(a.position[1], 2.0f);
+    EXPECT_EQ(a.position[2], 10.0f + 60);
+    p.from(1).put(0, {{1012, 12, -2012}});
+    EXPECT_EQ(a.position[0], 12.0f - 30);
+    EXPECT_EQ(strayed, 0);
+    p.put(1, {{1001, -12.01, -1990}});
+    EXPECT_EQ(strayed, 1);
+    strayed = 0;
+    p.put(1, {{1001, std::numeric_limits<double>::quiet_NaN(), -1990}});
+    EXPECT_EQ(strayed, 1);
+    EXPECT_EQ(a.trouble, 1);
+}
+
 }  // namespace
 }  // namespace catena::testing

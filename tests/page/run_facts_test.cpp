@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "error.hpp"
 #include "page/observable_statistics.hpp"
 
 namespace catena::test {
@@ -69,6 +70,41 @@ TEST(ObservableStatistics, ADriftThatNeverEndsIsSaid) {
     EXPECT_EQ(found.left_out, 50U);
     EXPECT_NE(found.says.find("the run may not have reached equilibrium"), std::string::npos);
     EXPECT_FALSE(found.observables[0].converged);
+}
+
+/// The mean of replicas that stay where they started has no scatter in time: the error is theirs.
+TEST(ObservableStatistics, ReplicasAreIndependent) {
+    std::size_t constexpr frames = 40, replicas = 64;
+    ObservablesTable means{{"step", "time [ps]", "temperature [K]", "mean_radius [nm]"},
+                           std::vector<std::vector<double>>(4)},
+        each{{"step", "time [ps]"}, std::vector<std::vector<double>>(2 + replicas)};
+    std::mt19937_64 draw(5);
+    std::normal_distribution<double> normal(3, 0.8);
+    std::vector<double> radius(replicas);
+    double mean = 0;
+    for (double& r : radius) mean += (r = normal(draw)) / replicas;
+    for (std::size_t r = 0; r < replicas; ++r)
+        each.names.push_back("radius_replica_" + std::to_string(r + 1));
+    for (std::size_t f = 0; f < frames; ++f) {
+        for (ObservablesTable* table : {&means, &each}) {
+            table->columns[0].push_back(static_cast<double>(f));
+            table->columns[1].push_back(0.1 * static_cast<double>(f));
+        }
+        means.columns[2].push_back(300);
+        means.columns[3].push_back(mean);
+        for (std::size_t r = 0; r < replicas; ++r) each.columns[2 + r].push_back(radius[r]);
+    }
+    TableStatistics const found = statistics_of(means, Frames::equilibrated, each);
+    ObservableStatistics const& of = found.observables[1];
+    EXPECT_EQ(found.observables[0].replicas, 0);
+    EXPECT_EQ(of.replicas, 64);
+    EXPECT_NEAR(of.mean, 3, 4 * of.standard_error);
+    EXPECT_NEAR(of.between_replicas, 0.1, 0.03);
+    EXPECT_NEAR(of.standard_error, of.between_replicas, 1e-3);
+    EXPECT_TRUE(of.converged);
+    EXPECT_NE(found.says.find("over 64 replicas"), std::string::npos);
+    each.columns[0].back() = -1;
+    EXPECT_THROW(statistics_of(means, Frames::equilibrated, each), InputError);
 }
 
 TEST(RunFacts, MeanAndErrorEndAtTheSameDecimal) {

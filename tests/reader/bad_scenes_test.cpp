@@ -421,6 +421,28 @@ forces: {openmm: {builder: calvados2}})y",
      "residue `UNK` has no parameters in calvados2 (s.yaml: chains[0], bead 1, line 1): give the "
      "chain as `sequence`, or its beads a "
      "`residue` among the twenty amino acids"},
+    {"no_replicas", "replicas: 0\nchains: [{sequence: GGG, model: calvados2}]",
+     "replicas 0 is below 1 (s.yaml: replicas, line 1): give 1 or more"},
+    {"replicas_in_a_box", R"y(replicas: 2
+chains: [{sequence: GGG, model: calvados2}]
+box: {periodic: [20, 20, 20]})y",
+     "replicas in a periodic box (s.yaml: box, line 3): write `box: none`, since replicas never "
+     "meet, or leave `replicas` out and run the scene with several seeds"},
+    {"replicas_and_balance", R"y(replicas: 2
+chains: [{sequence: GGG, model: calvados2}]
+solver: {balance: true})y",
+     "shares by speeds for replicas (s.yaml: solver.balance, line 3): leave it out: ranks get "
+     "equal numbers of replicas"},
+    {"replicas_and_replicate", R"y(replicas: 2
+chains: [{sequence: GGG, model: calvados2}]
+forces: {openmm: {builder: calvados2, replicate: true}})y",
+     "`replicate` for replicas (s.yaml: forces.openmm.replicate, line 3): leave it out: ranks get "
+     "whole replicas and exchange nothing"},
+    {"replicas_and_split", R"y(replicas: 2
+chains: [{sequence: GGG, model: calvados2}]
+forces: {openmm: {builder: calvados2, split: pairs}})y",
+     "`split` for replicas (s.yaml: forces.openmm.split, line 3): leave it out: ranks get "
+     "whole replicas and exchange nothing"},
 };
 INSTANTIATE_TEST_SUITE_P(Together, Refused, testing::ValuesIn(together_cases), name_of_case);
 

@@ -1,4 +1,5 @@
 // Whole scenes: every section's values and defaults, and the hash.
+#include <cmath>
 #include <map>
 
 #include "reader/load_scene.hpp"
@@ -209,6 +210,59 @@ TEST(Names, of_what_can_be_chosen) {
     EXPECT_STREQ(name_of(Backend::cuda_levels), "cuda-levels");
     EXPECT_STREQ(name_of(Handles::projected), "projected");
     EXPECT_STREQ(name_of(JointType::spherical), "spherical");
+}
+
+std::string const peptides = R"y(
+chains: [{name: a, sequence: GASGAS, model: calvados2, conformation: self_avoiding, count: 2},
+         {name: b, sequence: GAS, model: calvados2}]
+dynamics: {integrator: g-baoab, step: 0.01, steps: 10, temperature: 300, seed: 9}
+)y";
+
+/// Shape of a chain: distance of its ends.
+double ends_apart(ChainSpec const& chain) {
+    return norm(chain.beads.position.back() - chain.beads.position.front());
+}
+
+TEST(Replicas, HaveNamesAndSeedsOfTheirOwn) {
+    Scene const one = parse_scene(peptides, "s.yaml"),
+                all = parse_scene(peptides, "s.yaml", {"replicas=3"});
+    EXPECT_EQ(one.replicas, 1);
+    EXPECT_EQ(all.replicas, 3);
+    ASSERT_EQ(all.chains.size(), 9U);
+    EXPECT_EQ(all.chains_a_replica(), 3U);
+    EXPECT_EQ(all.chains[0].name, "a-1-1");
+    EXPECT_EQ(all.chains[5].name, "b-2");
+    EXPECT_EQ(all.name_in_file(5), "b");
+    EXPECT_EQ(all.name_in_file(6), "a-1");
+    // The first replica is the scene; the third is that of the next seed but one.
+    Scene const third = parse_scene(peptides, "s.yaml", {"dynamics.seed=11"});
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_EQ(norm(all.chains[c].beads.position[0] - one.chains[c].beads.position[0]), 0);
+        EXPECT_NEAR(ends_apart(all.chains[6 + c]), ends_apart(third.chains[c]), 1e-12);
+    }
+    EXPECT_GT(std::abs(ends_apart(all.chains[0]) - ends_apart(all.chains[3])), 1e-3);
+    EXPECT_NE(all.hash, one.hash);
+    EXPECT_TRUE(all.notes == one.notes);
+}
+
+TEST(Replicas, OfAWrittenStartDifferInPlaceAlone) {
+    Scene const all = parse_scene(
+        "replicas: 9\nchains: [{name: a, bodies: [{mass: 1, position: [1, 2, 3], joint: {type: "
+        "link}}, {mass: 1, position: [1, 2, 4], joint: {type: link}}]}]",
+        "s.yaml");
+    ASSERT_EQ(all.chains.size(), 9U);
+    EXPECT_EQ(all.chains[0].beads.position[0][2], 3);
+    for (std::size_t r = 1; r < 9; ++r) {
+        Vec3 const along = all.chains[r].beads.position[1] - all.chains[r].beads.position[0];
+        EXPECT_NEAR(along[2], 1, 1e-15);
+        for (std::size_t s = 0; s < r; ++s)
+            EXPECT_GT(norm(all.chains[r].beads.position[0] - all.chains[s].beads.position[0]), 1);
+    }
+}
+
+TEST(Replicas, OneIsTheSceneItself) {
+    EXPECT_EQ(parse_scene(peptides, "s.yaml", {"replicas=1"}).hash,
+              parse_scene(peptides, "s.yaml").hash);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "io/observables_table.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/run/whole_run.hpp"
 
@@ -126,6 +127,119 @@ TEST_P(OpenMmRuns, WithGhostsTheyAreTheRunOnOneRankButForRounding) {
     }
     world_.barrier();
 }
+
+/// Replicas of two chains: a written start and a random one.
+class ReplicaRuns : public WholeRun {
+  protected:
+    static std::string scene(std::string const& start) {
+        return "units: md\nreplicas: 12\n"
+               "chains: [{name: long, sequence: MDVFMKGLSKAKEGVVAAAEKTKQG, model: calvados2, "
+               "conformation: " +
+               start +
+               ", velocities: thermal}, {name: short, sequence: KDEKDE, model: calvados2, "
+               "velocities: thermal}]\n"
+               "forces: {openmm: {builder: calvados2, platform: Reference, path: inline, "
+               "threads: 1}}\n"
+               "dynamics: {integrator: g-baoab, step: 0.01, steps: 40, temperature: 300, "
+               "friction: 0.1, seed: 4}\n"
+               "output: {every: 5, checkpoint_every: 10}\n";
+    }
+    nlohmann::json run_with(Communicator const& communicator, std::string const& name,
+                            std::int64_t steps, std::string const& restart = "",
+                            std::vector<std::string> const& overrides = {},
+                            std::string const& start = "self_avoiding") {
+        return run_simulation(parse_scene(scene(start), "scene.yaml", overrides), communicator,
+                              options_of(name, steps, restart));
+    }
+    /// Position of bead `bead` of a replica, relative to its first bead.
+    Vec3 relative(std::vector<double> const& x, std::size_t replica, std::size_t bead) const {
+        std::size_t const first = 3 * beads * replica, at = first + 3 * bead;
+        return {{x[at] - x[first], x[at + 1] - x[first + 1], x[at + 2] - x[first + 2]}};
+    }
+    ObservablesTable table(std::string const& name) const {
+        return read_observables(folder_ + "/" + name);
+    }
+    static constexpr std::size_t beads = 25 + 6, replicas = 12;
+    Communicator const& world_ = catena::testing::world();
+};
+
+TEST_P(ReplicaRuns, ARestartIsTheUndisturbedRun) {
+    run_with(world_, "whole", 40);
+    run_with(world_, "parts", 20);
+    run_with(world_, "parts", 40, "parts/checkpoint.h5");
+    if (world_.rank() != 0) return;
+    EXPECT_EQ(arrays("whole"), arrays("parts"));
+    EXPECT_EQ(table("whole/replicas.csv").columns, table("parts/replicas.csv").columns);
+}
+
+/// Ranks place their replicas elsewhere, which rounds otherwise.
+TEST_P(ReplicaRuns, OnRanksTheyAreTheRunOnOneRankButForRounding) {
+    auto const summary = run_with(world_, "all", 20);
+    if (world_.rank() == 0) {
+        EXPECT_EQ(summary.at("parallel").at("messages_a_step").at("ranks_that_differ"), 0);
+        run_with(*serial_communicator(), "one", 20);
+        std::vector<double> const x = arrays("all").at("position"),
+                                  expected = arrays("one").at("position");
+        ASSERT_EQ(x.size(), expected.size());
+        for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], expected[i], 1e-9);
+    }
+    world_.barrier();
+}
+
+TEST_P(ReplicaRuns, HaveNoiseOfTheirOwn) {
+    run_with(world_, "straight", 10, "", {"dynamics.steps=10"}, "extended");
+    run_with(world_, "start", 0, "", {}, "extended");
+    run_with(world_, "random", 0);
+    if (world_.rank() != 0) return;
+    std::vector<double> const start = arrays("start").at("position"),
+                              end = arrays("straight").at("position"),
+                              random = arrays("random").at("position");
+    ASSERT_EQ(start.size(), 3 * beads * replicas);
+    for (std::size_t r = 1; r < replicas; ++r) {
+        EXPECT_LT(norm(relative(start, r, 24) - relative(start, 0, 24)), 1e-12);
+        EXPECT_GT(norm(relative(end, r, 24) - relative(end, 0, 24)), 1e-3);
+        EXPECT_GT(norm(relative(random, r, 24) - relative(random, 0, 24)), 0.1);
+    }
+}
+
+TEST_P(ReplicaRuns, HaveATableOfTheirOwn) {
+    auto const summary = run_with(world_, "run", 40);
+    if (world_.rank() != 0) return;
+    ObservablesTable const means = table("run/observables.csv"), each = table("run/replicas.csv");
+    ASSERT_EQ(each.names.size(), 2 + 4 * replicas);
+    EXPECT_EQ(each.names[2], "radius_of_gyration_long_replica_1 [nm]");
+    EXPECT_EQ(each.names.back(), "end_to_end_distance_short_replica_12 [nm]");
+    EXPECT_EQ(each.columns[0], means.columns[0]);
+    std::size_t const last = means.names.size() - 4;
+    EXPECT_EQ(means.names[last], "mean_radius_of_gyration_long [nm]");
+    EXPECT_EQ(means.names[last + 1], "mean_radius_of_gyration_short [nm]");
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t f = 0; f < means.columns[0].size(); ++f) {
+            double mean = 0;
+            for (std::size_t r = 0; r < replicas; ++r)
+                mean += each.columns[2 + k * replicas + r][f] / replicas;
+            EXPECT_NEAR(mean, means.columns[last + k][f], 1e-12);
+        }
+    auto const& radius = summary.at("observables").at("mean_radius_of_gyration_long");
+    EXPECT_EQ(radius.at("replicas"), replicas);
+    EXPECT_GT(radius.at("standard_error_between_replicas").get<double>(), 0.001);
+    EXPECT_GE(radius.at("standard_error").get<double>(),
+              radius.at("standard_error_between_replicas").get<double>());
+    EXPECT_EQ(summary.at("system").at("description"),
+              "1 chain of 25 beads (long); 1 chain of 6 beads (short); 12 replicas");
+}
+
+TEST_P(ReplicaRuns, OneIsTheSceneItself) {
+    run_with(world_, "one", 20, "", {"replicas=1"});
+    Scene plain = parse_scene(scene("self_avoiding").replace(10, 13, ""), "scene.yaml");
+    run_simulation(plain, world_, options_of("plain", 20, ""));
+    if (world_.rank() == 0) {
+        EXPECT_EQ(arrays("one"), arrays("plain"));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ReplicaRuns, ::testing::Values(RunScene{"replicas", ""}),
+                         [](auto const& scene) { return std::string(scene.param.name); });
 
 /// Two chains of bodies in joint coordinates that fly past each other, so fast that lists last nine
 /// steps. Frames and checkpoints fall on different steps.
