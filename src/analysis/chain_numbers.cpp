@@ -61,7 +61,7 @@ void ChainNumbers::add(Snapshot const& snapshot) {
         asphericity_.add(gyration.asphericity());
         end_to_end_.add(norm(x.back() - x.front()));
         centres_.push_back(gyration.centre);
-        if (!kind_.branched) internal_.add(c, x);
+        if (!kind_.is_branched()) internal_.add(c, x);
     }
     internal_.end_frame();
 }
@@ -71,12 +71,12 @@ void ChainNumbers::report(Analysis& to, Options const& options, EvenFrames const
         report_sizes(to);
         report_distribution(to);
     }
-    if (kind_.branched)
+    if (kind_.is_branched())
         to.notes.push_back(fmt::format(
             "{} is branched: its end-to-end distance, internal distances, scaling exponent, bond "
             "correlation and persistence length are left out",
             kind_.name));
-    if (kind_.sites > 1 && !is_complex_ && !kind_.branched) {
+    if (kind_.sites > 1 && !is_complex_ && !kind_.is_branched()) {
         report_distances(to, options);
         report_bonds(to);
         note_folded(to);
@@ -89,7 +89,7 @@ void ChainNumbers::report_sizes(Analysis& to) const {
     to.quantities.push_back(
         {"radius_of_gyration", kind_.name, unit, radius_.estimate(), "weighted by mass"});
     to.series.push_back({"radius_of_gyration", kind_.name, unit, radius_});
-    if (!kind_.ring && !is_complex_ && !kind_.branched) {
+    if (!kind_.ring && !is_complex_ && !kind_.is_branched()) {
         to.quantities.push_back({"end_to_end_distance", kind_.name, unit, end_to_end_.estimate(),
                                  "first to last site"});
         to.series.push_back({"end_to_end_distance", kind_.name, unit, end_to_end_});

@@ -63,6 +63,16 @@ struct Owner {
     std::int64_t place;  // along its chain
 };
 
+/// True if two sites of a chain are `least_separation` links or more apart.
+bool are_apart(Kind const& kind, std::int64_t a, std::int64_t b) {
+    if (!kind.is_branched()) return std::abs(a - b) >= Contacts::least_separation;
+    auto const inboard = [&](std::int64_t k) { return kind.parent[static_cast<std::size_t>(k)]; };
+    static_assert(Contacts::least_separation == 3, "pairs one and two links apart are told below");
+    std::int64_t const later = std::max(a, b), on = inboard(later), earlier = std::min(a, b);
+    bool const one = on == earlier;
+    return !one && inboard(on) != earlier && on != inboard(earlier);
+}
+
 }  // namespace
 
 struct Contacts::State {
@@ -111,7 +121,7 @@ struct Contacts::State {
     void count_within(Owner const& a, Owner const& b) {
         within[a.kind].add(a.row, b.row);
         if (a.row != b.row) within[a.kind].add(b.row, a.row);
-        if (std::abs(a.place - b.place) >= least_separation) ++own_contacts[of_copy(a)];
+        if (are_apart(kinds[a.kind], a.place, b.place)) ++own_contacts[of_copy(a)];
     }
     void count_between(Owner const& a, Owner const& b) {
         if (a.kind > b.kind) return count_between(b, a);

@@ -34,7 +34,7 @@ struct ContactNumbers {
 /// images. The time of a frame is proportional to the number of sites and of their neighbours.
 class Contacts {
   public:
-    /// Sites of a chain that are fewer than so many places apart do not count in
+    /// Sites of a chain that are fewer than so many places (links) apart do not count in
     /// ContactNumbers::within. The maps hold all pairs.
     static constexpr std::int64_t least_separation = 3;
 

@@ -68,7 +68,7 @@ std::vector<Kind> kinds_of(Topology const& topology, bool by_members) {
         Topology::Chain const& chain = topology.chains[c];
         if (chain.count == 0) continue;
         auto const [found, is_new] = known.emplace(signature(topology, chain), kinds.size());
-        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}, !chain.parent.empty()});
+        if (is_new) kinds.push_back({"", chain.count, chain.ring, {}, chain.parent});
         kinds[found->second].chains.push_back(c);
     }
     std::set<std::string> taken;

@@ -16,8 +16,10 @@ struct Kind {
     std::int64_t sites = 0;
     bool ring = false;
     std::vector<std::size_t> chains;  // indices in the topology, ascending
-    bool branched = false;
+    /// Site on which each site hangs, as in the topology; empty for unbranched chains.
+    std::vector<std::int64_t> parent = {};
 
+    bool is_branched() const { return !parent.empty(); }
     std::size_t copies() const { return chains.size(); }
 };
 

@@ -82,7 +82,8 @@ TEST(Trees, NewtonAndLengths) {
         double size = 0, strain = 0;
         for (std::size_t k = 0; k < chain.size(); ++k) {
             rest[k] = b.mass[k] * (r.com_acceleration[k] - loads.gravity) - loads.bead_forces[k];
-            size = std::max(size, norm(rest[k]));
+            size = std::max(size,
+                            b.mass[k] * norm(r.com_acceleration[k]) + norm(loads.bead_forces[k]));
         }
         for (std::size_t k = chain.base == Base::fixed ? 0 : 1; k < chain.size(); ++k) {
             std::size_t const p = k == 0 ? 0 : inboard_of(chain.parent, k);

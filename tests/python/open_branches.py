@@ -100,7 +100,7 @@ def look_at_numbers(folder):
     told = catena("analyse", folder, "--json", report)
     check("star is branched" in told, told)
     with open(report) as file:
-        quantities = {(q["name"], q["kind"]) for q in json.load(file)["quantities"]}
+        quantities = {(q["name"], q["chains"]) for q in json.load(file)["quantities"]}
     check(("radius_of_gyration", "star") in quantities and ("scaling_exponent", "line") in quantities, f"{quantities}")
     check(not any(name in ("scaling_exponent", "end_to_end_distance", "bond_length") and kind != "line" for name, kind in quantities),
           f"{quantities}")
