@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 #include <cmath>
+#include <utility>
 
 #include "cuda/device/gpu.hpp"
 #include "mpi/first_rank.hpp"
