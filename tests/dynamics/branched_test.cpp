@@ -142,9 +142,11 @@ TEST(BranchedChains, ThatAreALineNumberedFromItsMiddleMoveAsOne) {
 
 TEST(BranchedChains, HaveTheFixmanPotentialOfTheirLinks) {
     std::vector<ChainSpec> chains;
-    for (std::uint64_t seed = 0; seed < 8; ++seed)
-        chains.push_back(grown(seed, random_parents(seed, 3 + 2 * seed, 0.4),
-                               seed % 2 == 0 ? Base::free : Base::fixed, 2));
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        std::vector<std::int64_t> parent = random_parents(seed, 3 + 2 * seed, 0.4);
+        parent[2] = 0;  // so that it branches
+        chains.push_back(grown(seed, parent, seed % 2 == 0 ? Base::free : Base::fixed, 2));
+    }
     chains.push_back(grown(9, star_parents(9), Base::fixed));
     Trees trees(chains, {}, true);
     trees.system->evaluate();
