@@ -14,6 +14,7 @@
 #include "plan/plan_steps.hpp"
 #include "plan/predictions.hpp"
 #include "plan/savings.hpp"
+#include "scene/branch_limits.hpp"
 
 namespace catena::command {
 namespace {
@@ -83,12 +84,13 @@ std::string tree_text(ChainGroup const& group) {
     TreeCounts const counts = counts_of(group);
     std::string const bodies =
         group.is_branched()
-            ? fmt::format("{} bodies in {} and {}: {} of up to {} bodies, then up to {} of merges",
-                          group.partition.bodies(),
-                          counted(group.branches.paths(), "path", "paths"),
-                          counted(group.branches.phases(), "phase", "phases"),
-                          counted(counts.runs, "run", "runs"), tree.run_length,
-                          counted(counts.levels, "level", "levels"))
+            ? fmt::format(
+                  "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
+                  "merges on a path",
+                  group.partition.bodies(), counted(group.branches.paths(), "path", "paths"),
+                  counted(group.branches.phases(), "phase", "phases"),
+                  counted(counts.runs, "run", "runs"), tree.run_length,
+                  counted(counts.levels, "level", "levels"))
             : fmt::format("{} bodies: {} of up to {} bodies, then {} of merges", tree.bodies,
                           counted(counts.runs, "run", "runs"), tree.run_length,
                           counted(counts.levels, "level", "levels"));
@@ -101,9 +103,11 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
     dca::ChainTree const& tree = longest_tree(group);
     Rounds const rounds = rounds_of(group);
     std::vector<std::int64_t> const shares = shares_of(group);
-    text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), group.is_branched() ? "branched chain" : "chain",
-                                     group.is_branched() ? "branched chains" : "chains"),
-                             group.beads ? "beads on links" : "bodies", group.kind()));
+    text.heading(fmt::format(
+        "{} of {} ({})",
+        counted(group.partition.chains(), group.is_branched() ? "branched chain" : "chain",
+                group.is_branched() ? "branched chains" : "chains"),
+        group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
     TreeCounts const counts = counts_of(group);
     text.entry("tree", tree_text(group));
@@ -241,9 +245,12 @@ void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& p
     Memory const memory = memory_of(scene, ranks);
     text.heading("memory per rank");
     text.entry("host", bytes_text(memory.sum()));
-    text.entry("GPU", bytes_text(predictions.gpu_memory) + " with backend cuda" +
-                          (predictions.no_gpu.empty() ? "" : ", if there were a GPU"));
-    json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
+    std::string const why = scene::why_host_alone(scene);
+    text.entry("GPU", why.empty() ? bytes_text(predictions.gpu_memory) + " with backend cuda" +
+                                        (predictions.no_gpu.empty() ? "" : ", if there were a GPU")
+                                  : "not usable: " + why);
+    json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", nullptr}};
+    if (why.empty()) json["memory_bytes_per_rank"]["gpu"] = predictions.gpu_memory;
 }
 
 /// Returns the time step that enters the matrices of implicit joints; 0 for explicit integrators.
@@ -329,6 +336,10 @@ void add_notes(Text& text, Json& json, Scene const& scene,
                std::optional<HostMemory> const& lacking) {
     std::vector<std::string> notes = notes_on(scene, estimate_step_limit(scene));
     if (lacking) notes.push_back(lacking->note());
+    if (scene::has_branches(scene))
+        notes.push_back(
+            "branched chains are predicted as unbranched ones; with short side chains they take "
+            "about twice as long, with many branchings longer: --measure shows it");
     json["notes"] = Json::array();
     for (std::string const& note : notes) {
         json["notes"].push_back(note);
@@ -390,6 +401,8 @@ Outcome calibrate(Communicator const& communicator, PlanRequest const& request) 
 
 Outcome plan_scene(Scene const& given, Communicator const& communicator,
                    PlanRequest const& request) {
+    scene::refuse_unsupported_branches(given,
+                                       std::max<std::int64_t>(communicator.size(), request.ranks));
     Axes const axes = axes_for(given);
     Predictions predictions;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cuda/device/gpu.hpp"
 #include "mpi/first_rank.hpp"
@@ -190,12 +191,13 @@ std::vector<Savings> left_out(Scene const& scene, ChainSystem const& system) {
     bool const full_handles = carries_all(scene.solver.handles);
     std::vector<plan::Share> const shares =
         plan::shares_of(scene, axes_of(system), system.communicator().size());
+    bool has_beads = false;  // listed already; branched chains are a group of their own
     for (auto const& group : system.groups()) {
         std::size_t const share = share_of(shares, *group);
-        if (group->beads)
-            list.add_beads(shares[share].family, share);
-        else
+        if (!group->beads)
             list.add_bodies(*group, shares[share].family, share);
+        else if (!std::exchange(has_beads, true))
+            list.add_beads(shares[share].family, share);
     }
     if (full_handles)
         list.add(fmt::format("projection on the restricted directions: handles are {}",

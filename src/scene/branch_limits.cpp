@@ -37,7 +37,7 @@ std::string why_host_alone(Scene const& scene) {
     return "branched chains are computed on the host";
 }
 
-void refuse_unsupported_branches(Scene const& scene, int ranks) {
+void refuse_unsupported_branches(Scene const& scene, std::int64_t ranks) {
     for (ChainSpec const& chain : scene.chains)
         if (branches(chain)) refuse_parts(scene, chain);
     if (!has_branches(scene)) return;

@@ -15,6 +15,6 @@ bool has_branches(Scene const&);
 std::string why_host_alone(Scene const&);
 /// Throws InputError if a chain branches and has a kind of body or tip, the scene has handles, or
 /// `ranks` are so many, that branched chains do not support.
-void refuse_unsupported_branches(Scene const&, int ranks);
+void refuse_unsupported_branches(Scene const&, std::int64_t ranks);
 
 }  // namespace catena::scene
