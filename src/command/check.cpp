@@ -106,7 +106,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry("chains", std::to_string(scene.chains.size()));
     if (scene.replicas > 1)
         text.entry("replicas",
-                   fmt::format("{}, of {} chains each", scene.replicas, scene.chains_a_replica()));
+                   fmt::format("{}, of {} {} each", scene.replicas, scene.chains_a_replica(),
+                               scene.chains_a_replica() == 1 ? "chain" : "chains"));
     text.entry("bodies", std::to_string(scene.bodies()));
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
     text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");

@@ -87,22 +87,50 @@ std::vector<CopySeries> series_of(ObservablesTable const& of_replicas, std::size
     return all;
 }
 
+double mean_of(std::vector<double> const& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Sum of the squared deviations from the mean.
+double squares_of(std::vector<double> const& values) {
+    double const mean = mean_of(values);
+    double squares = 0;
+    for (double const each : values) squares += (each - mean) * (each - mean);
+    return squares;
+}
+
+/// Variance between replicas, mean over frames [first, last).
+double spread_of(CopySeries const& series, std::size_t first, std::size_t last) {
+    double sum = 0;
+    std::vector<double> values(series.size());
+    for (std::size_t f = first; f < last; ++f) {
+        for (std::size_t r = 0; r < series.size(); ++r) values[r] = series[r][f];
+        sum += squares_of(values) / static_cast<double>(series.size() - 1);
+    }
+    return sum / static_cast<double>(last - first);
+}
+
+/// True if replicas differ more in the second half of their frames than in the first, by three
+/// times the uncertainty of variances: they still remember a common start.
+bool still_spreads(CopySeries const& series) {
+    std::size_t const frames = series.front().size();
+    if (frames < 2) return true;
+    double const before = spread_of(series, 0, frames / 2),
+                 after = spread_of(series, frames / 2, frames);
+    return after > before * (1 + 6 / std::sqrt(static_cast<double>(series.size() - 1)));
+}
+
 /// Makes the error of a mean over replicas that of independent series. Replicas forget their start
 /// separately, so that one of them may say more of the error than the mean's time series.
 void count_replicas(ObservableStatistics& of, CopySeries const& series) {
     std::vector<double> means;
-    for (auto const& replica : series)
-        means.push_back(std::accumulate(replica.begin(), replica.end(), 0.0) /
-                        static_cast<double>(replica.size()));
-    double squares = 0;
+    for (auto const& replica : series) means.push_back(mean_of(replica));
     auto const count = static_cast<double>(means.size());
-    double const mean = std::accumulate(means.begin(), means.end(), 0.0) / count;
-    for (double const each : means) squares += (each - mean) * (each - mean);
     Blocked const found = blocked_mean(series);
     of.replicas = std::ssize(series);
-    of.between_replicas = std::sqrt(squares / (count * (count - 1)));
+    of.between_replicas = std::sqrt(squares_of(means) / (count * (count - 1)));
     of.standard_error = std::max(found.error, of.between_replicas);
-    of.converged = found.plateau;
+    of.converged = found.plateau && !still_spreads(series);
 }
 
 /// Counts the replicas of all means over them.
@@ -116,11 +144,18 @@ void count_replicas(TableStatistics& found, ObservablesTable const& table,
     for (ObservableStatistics& each : found.observables)
         if (each.name.starts_with("mean_")) means.push_back(&each);
     auto const series = series_of(of_replicas, means.size(), found.left_out);
-    for (std::size_t k = 0; k < means.size(); ++k) count_replicas(*means[k], series[k]);
+    bool spreads = false;
+    for (std::size_t k = 0; k < means.size(); ++k) {
+        count_replicas(*means[k], series[k]);
+        spreads = spreads || still_spreads(series[k]);
+    }
     found.says += fmt::format(
         " Errors of means over {} replicas are those of independent series, and at least the "
         "scatter of the replicas' own means.",
         means.empty() ? 0 : means[0]->replicas);
+    if (spreads)
+        found.says +=
+            " Replicas still spread: they have not forgotten their start, and means may be off.";
 }
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }

@@ -16,8 +16,9 @@ namespace catena::scene {
 namespace {
 
 constexpr std::int64_t most_replicas = 1'000'000;
-/// Free space between replicas at the start, for those who look at them: a part of their width.
-constexpr double free_space = 0.5;
+/// Free space between replicas at the start, as a part of their width. With `units: md` it is
+/// `apart` wider (nm), so that no beads of two replicas seem to touch.
+constexpr double free_space = 0.5, apart = 2;
 
 /// Width of the chains along the axis along which it is largest.
 double width_of(std::vector<ChainSpec> const& chains) {
@@ -76,14 +77,14 @@ void add_replicas(Scene& scene, Node const& at,
         all.push_back(differ ? make(scene.dynamics.seed + static_cast<std::uint64_t>(r)) : first);
     double width = 0;
     for (auto const& chains : all) width = std::max(width, width_of(chains));
+    double const spacing = (1 + free_space) * width + (scene.si ? (width > 0 ? 0 : 1) : apart);
     CubicLattice const lattice(scene.replicas);
     scene.chains.clear();
     for (std::int64_t r = 0; r < scene.replicas; ++r) {
         auto const site = lattice.site(r);
         Vec3 by;
         for (int c = 0; c < 3; ++c)
-            by[c] =
-                (1 + free_space) * width * static_cast<double>(site[static_cast<std::size_t>(c)]);
+            by[c] = spacing * static_cast<double>(site[static_cast<std::size_t>(c)]);
         for (ChainSpec& chain : all[static_cast<std::size_t>(r)]) {
             translate(chain, by);
             chain.name += fmt::format("-{}", r + 1);

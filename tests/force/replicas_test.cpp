@@ -156,10 +156,10 @@ TEST_F(Replicas, AreDealtOutToRanks) {
 TEST_F(Replicas, DoNotGoIntoRanksInPieces) {
     on_ranks([&](Communicator const& communicator) {
         if (communicator.size() == 1) return;
-        BeadSystem const beads =
-            replicas_of(one_, communicator.size() + 1, communicator.size());
-        EXPECT_NE(complaint([&] { make_openmm_force(on_reference(), beads, communicator); })
-                      .find("replicas do not go into"),
+        BeadSystem const beads = replicas_of(one_, communicator.size() + 1, communicator.size());
+        EXPECT_NE(complaint([&] {
+                      make_openmm_force(on_reference(), beads, communicator);
+                  }).find("replicas do not go into"),
                   std::string::npos);
     });
 }
@@ -193,10 +193,9 @@ TEST_F(Replicas, MayBePulledByDistances) {
     pull.addGroup({30, 31});
     pull.addBond({0, 1});
     OpenMmSpec spec = on_reference();
-    add_changes({.extra = {scratch_file("replicas-pull.xml", xml_of(pull))},
-                 .leave_out = {},
-                 .links = {}},
-                spec);
+    add_changes(
+        {.extra = {scratch_file("replicas-pull.xml", xml_of(pull))}, .leave_out = {}, .links = {}},
+        spec);
     compare(spec, 4, 1, 1e-11);
 }
 

@@ -40,8 +40,7 @@ class Places : public ::testing::Test {
             for (std::size_t j = 0; j < i; ++j) {
                 if (replica_[i] == replica_[j]) continue;
                 Vec3 const d = (x_[i] - places.shift(i)) - (x_[j] - places.shift(j));
-                least = std::min(least,
-                                 std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}));
+                least = std::min(least, std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}));
             }
         return least;
     }

@@ -107,6 +107,36 @@ TEST(ObservableStatistics, ReplicasAreIndependent) {
     EXPECT_THROW(statistics_of(means, Frames::equilibrated, each), InputError);
 }
 
+/// Replicas that walk away from one start have too small an error.
+TEST(ObservableStatistics, ReplicasThatStillSpreadAreNamed) {
+    ObservablesTable means{{"step", "time [ps]", "mean_radius [nm]"},
+                           std::vector<std::vector<double>>(3)},
+        each{{"step", "time [ps]"}, std::vector<std::vector<double>>(2)};
+    std::mt19937_64 draw(6);
+    std::normal_distribution<double> normal(0, 0.1);
+    std::vector<double> at(64, 3);
+    for (std::size_t r = 0; r < at.size(); ++r) {
+        each.names.push_back("radius_replica_" + std::to_string(r + 1));
+        each.columns.emplace_back();
+    }
+    for (std::size_t f = 0; f < 60; ++f) {
+        for (ObservablesTable* table : {&means, &each}) {
+            table->columns[0].push_back(static_cast<double>(f));
+            table->columns[1].push_back(0.1 * static_cast<double>(f));
+        }
+        double mean = 0;
+        for (std::size_t r = 0; r < at.size(); ++r) {
+            each.columns[2 + r].push_back(at[r]);
+            mean += at[r] / static_cast<double>(at.size());
+            at[r] += normal(draw);
+        }
+        means.columns[2].push_back(mean);
+    }
+    TableStatistics const found = statistics_of(means, Frames::all, each);
+    EXPECT_FALSE(found.observables[0].converged);
+    EXPECT_NE(found.says.find("Replicas still spread"), std::string::npos);
+}
+
 TEST(RunFacts, MeanAndErrorEndAtTheSameDecimal) {
     using Texts = std::pair<std::string, std::string>;
     EXPECT_EQ(rounded_alike(300.2345, 0.1234), Texts("300.23", "0.12"));
