@@ -107,8 +107,9 @@ TEST(BranchedMolecules, RunAsPiecesWhoseOtherBondsStaySprings) {
 // Written bead by bead with `parent`: the bonds become links, the angles are those of the same
 // start.
 TEST(BranchedMolecules, RunWholeIfTheSceneSaysOnWhichBeadEachHangs) {
-    std::string const notes = notes_of("13-two-beads-a-unit/branched.yaml");
-    EXPECT_TRUE(holds(notes, "19 harmonic bonds along rigid links left out")) << notes;
+    Ended const checked = check("13-two-beads-a-unit/branched.yaml");
+    EXPECT_TRUE(holds(checked.out, "19 harmonic bonds along rigid links left out")) << checked.out;
+    EXPECT_TRUE(holds(checked.out, "(particles 0 and 2 from 0: 1400 kJ/mol/nm2")) << checked.out;
     Finished const run("13-two-beads-a-unit/branched.yaml");
     EXPECT_EQ(run.ended.status, 0) << run.ended.err;
     EXPECT_NEAR(run.energy("HarmonicAngleForce"), 8.174290, 1e-4);

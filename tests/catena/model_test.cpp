@@ -1,6 +1,11 @@
 // Models in memory, their solutions and simulations, against scene files and Catena's own classes.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "integrate/stepper.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/catena/models.hpp"
@@ -153,6 +158,44 @@ TEST(Model, TakesBranchesOfBeads) {
     });
     ASSERT_EQ(seen.size(), 4u);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(seen[k][0], star.beads[k].position[0], 1e-14);
+}
+
+/// The random tree of tests/data/reference/beadtree20.json: accelerations and tensions that were
+/// computed to 50 digits by other means.
+TEST(Solver, HasTheAccelerationsOfAThirdPartysTree) {
+    std::ifstream file(std::string(CATENA_TEST_DATA) + "/reference/beadtree20.json");
+    nlohmann::json const json = nlohmann::json::parse(file), &expected = json.at("expected");
+    Chain tree{.name = "tree"};
+    for (std::size_t k = 0; k < json.at("mass").size(); ++k) {
+        tree.beads.push_back({.mass = json.at("mass").at(k),
+                              .position = json.at("position").at(k),
+                              .velocity = json.at("velocity").at(k).get<Triple>()});
+        if (k > 0) tree.beads.back().parent = json.at("parent").at(k).get<std::int64_t>();
+    }
+    auto const force = json.at("force").get<std::vector<Triple>>();
+    SolverResult const found =
+        Solver(model_of(tree, "rattle", 0.001), [&](BodyPositions const&, BodyForces const& on) {
+            std::copy(force.begin(), force.end(), on.force.begin());
+            return std::nullopt;
+        }).solve();
+    double error = 0, largest = 0, of_tensions = 0, largest_tension = 0;
+    for (std::size_t k = 0; k < tree.beads.size(); ++k) {
+        Triple const right = expected.at("acceleration").at(k);
+        for (std::size_t i = 0; i < 3; ++i) {
+            error = std::max(error, std::abs(found.acceleration[k][i] - right[i]));
+            largest = std::max(largest, std::abs(right[i]));
+        }
+        Triple const& pull = found.joint_force[k].force;
+        double const tension = expected.at("tension").at(k);
+        double const size = std::hypot(pull[0], pull[1], pull[2]);
+        of_tensions = std::max(of_tensions, std::abs(size - std::abs(tension)));
+        largest_tension = std::max(largest_tension, std::abs(tension));
+    }
+    EXPECT_TRUE(found.valid());
+    EXPECT_LE(error, 1e-13 * largest);
+    EXPECT_LE(of_tensions, 1e-13 * largest_tension);
+    std::printf("accelerations %.1e, tensions %.1e\n", error / largest,
+                of_tensions / largest_tension);
 }
 
 TEST(Model, TakesEveryMemberOfAJoint) {
