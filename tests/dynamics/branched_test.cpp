@@ -388,6 +388,19 @@ TEST(BranchedChains, SampleStarsOfStiffSpringsWithTheFixmanPotential) {
     EXPECT_LT(cosine.error, 0.003);
 }
 
+TEST(BranchedChains, NameTheJointWhoseMatrixIsLost) {
+    ChainSpec chain = grown(1, star_parents(3), Base::free);
+    chain.beads.position[2][0] = NAN;
+    Trees trees({chain});
+    std::string text;
+    try {
+        trees.system->evaluate();
+    } catch (ComputationError const& e) {
+        text = e.what();
+    }
+    EXPECT_NE(text.find("not positive definite (chain tree, body 2)"), std::string::npos) << text;
+}
+
 /// Returns what refuses the scene.
 std::string refusal(std::vector<ChainSpec> const& chains, SolverSpec const& solver) {
     try {
