@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "error.hpp"
@@ -178,6 +180,41 @@ TEST(BranchedChains, HaveTheFixmanPotentialOfTheirLinks) {
             }
 }
 
+Vec3 vector3(nlohmann::json const& v) { return {{v.at(0), v.at(1), v.at(2)}}; }
+
+/// Twenty beads of tests/data/reference/beadtree20.json, which were not computed with Catena.
+TEST(BranchedChains, HaveTheNumbersOfAThirdParty) {
+    std::ifstream file(std::string(CATENA_TEST_DATA) + "/reference/beadtree20.json");
+    auto const json = nlohmann::json::parse(file);
+    ChainSpec chain;
+    chain.name = "beadtree20";
+    for (std::int64_t const parent : json.at("parent")) chain.parent.push_back(parent - 1);
+    chain.beads.mass = json.at("mass").get<std::vector<double>>();
+    for (auto const& x : json.at("position")) chain.beads.position.push_back(vector3(x));
+    for (auto const& v : json.at("unprojected_velocity"))
+        chain.beads.velocity.push_back(vector3(v));
+    chain.beads.residue.assign(chain.size(), "UNK");
+    chain.beads.length.push_back(0);
+    for (std::size_t k = 1; k < chain.size(); ++k)
+        chain.beads.length.push_back(
+            norm(chain.beads.position[k] -
+                 chain.beads.position[static_cast<std::size_t>(chain.parent[k])]));
+    Trees trees({chain}, {}, true);
+    trees.system->evaluate();
+    auto const& expected = json.at("expected");
+    double const kt = trees.scene.boltzmann() * trees.scene.dynamics.temperature;
+    EXPECT_NEAR(trees.system->potential_energy().back().value / (0.5 * kt),
+                expected.at("log_det_T").get<double>(), 1e-12);
+    std::vector<Vec3> const velocity = trees.system->snapshot().velocity;
+    View<3> const force = trees.system->absolute()[0]->bead_forces();
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+        EXPECT_LE(norm(velocity[k] - vector3(expected.at("projected_velocity").at(k))), 1e-14);
+        EXPECT_LE(norm((1 / kt) * force.load(static_cast<std::int64_t>(k)) -
+                       vector3(expected.at("fixman_force_over_kT").at(k))),
+                  1e-13);
+    }
+}
+
 /// Integrates the trees; steps count from 0.
 class Motion {
   public:
@@ -349,6 +386,19 @@ TEST(BranchedChains, SampleStarsOfStiffSpringsWithTheFixmanPotential) {
     EXPECT_NEAR(kinetic.value, 9, 3 * kinetic.error);
     EXPECT_NEAR(cosine.value, 1.0 / 3, 3 * cosine.error);
     EXPECT_LT(cosine.error, 0.003);
+}
+
+TEST(BranchedChains, NameTheJointWhoseMatrixIsLost) {
+    ChainSpec chain = grown(1, star_parents(3), Base::free);
+    chain.beads.position[2][0] = NAN;
+    Trees trees({chain});
+    std::string text;
+    try {
+        trees.system->evaluate();
+    } catch (ComputationError const& e) {
+        text = e.what();
+    }
+    EXPECT_NE(text.find("not positive definite (chain tree, body 2)"), std::string::npos) << text;
 }
 
 /// Returns what refuses the scene.

@@ -5,6 +5,7 @@ usage: open_branches.py CATENA PLOT. MDAnalysis and h5py must see the bonds that
 77: skipped, a package is missing."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -122,6 +123,14 @@ def starts_from_a_frame(scene, frame, whole, folder):
         check(np.abs(file["particles/trajectory/position/value"][0] - whole[-1]).max() < 1e-9, "a frame as start changes positions")
 
 
+def damaged_branches_are_refused(output, folder):
+    damaged = shutil.copytree(output, os.path.join(folder, "damaged"))
+    with h5py.File(os.path.join(damaged, "trajectory.h5md"), "r+") as file:
+        file["catena/parent"][5] = 9
+    done = subprocess.run([PROGRAM, "analyse", damaged], capture_output=True, text=True)
+    check(done.returncode == 2 and "the branches of its chains do not fit its sites" in done.stderr, f"{done.returncode}: {done.stderr}")
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix=f"catena-branches-{os.getpid()}-") as folder:
         for integrator, backend in (("g-baoab", "segments"), ("rattle", "serial"), ("g-baoab", "openmp")):
@@ -138,6 +147,7 @@ def main():
                 look_at_numbers(output)
                 subprocess.run([sys.executable, PLOT, output], check=True, capture_output=True)
                 check(os.path.getsize(os.path.join(output, "picture.png")) > 10000, "the picture is empty")
+                damaged_branches_are_refused(output, folder)
     print("check, run, restart, topologies, analysis and picture of branched chains are as they should be")
 
 

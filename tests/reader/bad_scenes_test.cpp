@@ -77,12 +77,12 @@ chains: [{sequence: GGG, model: calvados2}])y",
      "the chain has 2 generators (s.yaml: chains[0].generator, line 1): give one of `random`, "
      "`pendulum`, `coil`, `dill`, `elastic_rod`, "
      "`polygon`, "
-     "`freely_jointed`, `worm_like`"},
+     "`freely_jointed`, `worm_like`, `star`, `brush`, `dendrimer`, `random_tree`"},
     {"no_generator", "chains: [{generator: {}}]",
      "the chain has 0 generators (s.yaml: chains[0].generator, line 1): give one of `random`, "
      "`pendulum`, `coil`, `dill`, `elastic_rod`, "
      "`polygon`, "
-     "`freely_jointed`, `worm_like`"},
+     "`freely_jointed`, `worm_like`, `star`, `brush`, `dendrimer`, `random_tree`"},
     {"unknown_generator", "chains: [{generator: {pendulm: {links: 3}}}]",
      "unknown key `pendulm` (s.yaml: chains[0].generator.pendulm, line 1): did you mean "
      "`pendulum`?"},
