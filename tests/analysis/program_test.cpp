@@ -91,8 +91,8 @@ TEST_F(Trajectories, ReplicasAreIndependent) {
         expect_good(e);
         EXPECT_EQ(e.out.find("6 replicas are independent of each other") != std::string::npos,
                   name == "replicas");
-        for (auto const& each :
-             nlohmann::json::parse(std::ifstream(folder_ / name + ".json")).at("quantities"))
+        nlohmann::json const found = nlohmann::json::parse(std::ifstream(folder_ / name + ".json"));
+        for (auto const& each : found.at("quantities"))
             if (each.at("name") == "radius_of_gyration") {
                 EXPECT_EQ(each.at("error_by_blocking") >= each.at("error_between_copies"), true);
             } else if (each.at("name") == "contacts_between") {
