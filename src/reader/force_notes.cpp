@@ -225,7 +225,7 @@ void note_missing_forces(Scene& scene) {
         scene.note(fmt::format(
             "no forces act between the residues of chain `{}`: did you mean forces: {{openmm: "
             "{{builder: calvados2}}}}?",
-            found->name));
+            scene.name_in_file(static_cast<std::size_t>(found - scene.chains.begin()))));
 }
 
 }  // namespace catena::scene

@@ -69,7 +69,7 @@ TEST_F(Places, AreLeftBeforeForcesReachAcross) {
         for (std::size_t i = 0; i < x_.size(); ++i)
             x_[i] = places.centre(i) + (i % 2 == 0 ? by : -by) * Vec3{{1, 1, 1}};
     };
-    grown(places.farthest());
+    grown(places.farthest() - 1e-9);
     EXPECT_TRUE(places.hold(x_));
     EXPECT_GT(apart(places), reach);
     grown(places.farthest() + 1e-9);
