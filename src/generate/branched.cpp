@@ -15,8 +15,9 @@ namespace {
 
 /// Stream of a random tree's shape, distinct from those of its positions and sizes.
 std::uint64_t constexpr shape_stream = std::uint64_t{1} << 62;
-/// Number of places that are tried for each bead.
-int constexpr trials = 64;
+/// Number of places that are tried for each bead, and for each that takes the one with the least
+/// overlap.
+int constexpr trials = 64, trials_of_crowded = 8;
 /// Largest number of relaxation steps, times the number of beads; at least `least_relaxed` steps.
 std::int64_t constexpr most_relaxed = 10'000'000, least_relaxed = 20;
 /// Overlaps are relaxed if at most one bead in this number has one: denser trees have no start
@@ -81,6 +82,18 @@ Inboard inboard_for(RandomTree const& tree, std::uint64_t seed) {
     return inboard;
 }
 
+/// True if more links of `length` end on a bead than there is room for: ends of links that are
+/// `excluded` apart have disjoint caps around the bead.
+bool has_full_bead(Inboard const& inboard, std::vector<double> const& length, double excluded) {
+    std::vector<double> taken(inboard.size(), 0.0);  // parts of the sphere
+    for (std::size_t k = 1; k < inboard.size(); ++k) {
+        double const sine = std::min(1.0, excluded / (2 * length[k])),
+                     cap = (1 - std::sqrt(1 - sine * sine)) / 2;
+        if ((taken[static_cast<std::size_t>(inboard[k])] += cap) > 1) return true;
+    }
+    return false;
+}
+
 double count_of(Star const& star) {
     return 1 + static_cast<double>(star.arms) * static_cast<double>(star.arm_length);
 }
@@ -110,7 +123,7 @@ class TreeGrowth {
           excluded_(excluded),
           seed_(seed),
           grown_(excluded > 0 ? excluded : 1),
-          allowance_(std::ssize(parent)) {}
+          allowance_(has_full_bead(parent, length, excluded) ? 0 : std::ssize(parent)) {}
 
     /// Returns the points, the first one at `start`.
     std::vector<Vec3> run(Vec3 const& start) {
@@ -129,7 +142,8 @@ class TreeGrowth {
         std::int64_t const on = parent_[next];
         double clear = -1;
         Vec3 place = Vec3::zero();
-        for (int trial = 0; trial < trials && clear < excluded_; ++trial) {
+        int const most = allowance_ > 0 ? trials : trials_of_crowded;
+        for (int trial = 0; trial < most && clear < excluded_; ++trial) {
             Draws draws(seed_, grown_.size(), attempt_++);
             Vec3 const candidate = plus_scaled(grown_.at(on), length_[next], draws.on_sphere());
             double const found = excluded_ > 0 ? grown_.clearance(candidate, on, clear) : excluded_;
@@ -151,7 +165,7 @@ class TreeGrowth {
         for (std::int64_t i = 0; i < back; ++i) grown_.pop();
         // Without a point to remove, new attempts count instead.
         allowance_ -= std::max<std::int64_t>(back, 1);
-        retreat_ *= 2;
+        retreat_ = std::min(2 * retreat_, std::ssize(parent_));
     }
 
     Inboard const& parent_;

@@ -169,6 +169,11 @@ class FrameStart {
                                  c + 1, shown(printable(other.name)), other.count, frame_.file,
                                  shown(chain.name), chain.bead_count()),
                      "give a trajectory of the same chains in the same order");
+            if (other.parent != chain.parent)
+                fail(from,
+                     fmt::format("chain {}, `{}`, branches otherwise in `{}` than in the scene",
+                                 c + 1, shown(chain.name), frame_.file),
+                     "give a trajectory of the same chains");
             if (other.name != chain.name && renamed_++ == 0)
                 first_renamed_ = fmt::format("`{}` for the scene's `{}`",
                                              shown(printable(other.name)), shown(chain.name));

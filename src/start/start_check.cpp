@@ -32,12 +32,18 @@ double constexpr least_distance = 1e-6;   // nm: the cells of the search must ha
 double constexpr straight_within = 1e-6;  // sine of the angle between two links
 double constexpr looked_at = 0.7;         // nm: beads further apart do not overlap
 
+/// Returns the pairs of beads that a link or a joint holds together.
+std::vector<std::pair<std::int64_t, std::int64_t>> joined_pairs(BeadSystem const& beads) {
+    std::vector<std::pair<std::int64_t, std::int64_t>> pairs = beads.neighbours;
+    for (auto const& link : beads.links) pairs.emplace_back(link.inboard, link.outboard);
+    return pairs;
+}
+
 /// Test for pairs that a link, a joint or a body holds together.
 class Joined {
   public:
-    explicit Joined(BeadSystem const& beads) : body_(static_cast<std::size_t>(beads.size()), -1) {
-        for (auto const& link : beads.links) pairs_.emplace_back(link.inboard, link.outboard);
-        pairs_.insert(pairs_.end(), beads.neighbours.begin(), beads.neighbours.end());
+    explicit Joined(BeadSystem const& beads)
+        : pairs_(joined_pairs(beads)), body_(static_cast<std::size_t>(beads.size()), -1) {
         std::sort(pairs_.begin(), pairs_.end());
         std::int64_t body = 0;
         for (auto const& [first, end] : beads.rigid) {
@@ -109,17 +115,25 @@ std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& be
     return worst;
 }
 
-/// Returns the middle bead of the first three consecutive beads of a chain that are joined and lie
-/// on a line, within the resolution of positions.
+/// Returns the middle bead of the first two links that share a bead and lie on a line, within the
+/// resolution of positions.
 std::optional<std::size_t> middle_of_straight(BeadSystem const& beads,
                                               std::vector<Vec3> const& positions) {
-    Joined const joined(beads);
-    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
-        for (std::int64_t k = beads.chain_offset[c] + 1; k + 1 < beads.chain_offset[c + 1]; ++k) {
-            auto const b = static_cast<std::size_t>(k);
-            if (!joined(b - 1, b) || !joined(b, b + 1)) continue;  // as in branched chains
-            Vec3 const in = positions[b] - positions[b - 1], out = positions[b + 1] - positions[b];
-            if (norm(cross(in, out)) <= straight_within * norm(in) * norm(out)) return b;
+    std::vector<std::pair<std::int64_t, std::int64_t>> joined = joined_pairs(beads);
+    for (auto const& [first, end] : beads.rigid)
+        for (std::int64_t k = first + 1; k < end; ++k) joined.emplace_back(k - 1, k);
+    for (std::size_t i = joined.size(); i-- > 0;)
+        joined.emplace_back(joined[i].second, joined[i].first);
+    std::sort(joined.begin(), joined.end());
+    auto const from = [&](std::size_t i) {
+        return positions[static_cast<std::size_t>(joined[i].second)] -
+               positions[static_cast<std::size_t>(joined[i].first)];
+    };
+    for (std::size_t i = 0; i < joined.size(); ++i)
+        for (std::size_t j = i + 1; j < joined.size() && joined[j].first == joined[i].first; ++j) {
+            Vec3 const one = from(i), other = from(j);
+            if (norm(cross(one, other)) <= straight_within * norm(one) * norm(other))
+                return static_cast<std::size_t>(joined[i].first);
         }
     return std::nullopt;
 }

@@ -115,6 +115,18 @@ TEST(Branched, CrowdedStartsAreNoted) {
     EXPECT_TRUE(scene_of("star: {arms: 60, arm_length: 1, length: 1, excluded: 0}").notes.empty());
 }
 
+/// More arms than fit around the first bead: no step back helps, and the growth takes none. (It
+/// took minutes once.)
+TEST(Branched, StarsWithMoreArmsThanFitAreGrownWithOverlaps) {
+    for (char const* const generator : {"star: {arms: 200, arm_length: 100, length: 1}",
+                                        "star: {arms: 3000, arm_length: 1, length: 1}"}) {
+        Scene const crowded = scene_of(generator);
+        ASSERT_EQ(crowded.notes.size(), 1U) << generator;
+        EXPECT_NE(crowded.notes[0].find("overlaps of beads closer than 1 nm"), std::string::npos);
+        EXPECT_LE(look(crowded.chains[0]).first, 1e-13);
+    }
+}
+
 TEST(Branched, CopiesDifferAndSeedsRepeat) {
     Scene const two = scene_of("random_tree: {beads: 50, length: 1, seed: 5}", "count: 2, ");
     EXPECT_NE(two.chains[0].parent, two.chains[1].parent);

@@ -82,6 +82,20 @@ TEST_F(StartRun, replaces_positions_that_would_be_refused) {
     EXPECT_EQ(refusal(own + "start: {from: run}\n"), "accepted");
 }
 
+TEST_F(StartRun, of_other_branches_is_refused) {
+    auto const star = [](int parent) {
+        return "chains: [{name: s, bodies: [{mass: 10, position: [1, 1, 1]}, {mass: 10, position: "
+               "[1.4, 1, 1], joint: {type: link}}, {mass: 10, position: [1, 1.4, 1], parent: 1, "
+               "joint: {type: link}}, {mass: 10, position: [1, 1, 1.4], parent: " +
+               std::to_string(parent) +
+               ", joint: {type: link}}]}]\nbox: {periodic: [12, 12, 12]}\n";
+    };
+    write_run(read(star(1)));
+    EXPECT_EQ(refusal(star(1) + "start: {from: run}\n"), "accepted");
+    EXPECT_NE(refusal(star(2) + "start: {from: run}\n").find("chain 1, `s`, branches otherwise in"),
+              std::string::npos);
+}
+
 TEST_F(StartRun, of_other_chains_is_refused_with_both) {
     write_run(read(yaml_));
     std::string const start = "start: {from: run}\n";
