@@ -28,7 +28,8 @@ class StartRun : public testing::Test {
         std::vector<Vec3> positions;
         for (ChainSpec const& chain : scene.chains) {
             topology.chains.push_back({chain.name, std::ssize(positions),
-                                       static_cast<std::int64_t>(chain.size()), true, false});
+                                       static_cast<std::int64_t>(chain.size()), true, false, 0,
+                                       chain.parent});
             positions.insert(positions.end(), chain.beads.position.begin(),
                              chain.beads.position.end());
             topology.mass.insert(topology.mass.end(), chain.beads.mass.begin(),
