@@ -135,7 +135,8 @@ void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
                                                      : "has a jointed tip";
     fail(*root.find("solver")->find("handles"),
          fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
-         "use `projected` or `full`: articulated ones are for open chains of rigid bodies");
+         std::string(chain.is_branched() ? "use `projected`" : "use `projected` or `full`") +
+             ": articulated ones are for open chains of rigid bodies");
 }
 
 /// Checks that the Fixman correction supports the chain.

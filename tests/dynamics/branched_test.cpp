@@ -264,7 +264,10 @@ ConstrainedScheme langevin(Trees const& trees, double step) {
 TEST(BranchedChains, MoveBitByBitAlikeOnAnyThreadsAndVectors) {
     std::vector<std::map<std::string, std::vector<double>>> states;
     auto const add = [&](SolverSpec const& solver) {
-        Trees trees(some_trees(), solver);
+        std::vector<ChainSpec> chains = some_trees();
+        // Threads share the loops of large phases only.
+        chains.push_back(grown(5, brush_parents(800, 9), Base::free));
+        Trees trees(chains, solver);
         Motion(trees, langevin(trees, 0.002)).steps(0, 5);
         states.push_back(trees.system->state());
     };

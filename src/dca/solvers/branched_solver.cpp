@@ -89,7 +89,7 @@ class BranchedSolver final : public ChainSolver {
         double const start = seconds_now();
         sweeps_.leaf.set(configuration);
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
-            space_.climb(tree_[at(phase)], MatrixSweep<BranchedLeaf>{sweeps_});
+            space_of(phase).climb(tree_[at(phase)], MatrixSweep<BranchedLeaf>{sweeps_});
             if (phase > 0) each_fork(phase - 1, [this](std::int64_t f) { fold_matrices(f); });
         }
         ++report_.matrix_sweeps;
@@ -102,13 +102,13 @@ class BranchedSolver final : public ChainSolver {
         sweeps_.leaf.set(out.joint_force);
         BiasSweep<BranchedLeaf> const sweep{sweeps_, loads, {{}, out.acceleration, {}, {}}};
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
-            space_.climb(tree_[at(phase)], sweep);
+            space_of(phase).climb(tree_[at(phase)], sweep);
             if (phase > 0) each_fork(phase - 1, [this](std::int64_t f) { fold_biases(f); });
         }
         for (std::int64_t phase = 0; phase < branches_.phases(); ++phase) {
             if (phase > 0)
                 each_fork(phase - 1, [&](std::int64_t f) { unfold(f, out.acceleration); });
-            space_.descend(tree_[at(phase)], sweep);
+            space_of(phase).descend(tree_[at(phase)], sweep);
         }
         ++report_.bias_sweeps;
         report_.bias_seconds += seconds_now() - start;
@@ -137,13 +137,22 @@ class BranchedSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = PivotFailure{}.joint;
     static std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
+    /// Bodies of a phase whose loops threads share.
+    static constexpr std::int64_t worth_threads = 4096;
 
+    /// Returns the space of a phase's loops. Few bodies are not worth the barriers of threads.
+    HostSpace const& space_of(std::int64_t phase) const {
+        auto const place_of = [this](std::int64_t p) {
+            return branches_.first_of_path[at(branches_.first_of_phase[at(p)])];
+        };
+        return place_of(phase + 1) - place_of(phase) < worth_threads ? alone_ : space_;
+    }
     /// Calls action(f) for every fork of a phase.
     template <class Action>
     void each_fork(std::int64_t phase, Action const& action) const {
         std::int64_t const first = branches_.first_fork_of_phase[at(phase)],
                            end = branches_.first_fork_of_phase[at(phase) + 1];
-        space_.for_each(end - first, [&](std::int64_t i) { action(first + i); });
+        space_of(phase).for_each(end - first, [&](std::int64_t i) { action(first + i); });
     }
     /// Returns the place of the first bead of a path.
     std::int64_t head(std::int64_t path) const { return branches_.first_of_path[at(path)]; }
@@ -211,7 +220,7 @@ class BranchedSolver final : public ChainSolver {
 
     ChainGroup const& group_;
     Branches const& branches_;
-    HostSpace space_;
+    HostSpace space_, alone_{this_thread()};
     Communicator const& communicator_;
     // By place: fork, end of the path, restricted directions of the inboard joint.
     std::vector<std::int32_t> fork_;
