@@ -70,14 +70,16 @@ struct Room {
     Vec3 const& edges = *in.edges;
     bool const residues = draft.regrown == Regrowth::if_asked;
     fail(*draft.node,
-         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within "
-                     "a sphere {:.4g} wide, not for {}",
-                     in.name, edges[0], edges[1], edges[2], room, width, wanted),
+         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} {} side by side, each within a "
+                     "sphere {:.4g} wide, not for {}",
+                     in.name, edges[0], edges[1], edges[2], room, room == 1 ? "chain" : "chains",
+                     width, wanted),
          std::string("enlarge ") + in.name +
-             (residues ? ", lower `count` or write `conformation: self_avoiding` (without "
-                         "`positions`), which is packed more densely"
-                       : " or lower `count`; only free chains of residues without `positions` are "
-                         "packed more densely"));
+             (residues
+                  ? ", lower `count` or write `conformation: self_avoiding` (without "
+                    "`positions`), which is packed more densely"
+                  : " or lower `count`; only free, unbranched chains of a `sequence` or `fasta` "
+                    "without `positions` are packed more densely"));
 }
 
 /// Places the chains `moving` next to each other, clear of `placed`. Returns false and moves
