@@ -34,8 +34,8 @@ struct ForceLayer {
 std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads, double most_pairs);
 
 /// Joins the beads of each chain in the layer by bonds without energy. On GPUs OpenMM lets bonded
-/// particles stay together and sorts identical molecules by place, for short lists of pairs. Without
-/// these bonds most beads of a layer would be molecules of their own.
+/// particles stay together and sorts identical molecules by place, for short lists of pairs.
+/// Without these bonds most beads of a layer would be molecules of their own.
 void hold_chains_together(ForceLayer&);
 
 /// For each of a rank's beads in a layer: its index among all of the rank's beads, in the order of
