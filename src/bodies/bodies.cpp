@@ -109,11 +109,21 @@ void refuse_parents(Node const& bodies) {
                  "leave `parent` out: branched chains consist of point beads on links");
 }
 
+/// Reads the number of the bead on which bead k (from 0) of `beads` hangs, of any sign and size.
+std::int64_t read_number(Node const& node, std::int64_t k, std::int64_t beads) {
+    double value = 0;
+    if (node.kind == Node::Kind::scalar && !node.quoted &&
+        parse_number(node.text, value) == NumberFault::none && value > 0x1p53)
+        fail(node, fmt::format("bead {} hangs on bead {} of {}", k + 1, node.text, beads),
+             "count the beads of this chain from 1");
+    return whole(node, std::numeric_limits<std::int64_t>::min());
+}
+
 /// Reads the bead on which bead k (from 0) of `beads` hangs; -1 for bead 1.
 std::int64_t read_parent(Fields const& bead, std::int64_t k, std::int64_t beads) {
     Node const* const node = bead.find("parent");
     if (!node) return k - 1;
-    std::int64_t const parent = whole(*node, 0);
+    std::int64_t const parent = read_number(*node, k, beads);
     if (k == 0 && parent != 0)
         fail(*node,
              fmt::format("bead 1 hangs on bead {}, but the first bead hangs on none", parent),
@@ -121,6 +131,9 @@ std::int64_t read_parent(Fields const& bead, std::int64_t k, std::int64_t beads)
     if (k > 0 && parent == 0)
         fail(*node, fmt::format("bead {} hangs on none, as bead 1 does: two trees", k + 1),
              "give it the number of an earlier bead, or write a chain of its own");
+    if (parent < 0)
+        fail(*node, fmt::format("bead {} hangs on bead {}", k + 1, parent),
+             k == 1 ? "give 1" : fmt::format("give the number of an earlier bead, 1 to {}", k));
     if (parent == k + 1)
         fail(*node, fmt::format("bead {} hangs on itself", parent),
              "give it the number of an earlier bead");

@@ -5,10 +5,10 @@
 #include "console/long_task.hpp"
 #include "console/terminal.hpp"
 #include "integrate/chain_system.hpp"
+#include "measure/run_start.hpp"
 #include "observe/observables.hpp"
 #include "plan/describe.hpp"
 #include "plan/host_memory.hpp"
-#include "scene/branch_limits.hpp"
 #include "start/concentrations.hpp"
 #include "start/start_relaxation.hpp"
 #include "start/start_report.hpp"
@@ -146,8 +146,7 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
 }  // namespace
 
 Outcome check_scene(Scene scene, Communicator const& communicator, bool json) {
-    choose_backend(scene, communicator);  // throws for those of later versions
-    scene::refuse_unsupported_branches(scene, communicator.size());
+    refuse_before_run(scene, communicator);
     auto const lacking = lacking_memory(scene, communicator);
     if (lacking) scene.note(lacking->note());
     bool const skipped = lacking && scene.forces.openmm;

@@ -41,6 +41,9 @@ class RunCommand final : public Command {
             throw InputError("--branch without --restart or --output", "command line",
                              "name the checkpoint with --restart and a folder of the branch's own "
                              "with --output");
+        if (request.overwrite && request.branch)
+            throw InputError("both --overwrite and --branch", "command line",
+                             "leave --overwrite out and name a new folder with --output");
         if (request.overwrite && !request.restart.empty())
             throw InputError("both --overwrite and --restart", "command line",
                              "a restart continues the existing run: leave --overwrite out");

@@ -22,6 +22,7 @@
 #include "mpi/gather_way.hpp"
 #include "mpi/gpu_exchange.hpp"
 #include "mpi/launcher.hpp"
+#include "plan/host_memory.hpp"
 #include "reader/load_scene.hpp"
 
 namespace catena::command {
@@ -89,7 +90,11 @@ Scene Session::load(std::string const& file) const {
     std::optional<Scene> scene;
     LongTask const task(communicator_.rank() == 0 && !is_quiet(), "reading " + file);
     // Files that one rank alone cannot read must not leave the others waiting.
-    on_every_rank(communicator_, [&] { scene = load_scene(file, overrides_of(options_)); });
+    auto const look = [ranks = communicator_.size(),
+                       here = communicator_.ranks_on_host()](Scene const& first) {
+        refuse_replicas_beyond_memory(first, ranks, here);
+    };
+    on_every_rank(communicator_, [&] { scene = load_scene(file, overrides_of(options_), look); });
     spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, seconds_now() - start,
                   scene->chains.size(), scene->bodies());
     return *std::move(scene);

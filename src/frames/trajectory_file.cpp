@@ -197,7 +197,7 @@ void TrajectoryFile::read_chains() {
                                     beads = list("beads"), ring = list("ring");
     std::vector<std::int64_t> const replica = has(root, "catena/chains/replica")
                                                   ? list("replica")
-                                                  : std::vector<std::int64_t>(first.size(), 0);
+                                                  : std::vector<std::int64_t>(first.size(), 1);
     std::vector<std::string> const names = read_texts(root, "catena/chains/name");
     topology_.chains.clear();
     std::int64_t sites = 0;
@@ -208,7 +208,7 @@ void TrajectoryFile::read_chains() {
         sound = first[c] == sites && count[c] >= 0;
         sites += count[c];
         topology_.chains.push_back(
-            {names[c], first[c], count[c], beads[c] != 0, ring[c] != 0, replica[c]});
+            {names[c], first[c], count[c], beads[c] != 0, ring[c] != 0, replica[c] - 1});
     }
     std::vector<hsize_t> const row{topology_.mass.size(), 3};
     auto const is_mass = [](double mass) { return std::isfinite(mass) && mass > 0; };

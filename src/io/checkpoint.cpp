@@ -82,6 +82,16 @@ void require_seal(std::string const& path, std::string const& file, bool has_pre
                      has_previous ? remedy : name_one);
 }
 
+/// Returns what to do where there is no checkpoint. A killed run may have left its tables alone.
+std::string remedy_of_missing(std::string const& file) {
+    std::filesystem::path const folder = std::filesystem::path(file).parent_path();
+    std::error_code unseen;
+    if (!std::filesystem::exists(folder / "observables.csv", unseen))
+        return "name the checkpoint.h5 of a run";
+    return "name the checkpoint.h5 of a run; if this run ended before its first one, start it "
+           "anew with --overwrite and a smaller output.checkpoint_every";
+}
+
 }  // namespace
 
 std::string previous_checkpoint(std::string const& file) {
@@ -97,7 +107,7 @@ Checkpoint read_checkpoint(std::string const& file) {
     if (unseen)
         throw InputError("the checkpoint cannot be accessed, " + unseen.message(), file,
                          "name the checkpoint.h5 of a run");
-    if (!exists) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
+    if (!exists) throw InputError("no such checkpoint", file, remedy_of_missing(file));
     std::string const previous = previous_checkpoint(file);
     bool const has_previous = std::filesystem::exists(previous, unseen);
     std::string const remedy = has_previous ? "use the previous one, " + previous : "start anew";

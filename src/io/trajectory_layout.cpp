@@ -139,7 +139,7 @@ class Builder {
             count.push_back(chain.count);
             beads.push_back(chain.beads);
             ring.push_back(chain.ring);
-            replica.push_back(chain.replica);
+            replica.push_back(chain.replica + 1);
             name.push_back(chain.name);
         }
         put_array(at(chains), "first", first);
@@ -147,7 +147,7 @@ class Builder {
         put_array(at(chains), "beads", beads);
         put_array(at(chains), "ring", ring);
         put_array(at(chains), "name", name);
-        if (!replica.empty() && replica.back() > 0) put_array(at(chains), "replica", replica);
+        if (!replica.empty() && replica.back() > 1) put_array(at(chains), "replica", replica);
     }
 
     bool is_branched() const {

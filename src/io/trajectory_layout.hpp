@@ -11,7 +11,7 @@
 //   /connectivity/bonds           [bonds][2], if a chain is branched: ids of the bonded sites
 //   /catena                       format_version, title, length_unit: texts of fixed length
 //       chains                    first, count, beads, ring, name: [chains]; with replicas
-//                                 replica, from 0
+//                                 replica, from 1
 //       members                   if a structure file names residues: identifier, chain [members];
 //                                 member, place, number [sites]: index of the site's member, its
 //                                 place along the member from 0, its residue number in the file

@@ -6,9 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "error.hpp"
+#include "integrate/chain_system.hpp"
+#include "integrate/checked_steps.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_limit.hpp"
 #include "measure/forward_error.hpp"
+#include "scene/branch_limits.hpp"
 
 namespace catena {
 namespace {
@@ -38,7 +42,24 @@ void look_at_forward_error(Scene& scene, Communicator const& communicator) {
 
 }  // namespace
 
+void refuse_before_run(Scene const& scene, Communicator const& communicator) {
+    choose_backend(scene, communicator);
+    choose_threads(scene, communicator);
+    choose_simd_level(scene, communicator);
+    scene::refuse_unsupported_branches(scene, communicator.size());
+    if (!scene.dynamics.given) return;
+    refuse_refinement(scene);
+    Integrator const integrator = scene.dynamics.integrator;
+    if (scene.solver.handles == Handles::articulated &&
+        (!uses_joint_coordinates(integrator) || is_implicit(integrator)))
+        throw InputError(
+            fmt::format("articulated handles with integrator {}", name_of(integrator)),
+            scene.file + ": solver.handles",
+            "use integrator rk4, dormand-prince or velocity-verlet, or handles projected or full");
+}
+
 void look_before_run(Scene& scene, Communicator const& communicator) {
+    refuse_before_run(scene, communicator);
     look_at_forward_error(scene, communicator);
     if (std::string const note = note_of_step(scene, estimate_step_limit(scene)); !note.empty())
         scene.note(note);

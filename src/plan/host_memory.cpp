@@ -11,6 +11,8 @@
 
 #include "console/text.hpp"
 #include "cuda/device/gpu.hpp"
+#include "error.hpp"
+#include "io/memory_limit.hpp"
 #include "mpi/collectives.hpp"
 #include "plan/describe.hpp"
 
@@ -96,6 +98,11 @@ bool may_use_gpu(Backend backend) {
     return uses_gpu(backend) || (backend == Backend::automatic && cuda::why_not().empty());
 }
 
+/// Returns the bytes that OpenMM takes at least on one of the ranks.
+double forces_of_rank(Scene const& scene, int ranks) {
+    return scene.forces.openmm ? openmm_bytes * static_cast<double>(scene.bodies()) / ranks : 0;
+}
+
 /// Returns the one that lacks more.
 HostMemory worse(HostMemory const& a, HostMemory const& b) {
     return b.needed * a.free > a.needed * b.free ? b : a;
@@ -121,13 +128,26 @@ std::string HostMemory::note() const {
         bytes_text(needed), bytes_text(free));
 }
 
+void refuse_replicas_beyond_memory(Scene const& first, int ranks, int on_host) {
+    Memory const one = memory_of(first, ranks);
+    double of_rank = one.scene;
+    if (!may_use_gpu(first.solver.backend))
+        of_rank += one.state + one.solver + forces_of_rank(first, ranks);
+    of_rank *= static_cast<double>(first.replicas);
+    double const needed = is_limited_by_ulimit() ? of_rank : of_rank * on_host;
+    if (needed <= static_cast<double>(memory_limit())) return;
+    throw InputError(
+        fmt::format("{} replicas need at least {} of memory {}, and only {}", first.replicas,
+                    bytes_text(needed), is_limited_by_ulimit() ? "in a process" : "on a host",
+                    available_memory()),
+        first.file + ": replicas", "make fewer replicas, or run on more hosts");
+}
+
 std::optional<HostMemory> lacking_memory(Scene const& scene, Communicator const& communicator) {
     // The scene itself has been read: it is no longer part of what is free.
     Memory const memory = memory_of(scene, communicator.size());
-    double const forces = scene.forces.openmm ? openmm_bytes * static_cast<double>(scene.bodies()) /
-                                                    communicator.size()
-                                              : 0,
-                 of_rank = memory.state + memory.solver + forces;
+    double const of_rank =
+        memory.state + memory.solver + forces_of_rank(scene, communicator.size());
     HostMemory own{0, 1};
     if (auto const free = free_host_memory(); free && !may_use_gpu(scene.solver.backend))
         own = worse({of_rank * communicator.ranks_on_host(), *free},

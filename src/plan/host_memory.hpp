@@ -30,4 +30,9 @@ struct HostMemory {
 /// Collective.
 std::optional<HostMemory> lacking_memory(Scene const&, Communicator const&);
 
+/// Throws InputError if the replicas of a scene, of which `first` has the chains of one, need more
+/// memory in a run on `ranks` ranks, `on_host` of them on this host, than this host has. OpenMM's
+/// memory counts unless a GPU may compute the chains.
+void refuse_replicas_beyond_memory(Scene const& first, int ranks, int on_host);
+
 }  // namespace catena::command

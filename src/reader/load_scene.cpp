@@ -78,11 +78,20 @@ bool is_warm(Fields const& fields, Scene const& frame) {
                                               !uses_joint_coordinates(frame.dynamics.integrator)));
 }
 
+/// Reads the chains of the System that the scene names, and its box unless the scene has one.
+std::vector<scene::Draft> import_chains(Fields const& fields, Scene& frame, bool warm) {
+    bool const has_box = frame.box.has_value();
+    auto drafts = scene::import_chains(*fields.find("forces")->find("openmm"), frame, warm);
+    // Only a System whose forces are periodic gives the scene a box.
+    if (!has_box && frame.box) scene::refuse_periodic_system(fields, true, frame);
+    return drafts;
+}
+
 /// Reads the chains of the scene or, if it has none, those of the System that it names.
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     bool const warm = is_warm(fields, frame);
     if (!fields.find("chains") && frame.forces.openmm && !frame.forces.openmm->system.empty())
-        return scene::import_chains(*fields.find("forces")->find("openmm"), frame, warm);
+        return import_chains(fields, frame, warm);
     Node const& chains =
         fields.need("chains", "chains: [{name: a, sequence: GGG, model: calvados2}]");
     std::optional<scene::WrittenSystem> system;
@@ -94,6 +103,7 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
         scene::read_chain(chains.items[i], i, frame, warm, system ? &*system : nullptr, drafts);
     // Soft bonds are judged when all chains are known, for one note on all of them.
     if (system) system->judge(drafts, frame);
+    if (system && system->is_periodic()) scene::refuse_periodic_system(fields, false, frame);
     return drafts;
 }
 
@@ -178,15 +188,16 @@ std::vector<PredictedChain> load_predictions(std::string const& file,
     return made;
 }
 
-Scene load_scene(std::string const& file, std::vector<std::string> const& overrides) {
+Scene load_scene(std::string const& file, std::vector<std::string> const& overrides,
+                 LookAtOne const& before_replicas) {
     Node at;  // the file itself
     at.text = file;
-    return parse_scene(scene::read_text_file(file, at), file, overrides);
+    return parse_scene(scene::read_text_file(file, at), file, overrides, before_replicas);
 }
 
 // Memory may run out anywhere below; the error becomes a message on the scene.
 Scene parse_scene(std::string const& text, std::string const& name,
-                  std::vector<std::string> const& overrides) try {
+                  std::vector<std::string> const& overrides, LookAtOne const& before_replicas) try {
     std::unique_ptr<Node> const root = scene::parse_document(text, name);
     for (std::string const& change : overrides) scene::apply_override(*root, change);
     Fields const fields(*root, scene::keys::top);
@@ -194,12 +205,14 @@ Scene parse_scene(std::string const& text, std::string const& name,
     Scene made = frame;
     made.replicas = scene::read_replicas(fields, frame);
     made.chains = one_replica(fields, made);
-    if (made.replicas > 1)
-        scene::add_replicas(made, *fields.find("replicas"), [&](std::uint64_t seed) {
+    if (made.replicas > 1) {
+        if (before_replicas) before_replicas(made);
+        scene::add_replicas(made, fields, [&](std::uint64_t seed) {
             Scene other = frame;
             other.dynamics.seed = seed;
             return one_replica(fields, other);
         });
+    }
     scene::note_missing_forces(made);
     scene::note_step(made);
     scene::note_water(made);

@@ -1,6 +1,7 @@
 // Entry point of the reader: reads a scene file.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,10 +15,14 @@ namespace scene {
 struct Prediction;
 }  // namespace scene
 
+/// Looks at a scene that has the chains of its first replica only. `replicas` is their number.
+using LookAtOne = std::function<void(Scene const&)>;
+
 /// Reads and validates a scene file. `overrides` holds "key.path=value" with list indices as in
 /// "chains[0].count=10". Throws InputError with one line that names file, key, body index and
-/// remedy.
-Scene load_scene(std::string const& file, std::vector<std::string> const& overrides = {});
+/// remedy. `before_replicas` is called before the chains of a first replica are repeated.
+Scene load_scene(std::string const& file, std::vector<std::string> const& overrides = {},
+                 LookAtOne const& before_replicas = {});
 
 /// A chain whose rigid domains follow from a prediction.
 struct PredictedChain {
@@ -33,6 +38,7 @@ std::vector<PredictedChain> load_predictions(std::string const& file,
 /// Reads a scene from text like load_scene(). `name` is the file name in messages; its folder
 /// resolves relative paths.
 Scene parse_scene(std::string const& text, std::string const& name,
-                  std::vector<std::string> const& overrides = {});
+                  std::vector<std::string> const& overrides = {},
+                  LookAtOne const& before_replicas = {});
 
 }  // namespace catena

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "generate/outline.hpp"
 #include "io/memory_limit.hpp"
+#include "keys/maps.hpp"
 #include "math/cubic_lattice.hpp"
 #include "place/chain_motion.hpp"
+#include "reader/chain_request.hpp"
 #include "scene/hash.hpp"
 
 namespace catena::scene {
@@ -44,7 +47,96 @@ void refuse_too_many(Scene const& scene, Node const& at) {
              "make fewer replicas");
 }
 
+/// What to do in place of replicas of a System whose forces are periodic.
+constexpr char const* no_replicas_of_periodic_system =
+    "leave `replicas` out and run the scene with several seeds, or write the chains with "
+    "`builder: calvados2` and `box: none`";
+
+/// True if the forces are those of a System.
+bool has_system(Scene const& scene) {
+    return scene.forces.openmm && !scene.forces.openmm->system.empty();
+}
+
+/// True if two runs of the same start differ: by noise or by thermal velocities.
+bool has_chance(Scene const& scene) {
+    DynamicsSpec const& d = scene.dynamics;
+    bool const noise = is_langevin(d.integrator) && d.friction > 0;
+    return d.temperature > 0 &&
+           (noise ||
+            std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
+                return chain.velocities == StartVelocities::thermal;
+            }));
+}
+
+/// True if chains of two replicas are the same, starts included.
+bool are_alike(std::vector<ChainSpec> const& first, std::vector<ChainSpec> const& second) {
+    ChainPrints const a = prints_of(first), b = prints_of(second);
+    return a.kind == b.kind && a.loads == b.loads && a.positions == b.positions &&
+           a.velocities == b.velocities;
+}
+
+/// Notes generators with a seed of their own, which give all replicas one start.
+void note_own_seeds(Fields const& top, Scene& scene) {
+    Node const* const chains = top.find("chains");
+    if (!chains) return;
+    for (std::size_t i = 0; i < chains->items.size(); ++i) {
+        Node const* const generator = chains->items[i].find("generator");
+        bool const is_map = generator && generator->kind == Node::Kind::map;
+        if (!is_map || generator->items.empty() || !generator->items[0].find("seed")) continue;
+        scene.note(fmt::format(
+            "the generator of chain `{}` has a `seed` of its own: all {} replicas of it start "
+            "alike; without it each starts otherwise.",
+            shown(ChainRequest{Fields(chains->items[i], keys::chain), chains->items[i], i, scene}
+                      .name()),
+            scene.replicas));
+    }
+}
+
+/// Notes chains of which each replica has other bodies, links or branches.
+void note_other_bodies(Scene& scene, std::vector<ChainSpec> const& first,
+                       std::vector<ChainSpec> const& second) {
+    std::string name;
+    std::size_t others = 0;
+    for (std::size_t c = 0; c < first.size(); ++c) {
+        std::span<ChainSpec const> const one(&first[c], 1), other(&second[c], 1);
+        if (prints_of(one).kind == prints_of(other).kind) continue;
+        if (name.empty())
+            name = first[c].name;
+        else
+            ++others;
+    }
+    if (name.empty()) return;
+    scene.note(fmt::format(
+        "each replica draws chain `{}`{} anew, with other bodies, links or branches: means are "
+        "over "
+        "different chains; a `seed` in the generator gives all replicas one chain and one start.",
+        shown(name), others > 0 ? fmt::format(" and {} more", others) : ""));
+}
+
+/// Notes replicas that move alike, are of different chains, or start alike by their own seeds.
+void note_likeness(Fields const& top, Scene& scene, std::vector<ChainSpec> const& first,
+                   std::vector<ChainSpec> const& second, bool differ) {
+    note_own_seeds(top, scene);
+    if (differ) return note_other_bodies(scene, first, second);
+    if (scene.dynamics.given && !has_chance(scene))
+        scene.note(fmt::format(
+            "all {} replicas move alike: their starts are the same, and the dynamics ({}) have "
+            "neither noise nor thermal velocities: leave `replicas` out, or make something random.",
+            scene.replicas, name_of(scene.dynamics.integrator)));
+}
+
 }  // namespace
+
+void refuse_periodic_system(Fields const& top, bool is_imported, Scene const& scene) {
+    Node const* const box = top.find("box");
+    if (is_imported && box && box->kind == Node::Kind::scalar)
+        fail(*box, "`box: none` for a System whose forces are periodic",
+             "leave it out: the box is the System's; for chains without a box write them with "
+             "`builder: calvados2`");
+    if (scene.replicas > 1)
+        fail(*top.find("replicas"), "replicas of a System whose forces are periodic",
+             no_replicas_of_periodic_system);
+}
 
 std::int64_t read_replicas(Fields const& top, Scene const& frame) {
     Node const* const at = top.find("replicas");
@@ -52,8 +144,9 @@ std::int64_t read_replicas(Fields const& top, Scene const& frame) {
     if (replicas == 1) return 1;
     if (Node const* const box = top.find("box"); box && !(box->kind == Node::Kind::scalar))
         fail(*box, "replicas in a periodic box",
-             "write `box: none`, since replicas never meet, or leave `replicas` out and run the "
-             "scene with several seeds");
+             has_system(frame) ? no_replicas_of_periodic_system
+                               : "write `box: none`, since replicas never meet, or leave "
+                                 "`replicas` out and run the scene with several seeds");
     if (frame.solver.balance)
         fail(*top.find("solver")->find("balance"), "shares by speeds for replicas",
              "leave it out: ranks get equal numbers of replicas");
@@ -66,12 +159,13 @@ std::int64_t read_replicas(Fields const& top, Scene const& frame) {
     return replicas;
 }
 
-void add_replicas(Scene& scene, Node const& at,
+void add_replicas(Scene& scene, Fields const& top,
                   std::function<std::vector<ChainSpec>(std::uint64_t seed)> const& make) {
-    refuse_too_many(scene, at);
+    refuse_too_many(scene, *top.find("replicas"));
     std::vector<ChainSpec> const first = scene.chains;
     std::vector<ChainSpec> second = make(scene.dynamics.seed + 1);
-    bool const differ = prints_of(first).positions != prints_of(second).positions;
+    bool const differ = !are_alike(first, second);
+    note_likeness(top, scene, first, second, differ);
     std::vector<std::vector<ChainSpec>> all{first, std::move(second)};
     for (std::int64_t r = 2; r < scene.replicas; ++r)
         all.push_back(differ ? make(scene.dynamics.seed + static_cast<std::uint64_t>(r)) : first);

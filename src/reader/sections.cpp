@@ -97,7 +97,8 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
     if (map) read_map(*map, spec);
     if (!topology && !map)
         fail(fields.node(), "the particles are not assigned to chains",
-             "add `topology: topology.pdb`, or `map: {chain: [first, last]}`");
+             "add `topology: topology.pdb`, or `map: {chain: [first, last]}` with particles "
+             "counted from 0");
 }
 
 /// Largest pH of a scale that begins at 0.

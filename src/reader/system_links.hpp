@@ -34,6 +34,8 @@ class WrittenSystem {
     /// Notes soft springs of the System that links of these chains replace; throws InputError for
     /// the softest.
     void judge(std::vector<Draft> const& drafts, Scene&) const;
+    /// True if a force of the System is periodic.
+    bool is_periodic() const { return links_.periodic; }
 
   private:
     /// What joins two particles; it holds nothing if they are not joined.

@@ -2,9 +2,13 @@
 #include "run/branch.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "error.hpp"
+#include "scene/fields.hpp"
 
 namespace catena {
 namespace {
@@ -42,6 +46,63 @@ void require_same_coordinates(Checkpoint const& c, Scene const& scene, std::stri
                          : "use rattle, g-baoab or implicit-g-baoab");
 }
 
+/// What differs if a value under a key that ends so does. Such values are fingerprints, which say
+/// nothing to a reader.
+constexpr std::pair<std::string_view, char const*> prints[] = {
+    {", bodies and joints", "another name, or other bodies, links or joints"},
+    {", springs and loads", "other springs or loads"},
+    {", start positions", "other start positions"},
+    {", start velocities", "other start velocities"}};
+
+/// Returns the name in backticks of the chain behind "chain 3", else the words themselves.
+std::string named(std::string_view chain, Scene const& scene) {
+    std::string_view constexpr word = "chain ";
+    std::size_t number = 0;
+    if (chain.starts_with(word))
+        std::from_chars(chain.data() + word.size(), chain.data() + chain.size(), number);
+    if (number == 0 || number > scene.chains.size()) return std::string(chain);
+    return "chain `" + scene::shown(scene.chains[number - 1].name) + "`";
+}
+
+/// True if the values are fingerprints of files.
+bool is_content(scene::ChangedValue const& each) {
+    std::string_view constexpr content = "content ";
+    return each.before.starts_with(content) && each.now.starts_with(content);
+}
+
+/// Returns what differs as a clause: "dynamics.step was 1, now it is 2", "chain `a` has other start
+/// positions".
+std::string clause_of(scene::ChangedValue const& each, Scene const& scene) {
+    std::string_view const key = each.key;
+    for (auto const& [ending, what] : prints)
+        if (key.ends_with(ending)) {
+            std::string_view const whose = key.substr(0, key.size() - ending.size());
+            return named(whose, scene) + (whose.starts_with("chains") ? " have " : " has ") + what;
+        }
+    if (is_content(each)) return each.key + " has another content";
+    return each.key + " was " + each.before + ", now it is " + each.now;
+}
+
+/// True if the values are fingerprints.
+bool is_print(scene::ChangedValue const& each) {
+    return is_content(each) ||
+           std::any_of(std::begin(prints), std::end(prints),
+                       [&](auto const& print) { return each.key.ends_with(print.first); });
+}
+
+/// Returns a change in few words: "dynamics.step 1 -> 2".
+std::string text_of(scene::ChangedValue const& each) {
+    return each.key + (is_print(each) ? " changed" : " " + each.before + " -> " + each.now);
+}
+
+/// Returns the first value that no branch may change, or nullptr.
+scene::ChangedValue const* first_fixed(std::vector<scene::ChangedValue> const& changed) {
+    auto const found = std::find_if(
+        changed.begin(), changed.end(),
+        [](scene::ChangedValue const& each) { return each.role == scene::Role::fixed; });
+    return found == changed.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 void keep_values(Scene const& scene, std::map<std::string, std::string>& notes) {
@@ -61,9 +122,11 @@ void require_own(Checkpoint const& c, Scene const& scene, std::string const& fil
         before.empty() ? std::vector<scene::ChangedValue>()
                        : scene::changes(before, scene::deciding_values(scene));
     if (changed.empty()) throw InputError(other, file, may);
-    scene::ChangedValue const& first = changed.front();
-    throw InputError(other + ": " + first.key + " was " + first.before + ", now it is " + first.now,
-                     file, may + ", or branch off with --branch --output OTHER");
+    // What no branch can have is named first, and no branch is advised then.
+    scene::ChangedValue const* const fixed = first_fixed(changed);
+    throw InputError(other + ": " + clause_of(fixed ? *fixed : changed.front(), scene), file,
+                     may + (fixed ? ", or start this scene anew"
+                                  : ", or branch off with --branch --output OTHER"));
 }
 
 std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const& scene,
@@ -74,11 +137,10 @@ std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const
                          "branch from a checkpoint that this version wrote");
     std::vector<scene::ChangedValue> changed =
         scene::changes(before, scene::deciding_values(scene));
-    for (scene::ChangedValue const& each : changed)
-        if (each.role == scene::Role::fixed)
-            throw InputError("a branch keeps its chains and units: " + each.key + " was " +
-                                 each.before + ", now it is " + each.now,
-                             file, "start this scene anew");
+    if (scene::ChangedValue const* const fixed = first_fixed(changed))
+        throw InputError(
+            "a branch keeps its chains, replicas and units: " + clause_of(*fixed, scene), file,
+            "start this scene anew");
     require_same_coordinates(c, scene, file);
     std::erase_if(changed,
                   [](scene::ChangedValue const& each) { return each.role == scene::Role::start; });
@@ -90,8 +152,7 @@ std::string note_of_branch(std::string const& file, std::int64_t step,
     std::string text = "branched at step " + std::to_string(step) + " from " + file + ": ";
     if (changes.empty()) text += "with the values of its scene";
     for (std::size_t i = 0; i < changes.size(); ++i)
-        text += (i > 0 ? ", " : "") + changes[i].key + " " + changes[i].before + " -> " +
-                changes[i].now;
+        text += (i > 0 ? ", " : "") + text_of(changes[i]);
     return text + "; the verdict covers the branch only";
 }
 

@@ -90,12 +90,11 @@ void RunFolder::refuse_unless_free(RunOptions const& options) const {
     if (!lock_) RunLock::refuse_if_taken(folder_);
     if (options.overwrite || is_vacant(folder_)) return;
     std::string const checkpoint = newest_checkpoint();
-    std::string const go_on = options.restart.empty() && !checkpoint.empty()
-                                  ? ", continue with --restart " + checkpoint
-                                  : "";
-    throw InputError(
-        "the output folder exists", folder_,
-        "name another folder with --output" + go_on + ", or replace it with --overwrite");
+    std::string remedy = "name another folder with --output";
+    if (options.restart.empty())
+        remedy += (checkpoint.empty() ? "" : ", continue with --restart " + checkpoint) +
+                  ", or replace it with --overwrite";
+    throw InputError("the output folder exists", folder_, remedy);
 }
 
 /// An interruption between the two renames of a checkpoint leaves only the preceding one.

@@ -17,6 +17,11 @@ namespace {
 constexpr std::size_t most_single_chains = 1000;
 constexpr std::size_t longest_list = 200;  // characters
 
+constexpr char const* key_of_replicas = "replicas";
+
+/// Text of the value of a key that a scene lacks.
+std::string absent(std::string const& key) { return key == key_of_replicas ? "1" : "none"; }
+
 using Values = std::vector<DecidingValue>;
 
 template <class Number>
@@ -111,7 +116,7 @@ std::vector<DecidingValue> deciding_values(Scene const& scene) {
     add_forces(values, scene.forces);
     add(values, "box", scene.box ? text_of(*scene.box) : "none");
     add(values, "units", scene.si ? "si" : "md", Role::fixed);
-    if (scene.replicas > 1) add(values, "replicas", scene.replicas, Role::fixed);
+    if (scene.replicas > 1) add(values, key_of_replicas, scene.replicas, Role::fixed);
     add_chains(values, scene.chains);
     if (scene.relax) add(values, "relax", true, Role::start);
     return values;
@@ -124,15 +129,18 @@ std::vector<ChangedValue> changes(std::map<std::string, std::string> const& befo
     for (DecidingValue const& each : now) {
         auto const found = before.find(each.key);
         gone.erase(each.key);
-        std::string const old = found == before.end() ? "none" : found->second;
+        std::string const old = found == before.end() ? absent(each.key) : found->second;
         if (old != each.value) changed.push_back({each.key, old, each.value, each.role});
     }
     for (auto const& [key, value] : gone) {
-        Role const role = key.starts_with("chain") ? Role::fixed
-                          : key == "relax"         ? Role::start
-                                                   : Role::free;
-        changed.push_back({key, value, "none", role});
+        Role const role = key.starts_with("chain") || key == key_of_replicas ? Role::fixed
+                          : key == "relax"                                   ? Role::start
+                                                                             : Role::free;
+        changed.push_back({key, value, absent(key), role});
     }
+    // Other replicas are other chains: their number is what the user changed.
+    std::stable_partition(changed.begin(), changed.end(),
+                          [](ChangedValue const& each) { return each.key == key_of_replicas; });
     return changed;
 }
 

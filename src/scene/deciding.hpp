@@ -28,10 +28,11 @@ std::vector<DecidingValue> deciding_values(Scene const& scene);
 
 /// One difference between two scenes.
 struct ChangedValue {
-    std::string key, before, now;  // "none" where a scene has no such key
+    std::string key, before, now;  // "none" where a scene has no such key; one replica is "1"
     Role role = Role::free;
 };
-/// Returns the differing values in the order of `now`; keys absent from `now` come last.
+/// Returns the differing values in the order of `now`, but `replicas` first. Keys absent from `now`
+/// come last.
 std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before,
                                   std::vector<DecidingValue> const& now);
 

@@ -205,7 +205,8 @@ TEST_F(SystemFiles, what_a_system_says_itself) {
               "forces.openmm.ionic_strength, line 2): leave it out: the System defines it");
     EXPECT_EQ(refusal(scene("threads: 1")),
               "the particles are not assigned to chains (s.yaml: forces.openmm, line 2): add "
-              "`topology: topology.pdb`, or `map: {chain: [first, last]}`");
+              "`topology: topology.pdb`, or `map: {chain: [first, last]}` with particles counted "
+              "from 0");
     EXPECT_EQ(refusal("forces: {openmm: {system: system.xml, map: {a: [0, 2]}}}"),
               "the scene has no `chains` and the system has no topology (s.yaml: forces.openmm, "
               "line 1): add `topology: topology.pdb`, or `chains`");
