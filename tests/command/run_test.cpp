@@ -49,6 +49,54 @@ TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
     EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 2);
 }
 
+TEST(Run, ABranchNeverOverwrites) {
+    expect_refused(catena({"run", input("arm.yaml"), "--restart", "a/checkpoint.h5", "--branch",
+                           "--output", "b", "--overwrite"}),
+                   2, "leave --overwrite out and name a new folder with --output");
+}
+
+TEST(Run, ARunKilledBeforeItsFirstCheckpointIsToldHowToGoOn) {
+    TemporaryFolder const folder;
+    fs::create_directory(folder / "a");
+    std::ofstream(folder / "a/observables.csv") << "step\n";
+    expect_refused(
+        catena({"run", input("arm.yaml"), "--restart", "a/checkpoint.h5"}, folder.path()), 2,
+        "no such checkpoint (a/checkpoint.h5): name the checkpoint.h5 of a run; if this run ended "
+        "before its first one, start it anew with --overwrite and a smaller "
+        "output.checkpoint_every");
+}
+
+/// What `run` refuses while it makes the solver and the integrator, `check` refuses in the same
+/// words.
+TEST(Run, CheckRefusesWhatRunRefuses) {
+    TemporaryFolder const folder;
+    for (std::string const change :
+         {"solver.refine=1", "solver.handles=articulated", "solver.simd=neon",
+          "solver.backend=cuda-levels", "solver.threads=4096"}) {
+        Words words{"check", input("spherical-chain.yaml"), "--set", change};
+        Ended const checked = catena(words, folder.path());
+        words[0] = "run";
+        Ended const run = catena(words, folder.path());
+        EXPECT_EQ(checked.status, run.status) << change << checked.out << run.err;
+        if (run.status == 2) {
+            EXPECT_EQ(checked.err, run.err) << change;
+        }
+        if (change.find("refine") != std::string::npos || change.ends_with("articulated")) {
+            EXPECT_EQ(run.status, 2) << change;
+        }
+        fs::remove_all(folder / "spherical-chain-run");
+    }
+}
+
+TEST(Run, ManyReplicasAreRefusedBeforeTheyAreMade) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "many.yaml")
+        << "replicas: 1e6\nchains: [{generator: {freely_jointed: {beads: 1e4, length: 1}}}]\n"
+           "dynamics: {integrator: g-baoab, step: 1e-3, steps: 1, temperature: 300, friction: 1}\n";
+    expect_refused(catena({"check", "many.yaml"}, folder.path()), 2,
+                   "1000000 replicas need at least ");
+}
+
 TEST(Run, NamesTheTopologyOfManySites) {
     TemporaryFolder const folder;
     std::ofstream(folder / "chain.yaml")

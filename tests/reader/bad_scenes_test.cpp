@@ -428,6 +428,17 @@ chains: [{sequence: GGG, model: calvados2}]
 box: {periodic: [20, 20, 20]})y",
      "replicas in a periodic box (s.yaml: box, line 3): write `box: none`, since replicas never "
      "meet, or leave `replicas` out and run the scene with several seeds"},
+    {"replicas_in_the_box_of_a_system", R"y(replicas: 2
+chains: [{sequence: GGG, model: calvados2}]
+forces: {openmm: {system: README.md, map: {chain-1: [0, 2]}}}
+box: {periodic: [20, 20, 20]})y",
+     "replicas in a periodic box (s.yaml: box, line 4): leave `replicas` out and run the scene "
+     "with several seeds, or write the chains with `builder: calvados2` and `box: none`"},
+    {"articulated_handles_beside_branches", R"y(chains: [{sequence: GGG, model: calvados2},
+  {generator: {star: {arms: 3, arm_length: 2, length: 1}}}]
+solver: {handles: articulated})y",
+     "articulated handles for chain `chain-1`, which has links (s.yaml: solver.handles, line 3): "
+     "use `projected`: articulated ones are for open chains of rigid bodies"},
     {"replicas_and_balance", R"y(replicas: 2
 chains: [{sequence: GGG, model: calvados2}]
 solver: {balance: true})y",

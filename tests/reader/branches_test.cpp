@@ -106,7 +106,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"missing", BEADS("parent: 7"), "bead 3 hangs on bead 7 of 3"},
         Refusal{"no_number", BEADS("parent: first"), "parent"},
         Refusal{"fraction", BEADS("parent: 1.5"), "1.5"},
-        Refusal{"negative", BEADS("parent: -1"), "-1"},
+        Refusal{"negative", BEADS("parent: -1"),
+                "bead 3 hangs on bead -1 (s.yaml: chains[0].bodies[2].parent, body 3, line 1): "
+                "give the number of an earlier bead, 1 to 2"},
+        Refusal{"huge", BEADS("parent: 1e20"), "bead 3 hangs on bead 1e20 of 3"},
         Refusal{"second_root", BEADS("parent: 0"), "two trees"},
         Refusal{"later",
                 "chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, {mass: 1, position: [1, 0, 0], "

@@ -191,6 +191,18 @@ TEST(Deciding, relaxation_is_among_what_a_restart_compares) {
     EXPECT_EQ(changed[0].role, scene::Role::start);
 }
 
+TEST(Deciding, replicas_come_first_and_without_them_there_is_one) {
+    std::string const chain = "chains: [{sequence: GG, model: calvados2}]\n";
+    auto const changed =
+        scene::changes(deciding_values_of(chain + "replicas: 4"),
+                       scene::deciding_values(parse_scene(chain + "relax: true", "s.yaml")));
+    ASSERT_GE(changed.size(), 2U);
+    EXPECT_EQ(changed[0].key, "replicas");
+    EXPECT_EQ(changed[0].before, "4");
+    EXPECT_EQ(changed[0].now, "1");
+    EXPECT_EQ(changed[0].role, scene::Role::fixed);
+}
+
 TEST(Deciding, ends_of_many_chains_fit_a_line) {
     std::string const few =
         "forces: {openmm: {builder: calvados2}}\nchains: [{name: a, sequence: GG, model: "
@@ -258,6 +270,67 @@ TEST(Replicas, OfAWrittenStartDifferInPlaceAlone) {
         for (std::size_t s = 0; s < r; ++s)
             EXPECT_GT(norm(all.chains[r].beads.position[0] - all.chains[s].beads.position[0]), 1);
     }
+}
+
+/// Notes of a scene of three replicas that have `part`.
+std::size_t notes_with(std::string const& part, std::string const& yaml) {
+    Scene const all = parse_scene("replicas: 3\n" + yaml, "s.yaml");
+    return static_cast<std::size_t>(std::count_if(
+        all.notes.begin(), all.notes.end(),
+        [&](std::string const& note) { return note.find(part) != std::string::npos; }));
+}
+
+std::string const g_baoab =
+    "dynamics: {integrator: g-baoab, step: 0.001, steps: 10, temperature: 300, friction: 1}\n";
+
+TEST(Replicas, ThatMoveAlikeAreNoted) {
+    std::string const alike = "all 3 replicas move alike",
+                      beads =
+                          "chains: [{name: a, bodies: [{mass: 1, position: [1, 2, 3]}, {mass: 1, "
+                          "position: [1, 2, 4], joint: {type: link}}]}]\n";
+    auto const rattle = [](std::string const& temperature) {
+        return "dynamics: {integrator: rattle, step: 0.001, steps: 10" + temperature + "}\n";
+    };
+    EXPECT_EQ(notes_with(alike, beads + rattle("")), 1U);
+    EXPECT_EQ(notes_with(alike, beads + rattle(", temperature: 300")), 0U);  // thermal velocities
+    EXPECT_EQ(notes_with(alike, beads + g_baoab), 0U);
+    EXPECT_EQ(notes_with(alike, beads), 0U);  // nothing moves
+    EXPECT_EQ(notes_with(alike, "chains: [{generator: {freely_jointed: {beads: 9, length: 1}}}]\n" +
+                                    rattle("")),
+              0U);
+}
+
+TEST(Replicas, WithASeedOfTheirOwnStartAlikeAndAreNoted) {
+    auto const tree = [](std::string const& seed) {
+        return "chains: [{name: t, generator: {random_tree: {beads: 30, length: 1" + seed +
+               "}}}]\n" + g_baoab;
+    };
+    EXPECT_EQ(notes_with("the generator of chain `t` has a `seed` of its own", tree(", seed: 7")),
+              1U);
+    EXPECT_EQ(notes_with("anew", tree(", seed: 7")), 0U);
+    EXPECT_EQ(notes_with("`seed` of its own", tree("")), 0U);
+    EXPECT_EQ(notes_with("each replica draws chain `t` anew", tree("")), 1U);
+    Scene const alike = parse_scene("replicas: 3\n" + tree(", seed: 7"), "s.yaml"),
+                others = parse_scene("replicas: 3\n" + tree(""), "s.yaml");
+    EXPECT_EQ(alike.chains[0].parent, alike.chains[2].parent);
+    EXPECT_NE(others.chains[0].parent, others.chains[2].parent);
+}
+
+/// Positions that are written do not make the masses of all replicas those of the first.
+TEST(Replicas, DrawTheirMassesEachBesideWrittenPositions) {
+    Scene const all = parse_scene(
+        "replicas: 3\nchains: [{generator: {freely_jointed: {beads: 2, length: 1, mass: {uniform: "
+        "[1, 2]}}}, positions: [[0, 0, 0], [0, 0, 1]]}]\n",
+        "s.yaml");
+    for (std::size_t r = 1; r < 3; ++r)
+        EXPECT_NE(all.chains[r].beads.mass[0], all.chains[0].beads.mass[0]) << r;
+}
+
+TEST(Replicas, AreLookedAtBeforeTheyAreMade) {
+    std::size_t chains = 0;
+    parse_scene(peptides, "s.yaml", {"replicas=3"},
+                [&](Scene const& first) { chains = first.chains.size(); });
+    EXPECT_EQ(chains, 3U);
 }
 
 TEST(Replicas, OneIsTheSceneItself) {

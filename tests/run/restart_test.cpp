@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <pthread.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include <thread>
 
 #include "error.hpp"
+#include "frames/trajectory_file.hpp"
 #include "io/output.hpp"
 #include "reader/load_scene.hpp"
 #include "run/simulation.hpp"
@@ -203,6 +205,77 @@ TEST_P(Restart, RefusesAnExistingFolder) {
         std::filesystem::remove(newest);
     }
     EXPECT_EQ(message_of([&] { run("parts", 5); }).find("--restart"), std::string::npos);
+}
+
+/// Runs of a star of 3 arms on a checkpoint of another scene.
+class OtherScenes : public testing::Test {
+  protected:
+    void SetUp() override { run({}, "parts"); }
+    std::string refusal(std::vector<std::string> const& overrides, bool branch = false) {
+        return message_of([&] {
+            run(overrides, branch ? "branch" : "parts", folder_ / "parts/checkpoint.h5", branch);
+        });
+    }
+    std::string refused(std::string const& what, std::string const& remedy) {
+        return what + " (" + (folder_ / "parts/checkpoint.h5") + "): " + remedy;
+    }
+    void run(std::vector<std::string> const& overrides, std::string const& output,
+             std::string const& restart = "", bool branch = false) {
+        RunOptions options;
+        options.output = folder_ / output;
+        options.restart = restart;
+        options.branch = branch;
+        options.quiet = true;
+        run_simulation(parse_scene(text, "scene.yaml", overrides), *serial_communicator(), options);
+    }
+    static constexpr char const* text =
+        "replicas: 2\n"
+        "chains: [{name: s, generator: {star: {arms: 3, arm_length: 2, length: 1, seed: 1}}}]\n"
+        "dynamics: {integrator: g-baoab, step: 0.001, steps: 4, temperature: 300, friction: 1}\n";
+    std::string const other_ = "the checkpoint belongs to another scene: ",
+                      own_ =
+                          "restart with its own scene (solver, number of steps and output "
+                          "intervals may differ), or ",
+                      kept_ = "a branch keeps its chains, replicas and units: ";
+    TemporaryFolder folder_;
+};
+
+/// In the trajectory replicas have the numbers of their names.
+TEST_F(OtherScenes, ReplicasAreCountedFromOne) {
+    DatasetBits const bits = bits_of(folder_ / "parts/trajectory.h5md");
+    std::vector<char> const& replica = bits.at("catena/chains/replica");
+    std::vector<std::int64_t> numbers(2);
+    ASSERT_EQ(replica.size(), numbers.size() * sizeof(std::int64_t));
+    std::memcpy(numbers.data(), replica.data(), replica.size());
+    EXPECT_EQ(numbers, (std::vector<std::int64_t>{1, 2}));
+    EXPECT_EQ(TrajectoryFile(folder_ / "parts/trajectory.h5md").topology().chains[1].replica, 1);
+}
+
+TEST_F(OtherScenes, AreToldApartWithoutFingerprints) {
+    EXPECT_EQ(refusal({"dynamics.step=0.002", "chains[0].generator.star.arm_length=3"}),
+              refused(other_ + "chain `s-1` has another name, or other bodies, links or joints",
+                      own_ + "start this scene anew"));
+    EXPECT_EQ(refusal({"replicas=1"}),
+              refused(other_ + "replicas was 2, now it is 1", own_ + "start this scene anew"));
+    EXPECT_EQ(refusal({"dynamics.step=0.002"}),
+              refused(other_ + "dynamics.step was 0.001, now it is 0.002",
+                      own_ + "branch off with --branch --output OTHER"));
+}
+
+TEST_F(OtherScenes, AreRefusedForABranchAsTheRestartSaid) {
+    EXPECT_EQ(refusal({"replicas=3"}, true),
+              refused(kept_ + "replicas was 2, now it is 3", "start this scene anew"));
+    EXPECT_EQ(refusal({"chains[0].generator.star.arms=4"}, true),
+              refused(kept_ + "chain `s-1` has another name, or other bodies, links or joints",
+                      "start this scene anew"));
+}
+
+/// --overwrite does not go with --restart: neither advises the other.
+TEST_F(OtherScenes, ABranchIntoAnExistingFolderIsToldToTakeAnother) {
+    run({}, "branch");
+    EXPECT_EQ(refusal({"dynamics.step=0.002"}, true), "the output folder exists (" +
+                                                          (folder_ / "branch") +
+                                                          "): name another folder with --output");
 }
 
 using FromRest = Restart;

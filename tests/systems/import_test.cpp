@@ -2,9 +2,11 @@
 
 #include <OpenMM.h>
 
+#include "reader/load_scene.hpp"
 #include "scene/force_changes.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace catena::testing {
 namespace {
@@ -61,6 +63,29 @@ TEST_F(Import, Box) {
     EXPECT_EQ(imported.box[0], 5);
     EXPECT_EQ(imported.box[1], 6);
     EXPECT_EQ(imported.box[2], 7);
+}
+
+/// The box of periodic forces is the System's, whatever the scene denies, and has no replicas.
+TEST_F(Import, AScenesBoxAndReplicasThatPeriodicForcesDoNotHave) {
+    join_glycines();
+    bonds->setUsesPeriodicBoundaryConditions(true);
+    system->setDefaultPeriodicBoxVectors({50, 0, 0}, {0, 60, 0}, {0, 0, 70});
+    OpenMmSpec const made = spec(scratch_file("import.pdb", pdb_of(beads, wound(beads, 1))));
+    std::string const text =
+        "forces: {openmm: {system: " + made.system + ", topology: " + made.topology + "}}\n";
+    auto const refusal = [&](std::string const& more) {
+        return test::message_of([&] { parse_scene(text + more, "scene.yaml"); });
+    };
+    EXPECT_EQ(parse_scene(text, "scene.yaml").box.value()[1], 60);
+    EXPECT_EQ(refusal("box: none"),
+              "`box: none` for a System whose forces are periodic (scene.yaml: box, line 2): leave "
+              "it out: the box is the System's; for chains without a box write them with "
+              "`builder: calvados2`");
+    EXPECT_EQ(
+        refusal("replicas: 2"),
+        "replicas of a System whose forces are periodic (scene.yaml: replicas, line 2): leave "
+        "`replicas` out and run the scene with several seeds, or write the chains with "
+        "`builder: calvados2` and `box: none`");
 }
 
 TEST_F(Import, AlphaSynuclein) {
