@@ -50,11 +50,11 @@ std::string text_of(Analysis const& a) {
                                      a.steps.size(), a.frames_in_file, a.steps.front(),
                                      a.steps.back(), a.times.front(), a.times.back(), a.time_unit));
     text.entry("chains", kinds_text(a));
-    Table table({"quantity", "chains", "value", "error", "between copies", "unit", "from"},
+    Table table({"quantity", "chains", "value", "error", "between copies", "unit", "how"},
                 {0, 1, 5, 6});
     bool may_grow = false;
     for (analysis::Quantity const& q : a.quantities) {
-        bool const open = std::isfinite(q.value.error) && !q.value.plateau;
+        bool const open = std::isfinite(q.value.error) && q.value.error > 0 && !q.value.plateau;
         may_grow = may_grow || open;
         table.add({q.name, q.kind, number(q.value.mean), number(q.value.error, open ? "*" : ""),
                    number(q.value.between), q.unit, q.basis});
