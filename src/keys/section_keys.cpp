@@ -13,8 +13,8 @@ constexpr Key top_keys[] = {
      "Each entry describes one chain or several copies of it.",
      "chains: [{sequence: GGG, model: calvados2}]"},
     {"replicas", "integer >= 1", "1", "",
-     "The chains exist this many times, as replicas NAME-1, NAME-2, ... without forces between "
-     "them.",
+     "The chains exist this many times, as replicas NAME-1, NAME-2 and so on, without forces "
+     "between them.",
      "replicas: 256"},
     {"box", "`none`, or a map", "`none`", "",
      "Forces act across the sides of this periodic box; positions stay unwrapped.",
