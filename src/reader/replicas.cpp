@@ -121,7 +121,8 @@ void note_likeness(Fields const& top, Scene& scene, std::vector<ChainSpec> const
     if (scene.dynamics.given && !has_chance(scene))
         scene.note(fmt::format(
             "all {} replicas move alike: their starts are the same, and the dynamics ({}) have "
-            "neither noise nor thermal velocities: leave `replicas` out, or make something random.",
+            "neither noise nor thermal velocities: leave `replicas` out, or give the chains "
+            "random starts or thermal velocities.",
             scene.replicas, name_of(scene.dynamics.integrator)));
 }
 
