@@ -430,7 +430,7 @@ box: {periodic: [20, 20, 20]})y",
      "meet, or leave `replicas` out and run the scene with several seeds"},
     {"replicas_in_the_box_of_a_system", R"y(replicas: 2
 chains: [{sequence: GGG, model: calvados2}]
-forces: {openmm: {system: README.md, map: {chain-1: [0, 2]}}}
+forces: {openmm: {system: )y" CATENA_SOURCE_DIR R"y(/README.md, map: {chain-1: [0, 2]}}}
 box: {periodic: [20, 20, 20]})y",
      "replicas in a periodic box (s.yaml: box, line 4): leave `replicas` out and run the scene "
      "with several seeds, or write the chains with `builder: calvados2` and `box: none`"},

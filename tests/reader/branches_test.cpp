@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"negative", BEADS("parent: -1"),
                 "bead 3 hangs on bead -1 (s.yaml: chains[0].bodies[2].parent, body 3, line 1): "
                 "give the number of an earlier bead, 1 to 2"},
-        Refusal{"huge", BEADS("parent: 1e20"), "bead 3 hangs on bead 1e20 of 3"},
+        Refusal{"beyond_integers", BEADS("parent: 1e20"), "bead 3 hangs on bead 1e20 of 3"},
         Refusal{"second_root", BEADS("parent: 0"), "two trees"},
         Refusal{"later",
                 "chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, {mass: 1, position: [1, 0, 0], "
