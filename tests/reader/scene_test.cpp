@@ -1,9 +1,12 @@
 // Whole scenes: every section's values and defaults, and the hash.
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "reader/load_scene.hpp"
 #include "scene/deciding.hpp"
+#include "tests/io/temporary_folder.hpp"
 #include "tests/reader/refusal.hpp"
 
 namespace catena::test {
@@ -318,10 +321,12 @@ TEST(Replicas, WithASeedOfTheirOwnStartAlikeAndAreNoted) {
 
 /// Positions that are written do not make the masses of all replicas those of the first.
 TEST(Replicas, DrawTheirMassesEachBesideWrittenPositions) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "two.csv") << "0,0,0\n0,0,1\n";
     Scene const all = parse_scene(
         "replicas: 3\nchains: [{generator: {freely_jointed: {beads: 2, length: 1, mass: {uniform: "
-        "[1, 2]}}}, positions: [[0, 0, 0], [0, 0, 1]]}]\n",
-        "s.yaml");
+        "[1, 2]}}}, positions: two.csv}]\n",
+        folder / "s.yaml");
     for (std::size_t r = 1; r < 3; ++r)
         EXPECT_NE(all.chains[r].beads.mass[0], all.chains[0].beads.mass[0]) << r;
 }
