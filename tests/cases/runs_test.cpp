@@ -356,11 +356,11 @@ TEST_F(Runs, ABranchThatCannotBeIsRefused) {
     expect_refused(branch({"--output", "out"}), 2, "a folder of its own");
     expect_refused(
         branch({"--output", "b", "--set", "chains[0].generator.freely_jointed.beads=400"}), 2,
-        "bodies and joints");
+        "other bodies, links or joints");
     expect_refused(branch({"--output", "b", "--set", "chains[0].count=2"}), 2,
                    "a branch keeps its chains");
     expect_refused(branch({"--output", "b", "--set", "chains[0].generator.freely_jointed.mass=50"}),
-                   2, "bodies and joints");
+                   2, "other bodies, links or joints");
     expect_refused(run("restart-branch", {"--branch", "--output", "b"}), 2, "--restart");
     EXPECT_FALSE(fs::exists(at("b")));
 }
