@@ -145,7 +145,8 @@ std::int64_t read_replicas(Fields const& top, Scene const& frame) {
     if (replicas == 1) return 1;
     if (Node const* const box = top.find("box"); box && !(box->kind == Node::Kind::scalar))
         fail(*box, "replicas in a periodic box",
-             has_system(frame) ? no_replicas_of_periodic_system
+             has_system(frame) ? "write `box: none` if no force of the System is periodic, else "
+                                 "leave `replicas` out and run the scene with several seeds"
                                : "write `box: none`, since replicas never meet, or leave "
                                  "`replicas` out and run the scene with several seeds");
     if (frame.solver.balance)

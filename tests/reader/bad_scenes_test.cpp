@@ -432,8 +432,8 @@ box: {periodic: [20, 20, 20]})y",
 chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {system: )y" CATENA_SOURCE_DIR R"y(/README.md, map: {chain-1: [0, 2]}}}
 box: {periodic: [20, 20, 20]})y",
-     "replicas in a periodic box (s.yaml: box, line 4): leave `replicas` out and run the scene "
-     "with several seeds, or write the chains with `builder: calvados2` and `box: none`"},
+     "replicas in a periodic box (s.yaml: box, line 4): write `box: none` if no force of the "
+     "System is periodic, else leave `replicas` out and run the scene with several seeds"},
     {"articulated_handles_beside_branches", R"y(chains: [{sequence: GGG, model: calvados2},
   {generator: {star: {arms: 3, arm_length: 2, length: 1}}}]
 solver: {handles: articulated})y",
