@@ -419,8 +419,8 @@ forces: {openmm: {builder: calvados2}})y",
     {"openmm_of_unknown_residue", R"y(chains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]
 forces: {openmm: {builder: calvados2}})y",
      "residue `UNK` has no parameters in calvados2 (s.yaml: chains[0], bead 1, line 1): give the "
-     "chain as `sequence`, or its beads a "
-     "`residue` among the twenty amino acids"},
+     "chain as `sequence`, its beads a `residue` among the twenty amino acids, or their table "
+     "(`model: {residues: FILE.csv}`)"},
     {"no_replicas", "replicas: 0\nchains: [{sequence: GGG, model: calvados2}]",
      "replicas 0 is below 1 (s.yaml: replicas, line 1): give 1 or more"},
     {"replicas_in_a_box", R"y(replicas: 2
