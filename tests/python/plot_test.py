@@ -83,7 +83,9 @@ def check_means(runs, scratch):
                        (f'{{"observables": {{"{name}": {{"mean": null, "standard_error": null}}}}}}', f"[{unit}]")):
         with open(summary, "w", encoding="utf-8") as file:
             file.write(text)
-        labels = [label for label, _ in module.observable_panels(names, records, module.read_means(folder))]
+        panels = module.observable_panels(names, records, module.read_means(folder))
+        labels = [label for label, _, _ in panels]
+        check([mean for _, _, mean in panels if mean is not None] == ([2.71828] if "2.718" in said else []), f"the line is not at the mean of the label: {panels}")
         check(any(label.lower().startswith(name.replace("_", " ").lower()) and label.endswith(said) for label in labels), f"{said} is not in {labels}")
 
 
