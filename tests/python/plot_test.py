@@ -103,7 +103,7 @@ def check_joints(runs, scratch):
     import plot as module
     _, joints = module.read_joints(os.path.join(folder, "trajectory.h5md"))
     panels = module.joint_panels(joints, "3,1")
-    check([label for label, _ in panels] == ["q of joint 3", "q of joint 1"] and panels[0][1][-1] == 0.2 * (frames - 1), f"wrong panels: {panels}")
+    check([label for label, *_ in panels] == ["q of joint 3", "q of joint 1"] and panels[0][1][-1] == 0.2 * (frames - 1), f"wrong panels: {panels}")
 
 
 def main():
