@@ -115,8 +115,9 @@ TEST(BranchedMolecules, RunWholeIfTheSceneSaysOnWhichBeadEachHangs) {
     EXPECT_NEAR(run.energy("HarmonicAngleForce"), 8.174290, 1e-4);
 }
 
-/// Notes of case 13's branched chain with another text of the scene in place of `from`.
-std::string notes_of_branched(std::string const& from, std::string const& to) {
+/// Notes of case 13's branched chain with another text of the scene in place of `from`, with the
+/// System's bonds or without them.
+std::string notes_of_branched(std::string const& from, std::string const& to, bool bonds = true) {
     TemporaryFolder const folder;
     std::ostringstream scene;
     scene << std::ifstream(case_file("13-two-beads-a-unit/branched.yaml")).rdbuf();
@@ -126,7 +127,11 @@ std::string notes_of_branched(std::string const& from, std::string const& to) {
     text.replace(at, from.size(), to);
     // Bonds that stay springs are periodic.
     std::ofstream(folder / "s.yaml") << text << "box: {periodic: [20, 20, 20]}\n";
-    std::filesystem::copy_file(case_file("13-two-beads-a-unit/system.xml"), folder / "system.xml");
+    std::ostringstream system;
+    system << std::ifstream(case_file("13-two-beads-a-unit/system.xml")).rdbuf();
+    std::ofstream(folder / "system.xml")
+        << (bonds ? system.str()
+                  : std::regex_replace(system.str(), std::regex("<Bond [^>]*>"), ""));
     Ended const e = catena({"check", folder / "s.yaml", "--json", "-"});
     expect_good(e);
     return e.status == 0 ? e.json().at("notes").dump() : "";
@@ -142,6 +147,11 @@ TEST(LinksOfTheScene, ThatJoinOtherParticlesThanTheSystemAreNoted) {
                       "the first beads 18 and 19 of chain `rna`, and 1 of its bonds within these "
                       "chains is along no link: are `parent` and `map` those of the System?"))
         << notes;
+}
+
+TEST(LinksOfTheScene, AreLeftToItByASystemWithoutBonds) {
+    std::string const own = "parent: 17";
+    EXPECT_FALSE(holds(notes_of_branched(own, "parent: 18", false), "neither bonds"));
 }
 
 // Bonds of a side bead are 0.54 nm long; 1 % more is not noted.

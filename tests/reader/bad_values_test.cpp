@@ -58,7 +58,7 @@ Refusal const keys_cases[] = {
      "unknown key `chians` (s.yaml: chians, line 1): did you mean `chains`?"},
     {"unknown_far_from_all", "wallpaper: []",
      "unknown key `wallpaper` (s.yaml: wallpaper, line 1): use one of `title`, `units`, `chains`, "
-     "`box`, `forces`, `dynamics`, `solver`, "
+     "`replicas`, `box`, `forces`, `dynamics`, `solver`, "
      "`output`, `relax`, `place`, `start`"},
     {"unknown_in_chain", "chains: [{sequnce: GGG, model: calvados2}]",
      "unknown key `sequnce` (s.yaml: chains[0].sequnce, line 1): did you mean `sequence`?"},
