@@ -119,37 +119,38 @@ def chosen_columns(names, records):
 
 
 def read_means(folder):
-    """Text of mean and standard error of each observable, as far as the run's summary has them."""
+    """(mean, text of mean and standard error) of each observable, as far as the run's summary has them."""
     try:
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
             found = json.load(file).get("observables", {})
-        return {name: f"{of['mean']:.4g} \u00b1 {of['standard_error']:.2g}" for name, of in found.items() if of["mean"] is not None and of["standard_error"]}
+        return {name: (of["mean"], f"{of['mean']:.4g} \u00b1 {of['standard_error']:.2g}") for name, of in found.items() if of["mean"] is not None and of["standard_error"]}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}  # of a run that has not ended, or of an earlier version
 
 
 def observable_panels(names, records, means):
-    """(label, values [record][1]) of each observable to draw."""
+    """(label, values [record][1], mean) of each observable to draw; the mean is that of the label, without equilibration, or None."""
     columns = chosen_columns(names, records)
     if not columns:
         raise UserError("the table holds no observables (observables.csv): ask for some under output.observables")
     panels = []
     for column in columns:
         name, unit = name_and_unit(names[column])
-        text = f"{means[name]} {unit}" if name in means else f"[{unit}]" if unit not in ("", "1") else ""
-        panels.append((name.replace("_", " ").capitalize() + f"  {text}", records[:, column:column + 1]))
+        mean, text_of_mean = means.get(name, (None, ""))
+        text = f"{text_of_mean} {unit}" if name in means else f"[{unit}]" if unit not in ("", "1") else ""
+        panels.append((name.replace("_", " ").capitalize() + f"  {text}", records[:, column:column + 1], mean))
     return panels
 
 
 def joint_panels(joints, asked):
-    """(label, values [frame][coordinates that change]) of each joint asked for."""
+    """(label, values [frame][coordinates that change], no mean) of each joint asked for."""
     panels = []
     for word in asked.split(",")[:MOST_PANELS]:
         if not word.isdigit() or not 1 <= int(word) <= joints.shape[1]:
             raise UserError(f"no such joint (--joints {word}): the run has joints 1 to {joints.shape[1]}")
         values = joints[:, int(word) - 1]
         changing = (values != values[0]).any(axis=0)
-        panels.append((f"q of joint {word}", values[:, changing] if changing.any() else values[:, :1]))
+        panels.append((f"q of joint {word}", values[:, changing] if changing.any() else values[:, :1], None))
     return panels
 
 
@@ -165,8 +166,8 @@ def thinned(x, y):
     return x[kept], y[kept]
 
 
-def draw_panel(axes, time, values, label, time_label):
-    """Draws the columns of `values` over time; `time_label` is empty for all panels but the last."""
+def draw_panel(axes, time, values, mean, label, time_label):
+    """Draws the columns of `values` over time, and a line at `mean` or, without one, at the mean of all values; `time_label` is empty for all panels but the last."""
     import numpy as np
     from matplotlib.ticker import MaxNLocator
     finite = values[np.isfinite(values)]
@@ -180,7 +181,7 @@ def draw_panel(axes, time, values, label, time_label):
             axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 5), useMathText=True)
             axes.yaxis.get_offset_text().set(size=8.5, color=SOFT)
             if values.shape[1] == 1:
-                axes.axhline(finite.mean(), color=SOFT, linewidth=0.9, linestyle=(0, (2, 3)))
+                axes.axhline(finite.mean() if mean is None else mean, color=SOFT, linewidth=0.9, linestyle=(0, (2, 3)))
     axes.annotate(label, (1, 1), xytext=(0, 5), xycoords="axes fraction", textcoords="offset points", ha="right", color=INK, fontsize=10.5)
     axes.grid(axis="y", color=GRID, linewidth=0.9)
     axes.set_axisbelow(True)
@@ -200,10 +201,10 @@ def draw_picture(time, panels, trajectory, up):
     grid = figure.add_gridspec(len(panels), 2, width_ratios=[1.12, 1], hspace=0.42, wspace=0.1, left=0.02, right=0.985, top=0.86, bottom=0.09)
     draw_conformation(figure.add_subplot(grid[:, 0]), trajectory, up)
     first = None
-    for row, (label, values) in enumerate(panels):
+    for row, (label, values, mean) in enumerate(panels):
         axes = figure.add_subplot(grid[row, 1], sharex=first)
         first = first or axes
-        draw_panel(axes, time, values, label, f"time [{trajectory['time_unit']}]" if row == len(panels) - 1 else "")
+        draw_panel(axes, time, values, mean, label, f"time [{trajectory['time_unit']}]" if row == len(panels) - 1 else "")
     figure.text(0.028, 0.945, trajectory["title"] or "A run of Catena", fontsize=17, fontweight="bold", color=INK)
     sites, chains = len(trajectory["positions"]), len(trajectory["chains"])
     told = f"{chains} chains, " if chains > 1 else ""

@@ -34,6 +34,10 @@ double friction_of(PackageFile const& config, Settings& settings) {
             fmt::format("config.yaml has friction {:.6g} and friction_coeff {:.6g}; the package "
                         "reads the latter, and so does the scene.",
                         other, friction));
+    if (friction == 0)
+        settings.notes.push_back(
+            "config.yaml has friction 0: without a thermostat its temperature is that of the start "
+            "only.");
     return friction;
 }
 

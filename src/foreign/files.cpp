@@ -21,6 +21,29 @@ namespace fs = std::filesystem;
 
 std::string shown(fs::path const& path) { return scene::shown_path(path.string()); }
 
+/// Largest number of folders that are searched for a System.
+int constexpr most_folders = 100;
+
+/// Name of the first folder, by the alphabet, that holds a System within this one; empty if none
+/// does.
+std::string folder_with_system(fs::path const& folder) {
+    std::vector<fs::path> below;
+    std::error_code ended;
+    for (fs::directory_iterator entry(folder, ended), end; !ended && entry != end;
+         entry.increment(ended))
+        if (std::error_code ignored; entry->is_directory(ignored)) below.push_back(entry->path());
+    std::sort(below.begin(), below.end());
+    if (below.size() > most_folders) below.resize(most_folders);
+    for (fs::path const& each : below) {
+        try {
+            if (!contents_of(each).systems.empty()) return each.filename().string();
+        } catch (InputError const&) {
+            continue;  // a folder that cannot be read holds nothing to name
+        }
+    }
+    return {};
+}
+
 /// Chooses the System: that of the CALVADOS package's configuration, or the only one.
 std::string system_in(Files const& files, Contents const& contents) {
     if (!files.config.empty()) {
@@ -39,9 +62,13 @@ std::string system_in(Files const& files, Contents const& contents) {
     if (contents.systems.empty() && !contents.no_systems.empty())
         throw InputError("the file holds no serialised System", shown(contents.no_systems.front()),
                          how_to_write(files.tool));
-    if (contents.systems.empty())
+    if (contents.systems.empty()) {
+        std::string const below = folder_with_system(files.folder);
         throw InputError("the folder holds no serialised System", shown(files.folder),
-                         how_to_write(files.tool));
+                         below.empty()
+                             ? how_to_write(files.tool)
+                             : fmt::format("its folder {} holds one: name that", shown(below)));
+    }
     if (contents.systems.size() > 1)
         throw InputError(fmt::format("the folder holds {} Systems: {}", contents.systems.size(),
                                      bare_names(contents.systems)),
@@ -103,7 +130,8 @@ Files find_files(std::string const& source, std::string const& topology) {
     if (files.config.empty()) find_known_tool(contents.all, files);
     if (!is_folder && root_of(source) != "System")
         throw InputError("the file is not a serialised System", scene::shown_path(source),
-                         how_to_write(files.tool));
+                         fs::path(source).filename() == "config.yaml" ? "name its folder"
+                                                                      : how_to_write(files.tool));
     files.system = is_folder ? system_in(files, contents) : source;
     note_other_name(files);
     take_integrator(contents, files);

@@ -20,11 +20,16 @@ std::uint64_t constexpr shape_stream = std::uint64_t{1} << 62;
 int constexpr trials = 64, trials_of_crowded = 8;
 /// Largest number of relaxation steps, times the number of beads; at least `least_relaxed` steps.
 std::int64_t constexpr most_relaxed = 10'000'000, least_relaxed = 20;
+/// The same where more links end on a bead than fit, so that overlaps stay.
+std::int64_t constexpr most_relaxed_of_full = 200'000;
 /// Overlaps are relaxed if at most one bead in this number has one: denser trees have no start
 /// without overlaps nearby.
 std::int64_t constexpr most_crowded = 4;
 /// Room beside a tree in its relaxation, in excluded distances.
 double constexpr room = 10;
+
+/// Largest part of the sphere around a bead that caps of its links may cover.
+double constexpr most_covered = 0.85;
 
 using Inboard = std::vector<std::int64_t>;
 
@@ -82,14 +87,15 @@ Inboard inboard_for(RandomTree const& tree, std::uint64_t seed) {
     return inboard;
 }
 
-/// True if more links of `length` end on a bead than there is room for: ends of links that are
-/// `excluded` apart have disjoint caps around the bead.
+/// True if more links of `length` end on a bead than random growth finds room for: ends of links
+/// that are `excluded` apart have disjoint caps around the bead, which cannot cover it. 12 caps of
+/// 60 degrees, the most that fit, cover 0.804.
 bool has_full_bead(Inboard const& inboard, std::vector<double> const& length, double excluded) {
     std::vector<double> taken(inboard.size(), 0.0);  // parts of the sphere
     for (std::size_t k = 1; k < inboard.size(); ++k) {
         double const sine = std::min(1.0, excluded / (2 * length[k])),
                      cap = (1 - std::sqrt(1 - sine * sine)) / 2;
-        if ((taken[static_cast<std::size_t>(inboard[k])] += cap) > 1) return true;
+        if ((taken[static_cast<std::size_t>(inboard[k])] += cap) > most_covered) return true;
     }
     return false;
 }
@@ -115,15 +121,16 @@ double count_of(RandomTree const& tree) { return static_cast<double>(tree.beads)
 /// Grows one tree. Points are the beads, after the anchor of a fixed base.
 class TreeGrowth {
   public:
-    /// `parent`, `length`: of each point; those of the first one are not used.
-    TreeGrowth(Inboard const& parent, std::vector<double> const& length, double excluded,
+    /// `parent`, `length`: of each point; those of the first one are not used. A `full` tree takes
+    /// no steps back, which would not help.
+    TreeGrowth(Inboard const& parent, std::vector<double> const& length, double excluded, bool full,
                std::uint64_t seed)
         : parent_(parent),
           length_(length),
           excluded_(excluded),
           seed_(seed),
           grown_(excluded > 0 ? excluded : 1),
-          allowance_(has_full_bead(parent, length, excluded) ? 0 : std::ssize(parent)) {}
+          allowance_(full ? 0 : std::ssize(parent)) {}
 
     /// Returns the points, the first one at `start`.
     std::vector<Vec3> run(Vec3 const& start) {
@@ -177,9 +184,10 @@ class TreeGrowth {
     Overlaps overlaps_;
 };
 
-/// Pushes overlapping points apart at constant lengths of the links; returns what is left.
+/// Pushes overlapping points apart at constant lengths of the links; returns what is left. `most`
+/// is the largest number of steps, times the number of points.
 Overlaps relaxed(std::vector<Vec3>& points, Inboard const& parent, std::vector<double> length,
-                 double excluded) {
+                 double excluded, std::int64_t most) {
     Vec3 low = points[0], high = low;
     for (Vec3 const& p : points)
         for (int i = 0; i < 3; ++i)
@@ -191,7 +199,7 @@ Overlaps relaxed(std::vector<Vec3>& points, Inboard const& parent, std::vector<d
     crowd.length = std::move(length);
     crowd.first = {0, points.size()};
     crowd.parent = parent;
-    Relaxed const found = relax(crowd, std::max(least_relaxed, most_relaxed / std::ssize(points)));
+    Relaxed const found = relax(crowd, std::max(least_relaxed, most / std::ssize(points)));
     for (std::size_t k = 0; k < points.size(); ++k)
         points[k] = points[0] + (crowd.at[k] - crowd.at[0]);
     return {found.overlaps, found.nearest};
@@ -214,11 +222,13 @@ BeadArrays grown_tree(Walk const& walk, std::vector<std::int64_t> const& inboard
     std::ptrdiff_t const anchors = walk.base == Base::fixed ? 1 : 0;
     std::vector<double> length(static_cast<std::size_t>(anchors), 0.0);
     length.insert(length.end(), beads.length.begin(), beads.length.end());
-    TreeGrowth growth(parent, length, excluded, walk.seed);
+    bool const full = has_full_bead(parent, length, excluded);
+    TreeGrowth growth(parent, length, excluded, full, walk.seed);
     std::vector<Vec3> points = growth.run(walk.anchor);
     left = growth.overlaps();
     if (left.count > 0 && left.count <= walk.beads / most_crowded)
-        left = relaxed(points, parent, std::move(length), excluded);
+        left = relaxed(points, parent, std::move(length), excluded,
+                       full ? most_relaxed_of_full : most_relaxed);
     beads.position.assign(points.begin() + anchors, points.end());
     return beads;
 }

@@ -188,6 +188,16 @@ std::string advice_on_slab(Task const& task, std::vector<Draft> const& drafts, R
     return "lower the number of chains, or give a longer box and a thicker slab";
 }
 
+/// Moves the drafts of all shapes to their places.
+void move_to(std::vector<Draft>& drafts, Task const& task, std::vector<Motion> const& motions) {
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        Shape const& shape = task.shapes[k];
+        ChainSpec& chain = drafts[shape.draft].chain;
+        if (shape.rotatable) rotate(chain, motions[k].rotation, shape.centre);
+        translate(chain, motions[k].centre - shape.centre);
+    }
+}
+
 [[noreturn]] void refuse(Task const& task, std::vector<Draft> const& drafts, std::size_t placed) {
     Draft const& draft = drafts[task.shapes[placed].draft];
     Region const& region = *draft.region;
@@ -208,12 +218,16 @@ void insert_shapes(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t se
     std::vector<Motion> const motions =
         insert_all(task, [&](std::size_t draft) -> Region const& { return *drafts[draft].region; });
     if (motions.size() < task.shapes.size()) refuse(task, drafts, motions.size());
-    for (std::size_t k = 0; k < motions.size(); ++k) {
-        Shape const& shape = task.shapes[k];
-        ChainSpec& chain = drafts[shape.draft].chain;
-        if (shape.rotatable) rotate(chain, motions[k].rotation, shape.centre);
-        translate(chain, motions[k].centre - shape.centre);
-    }
+    move_to(drafts, task, motions);
+}
+
+std::size_t insert_if_all_fit(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed) {
+    Task const task = task_of(drafts, box, seed);
+    Region const whole = whole_box(box);
+    std::vector<Motion> const motions =
+        insert_all(task, [&](std::size_t) -> Region const& { return whole; });
+    if (motions.size() == task.shapes.size()) move_to(drafts, task, motions);
+    return motions.size();
 }
 
 }  // namespace catena::scene

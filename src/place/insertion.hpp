@@ -16,4 +16,8 @@ namespace catena::scene {
 /// Precondition: every movable draft has a region and consists of beads or of bodies on links.
 void insert_shapes(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed);
 
+/// Does the same in the whole box, whatever the regions, and returns the number of drafts that
+/// found a place. If not all of them did, it moves none.
+std::size_t insert_if_all_fit(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed);
+
 }  // namespace catena::scene

@@ -1,6 +1,6 @@
 // Implements the placement of chains by their bounding spheres. All movable chains share one grid,
 // whose cells are as wide as the largest of them. If a box has too few clear cells, chains that may
-// be regrown are packed instead.
+// be regrown are packed instead, and the others inserted at random places.
 #include "place/placement.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include "generate/outline.hpp"
 #include "generate/place_grid.hpp"
 #include "place/chain_motion.hpp"
+#include "place/insertion.hpp"
 #include "place/packing.hpp"
 
 namespace catena::scene {
@@ -64,28 +65,37 @@ struct Room {
     char const* name;
 };
 
-/// Throws InputError for a room that has too few places.
-[[noreturn]] void refuse(Draft const& draft, Room const& in, std::size_t room, double width,
-                         std::size_t wanted) {
+/// Places on the lattice of a room.
+struct Lattice {
+    std::size_t places;
+    double width;  // of a cell
+};
+
+/// Throws InputError for a room that has too few places. `inserted` is the number of chains that
+/// found a random place; none if that was not tried.
+[[noreturn]] void refuse(std::vector<Draft*> const& moving, Room const& in, Lattice const& lattice,
+                         std::optional<std::size_t> inserted) {
+    Draft const& draft = *moving.front();
     Vec3 const& edges = *in.edges;
     bool const residues = draft.regrown == Regrowth::if_asked;
-    fail(*draft.node,
-         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} {} side by side, each within a "
-                     "sphere {:.4g} wide, not for {}",
-                     in.name, edges[0], edges[1], edges[2], room, room == 1 ? "chain" : "chains",
-                     width, wanted),
+    std::string const what = fmt::format(
+        "{} {:.6g} x {:.6g} x {:.6g} has room for {} {} side by side, each within a sphere {:.4g} "
+        "wide, not for {}{}",
+        in.name, edges[0], edges[1], edges[2], lattice.places,
+        lattice.places == 1 ? "chain" : "chains", lattice.width, moving.size(),
+        inserted ? fmt::format("; at random places {} found room", *inserted) : "");
+    fail(*draft.node, what,
          std::string("enlarge ") + in.name +
-             (residues
-                  ? ", lower `count` or write `conformation: self_avoiding` (without "
-                    "`positions`), which is packed more densely"
-                  : " or lower `count`; only free, unbranched chains of a `sequence` or `fasta` "
-                    "without `positions` are packed more densely"));
+             (residues ? ", lower `count` or write `conformation: self_avoiding` (without "
+                         "`positions`), which is packed more densely"
+                       : " or lower `count`; only free, unbranched chains of a `sequence` or "
+                         "`fasta` without `positions` are packed more densely"));
 }
 
-/// Places the chains `moving` next to each other, clear of `placed`. Returns false and moves
-/// nothing if the room is too small for chains that can be regrown instead.
-bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed,
-                        Room const& box) {
+/// Places the chains `moving` next to each other, clear of `placed`. Moves nothing if the room has
+/// fewer places than chains.
+Lattice place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed,
+                           Room const& box) {
     std::vector<Sphere> spheres;
     double width = 0;
     for (Draft const* const draft : moving) {
@@ -94,21 +104,42 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
     }
     if (width == 0) width = 1;  // single beads: any distance is enough
     std::vector<Vec3> const cells = PlaceGrid(placed, width, box.edges).find(moving.size());
-    if (cells.size() < moving.size()) {
-        if (std::any_of(moving.begin(), moving.end(), is_regrown)) return false;
-        refuse(*moving.front(), box, cells.size(), width, moving.size());
-    }
-    for (std::size_t i = 0; i < moving.size(); ++i) {
+    for (std::size_t i = 0; i < moving.size() && cells.size() >= moving.size(); ++i) {
         refuse_far(*moving[i], {cells[i], spheres[i].radius, 0});
         translate(moving[i]->chain, cells[i] - spheres[i].centre);
     }
-    return true;
+    return {cells.size(), width};
+}
+
+/// True if random places may serve where the lattice has too few: for beads and bodies on links,
+/// unless all may be regrown if the scene asks for it.
+bool may_insert(std::vector<Draft*> const& moving) {
+    return std::all_of(
+               moving.begin(), moving.end(),
+               [](Draft const* d) { return d->chain.is_beads() || d->chain.is_linked(); }) &&
+           !std::all_of(moving.begin(), moving.end(),
+                        [](Draft const* d) { return d->regrown == Regrowth::if_asked; });
+}
+
+/// Places the chains `moving`, which keep their shape, side by side or else at random. Returns a
+/// sentence on random places, or an empty one. Throws InputError if they do not fit.
+std::string place_shapes(std::vector<Draft>& drafts, std::vector<Draft*> const& moving,
+                         std::vector<Sphere> const& placed, Room const& room, std::uint64_t seed) {
+    Lattice const lattice = place_side_by_side(moving, placed, room);
+    if (lattice.places >= moving.size()) return {};
+    if (!may_insert(moving)) refuse(moving, room, lattice, std::nullopt);
+    std::size_t const inserted = insert_if_all_fit(drafts, *room.edges, seed);
+    if (inserted < moving.size()) refuse(moving, room, lattice, inserted);
+    return fmt::format(
+        "{} chains that keep their shape do not fit side by side into {}: they start at random "
+        "places in it, and turned at random unless something holds them",
+        moving.size(), room.name);
 }
 
 }  // namespace
 
-void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed,
-                 char const* name) {
+std::string give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box,
+                        std::uint64_t seed, char const* name) {
     Room const room{box, name};
     std::vector<Draft*> moving;
     std::vector<Sphere> placed;
@@ -118,11 +149,16 @@ void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std
         else
             placed.push_back(sphere_of(draft));
     }
-    if (moving.empty() || place_side_by_side(moving, placed, room)) return;
+    if (moving.empty()) return {};
+    if (std::none_of(moving.begin(), moving.end(), is_regrown))
+        return place_shapes(drafts, moving, placed, room, seed);
+    if (place_side_by_side(moving, placed, room).places >= moving.size()) return {};
     // Chains that keep their shape are placed first, then the others grow around them.
     moving.erase(std::remove_if(moving.begin(), moving.end(), is_regrown), moving.end());
-    if (!moving.empty()) place_side_by_side(moving, placed, room);
+    std::string note;
+    if (!moving.empty()) note = place_shapes(drafts, moving, placed, room, seed);
     pack(drafts, *box, seed, name);
+    return note;
 }
 
 }  // namespace catena::scene

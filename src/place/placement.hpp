@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "place/draft.hpp"
@@ -13,9 +14,11 @@ namespace catena::scene {
 /// (bounding sphere) plus a gap of two links. Cells in reach of chains with a place are left out.
 /// Without a box the grid is centred on the origin and grows as needed; a single chain then lies at
 /// the origin. In a periodic box whole chains, not only their centres, stay clear of their images.
-/// If they do not fit, drafts with Regrowth::yes are packed (packing.hpp) around the others. Throws
-/// InputError if that is impossible; `name` is the box's name in messages.
-void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed,
-                 char const* name = "the box");
+/// If they do not fit, drafts with Regrowth::yes are packed (packing.hpp) around the others, and
+/// those of beads and bodies on links that keep their shape are inserted at random places
+/// (insertion.hpp). Returns a sentence on random places, empty without any. Throws InputError if
+/// that is impossible; `name` is the box's name in messages.
+[[nodiscard]] std::string give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box,
+                                      std::uint64_t seed, char const* name = "the box");
 
 }  // namespace catena::scene

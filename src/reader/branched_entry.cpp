@@ -89,7 +89,8 @@ void BranchedEntry::read_beads(Fields const& fields, ChainRequest& request) {
     Node const* const length = fields.find("length");
     if (length || !request.fields.find("model"))
         walk_.length = read_distribution(fields.need("length", "length: 1.0"));
-    if (Node const* const excluded = fields.find("excluded")) excluded_ = non_negative(*excluded);
+    given_excluded_ = fields.find("excluded");
+    if (given_excluded_) excluded_ = non_negative(*given_excluded_);
 }
 
 void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
@@ -105,6 +106,7 @@ void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
                                    : std::accumulate(length.begin(), length.end(), 0.0) /
                                          static_cast<double>(links);
     double const excluded = excluded_.value_or(mean);
+    if (!positions && links > 1) refuse_beyond_reach(length, excluded);
     if (!positions) chain.beads = grown_tree(walk, inboard, excluded, left);
     chain.beads.residue.assign(chain.beads.size(), residue_);
     chain.parent = as_parents(std::move(inboard));
@@ -114,12 +116,22 @@ void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
     note(left, excluded);
 }
 
+void BranchedEntry::refuse_beyond_reach(std::vector<double> const& length, double excluded) const {
+    double const reach = 2 * *std::max_element(length.begin(), length.end());
+    if (!given_excluded_ || excluded <= reach) return;
+    fail(*given_excluded_,
+         fmt::format("beads {:.4g} apart, but two links reach {:.4g} only", excluded, reach),
+         "give less than the length of two links");
+}
+
 void BranchedEntry::note(Overlaps const& left, double excluded) const {
     if (left.count == 0) return;
     char const* const unit = request_.scene.si ? "m" : "nm";
     request_.scene.note(fmt::format(
         "chain `{}` starts with {} overlaps of beads closer than {:.4g} {}, the nearest {:.3g} {} "
-        "apart: it is too dense for its `excluded`",
+        "apart: give a smaller `excluded`, let fewer links end on one bead (12 fit where "
+        "`excluded` "
+        "is their length), or write `relax: true`",
         shown(request_.name()), left.count, excluded, unit, left.nearest, unit));
 }
 

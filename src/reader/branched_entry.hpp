@@ -23,6 +23,8 @@ class BranchedEntry {
   private:
     /// Reads `residue`, `mass`, `length` and `excluded`, with defaults of the chain's model.
     void read_beads(Fields const& fields, ChainRequest& request);
+    /// Throws InputError for a given `excluded` beyond what the two longest links reach.
+    void refuse_beyond_reach(std::vector<double> const& length, double excluded) const;
     /// Adds a note on overlaps that a start has.
     void note(Overlaps const& left, double excluded) const;
 
@@ -32,6 +34,7 @@ class BranchedEntry {
     std::string residue_ = "UNK";
     /// Distance that beads keep; without a value the mean length of the links.
     std::optional<double> excluded_;
+    Node const* given_excluded_ = nullptr;
 };
 
 /// True for the name of one of these generators.

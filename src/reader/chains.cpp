@@ -21,6 +21,7 @@
 #include "reader/chain_request.hpp"
 #include "reader/generator_entry.hpp"
 #include "reader/linked.hpp"
+#include "reader/models.hpp"
 #include "reader/sections.hpp"
 #include "reader/sequences.hpp"
 #include "reader/structure_entry.hpp"
@@ -29,6 +30,7 @@
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/freedom.hpp"
+#include "structure/residue_names.hpp"
 
 namespace catena::scene {
 
@@ -75,13 +77,34 @@ void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& p
         "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
+/// Looks the residues of beads up in the table that the chain's `model` names, and hands the table
+/// to the forces. Throws InputError for a residue that is not in it.
+void look_up(ChainRequest& request, Node const& model, std::vector<std::string> const& names) {
+    if (request.scene.si)
+        fail(model, "a residue table in SI units",
+             "write `units: md`: its parameters are in nm, amu and kJ/mol");
+    ResidueTable const& table = table_of(request);
+    Residues residues;
+    for (std::string const& name : names) {
+        residues.push_back(table.find(std::string_view(name)));
+        if (residues.back() == nullptr)
+            fail_at(request.node, "bead", std::ssize(residues),
+                    fmt::format("residue `{}` is not in {}", shown(name), table.name()),
+                    "give each bead a `residue` of that table");
+    }
+    hand_to_forces(request, residues);
+    request.protein_ends = {is_amino_acid(names.front()), is_amino_acid(names.back())};
+}
+
 /// Reads beads written one by one into a chain. Links have the written lengths, or those of the
 /// positions if no length is written or with `links: as_given`. Returns true if velocities are
 /// written.
-bool explicit_beads(ChainRequest const& request, Node const& source, ChainSpec& to) {
-    request.allow("beads written one by one", {"links", "anchor"});
+bool explicit_beads(ChainRequest& request, Node const& source, ChainSpec& to) {
+    request.allow("beads written one by one", {"links", "anchor", "model"});
     ExplicitBeads made = read_beads(source, request.base);
     BeadArrays& beads = to.beads = std::move(made.beads);
+    if (Node const* const model = request.fields.find("model"))
+        look_up(request, *model, beads.residue);
     std::vector<std::int64_t> const& parent = to.parent = std::move(made.parent);
     beads.anchor = request.anchor();
     std::vector<double> const written = beads.length;

@@ -143,12 +143,16 @@ void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene&
     if (place && fill) scene::fail(*box->find("fill"), "both `place` and `fill`", "keep `place`");
     if (start) return scene::start_from_frame(drafts, frame, *start, is_warm(fields, frame));
     if (place && frame.si) scene::fail(*place, "`place` in SI units", "write `units: md`");
+    auto const note = [&](std::string text) {
+        if (!text.empty()) frame.note(std::move(text));
+    };
     if (place)
         scene::place_in_regions(drafts, frame.box, frame.dynamics.seed);
     else if (fill)
-        scene::fill_region(drafts, *frame.box, *fill, *box->find("fill"), frame.dynamics.seed);
+        note(
+            scene::fill_region(drafts, *frame.box, *fill, *box->find("fill"), frame.dynamics.seed));
     else
-        scene::give_places(drafts, frame.box, frame.dynamics.seed);
+        note(scene::give_places(drafts, frame.box, frame.dynamics.seed));
 }
 
 /// Reads and places the chains of one replica.

@@ -162,8 +162,8 @@ void check_residues(Node const& chain, std::vector<std::string> const& residues,
             fail_at(
                 chain, "bead", bead,
                 fmt::format("residue `{}` has no parameters in {}", shown(residues[k]), builder),
-                "give the chain as `sequence`, or its beads a `residue` among the twenty "
-                "amino acids");
+                "give the chain as `sequence`, its beads a `residue` among the twenty amino acids, "
+                "or their table (`model: {residues: FILE.csv}`)");
     }
 }
 

@@ -3,6 +3,8 @@
 // chain join particles that need not be consecutive.
 #include "reader/system_links.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,18 +15,108 @@ namespace catena::scene {
 
 namespace {
 
-/// Beads of a chain (from 0) at the inboard and the outboard ends of links.
-std::vector<std::pair<std::int64_t, std::int64_t>> linked_beads(ChainSpec const& chain) {
-    std::vector<std::pair<std::int64_t, std::int64_t>> beads;
+/// Difference of lengths, relative to that of the bond, that is noted.
+double constexpr noted_difference = 0.02;
+/// Largest distance, nm, from the end of a link to the bead at which it ends.
+double constexpr same_place = 1e-6;
+
+/// Beads of a chain (from 0) at both ends of a link.
+struct LinkedBeads {
+    std::int64_t inboard, outboard;
+    /// Length of the link, nm.
+    double length;
+    /// True if the link ends at these beads, not elsewhere in the bodies that carry them.
+    bool ends_there = true;
+};
+
+/// Links of a chain between beads.
+std::vector<LinkedBeads> linked_beads(ChainSpec const& chain) {
+    std::vector<LinkedBeads> links;
     if (chain.is_beads())
         for (std::size_t k = 1; k < chain.size(); ++k)
-            beads.emplace_back(inboard_of(chain.parent, k), k);
-    if (chain.is_linked() && chain.linked.carried.offset.size() == chain.size() + 1)
-        for (std::size_t k = 1; k < chain.size(); ++k)
-            if (std::int64_t const first = chain.linked.carried.offset[k];
-                first > chain.linked.carried.offset[k - 1])
-                beads.emplace_back(first - 1, first);
-    return beads;
+            links.push_back({static_cast<std::int64_t>(inboard_of(chain.parent, k)),
+                             static_cast<std::int64_t>(k), chain.beads.length[k]});
+    LinkedArrays const& bodies = chain.linked;
+    std::vector<std::int64_t> const& offset = bodies.carried.offset;
+    std::vector<Vec3> const& position = bodies.carried.position;
+    if (!chain.is_linked() || offset.size() != chain.size() + 1) return links;
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+        std::int64_t const first = offset[k];
+        if (first <= offset[k - 1] || first >= offset[k + 1]) continue;
+        auto const bead = static_cast<std::size_t>(first);
+        bool const there = norm(position[bead - 1] - bodies.outboard[k - 1]) <= same_place &&
+                           norm(position[bead] - bodies.inboard[k]) <= same_place;
+        links.push_back({first - 1, first, bodies.length[k], there});
+    }
+    return links;
+}
+
+/// True if a rigid body of the chain carries both beads.
+bool share_body(ChainSpec const& chain, std::int64_t a, std::int64_t b) {
+    std::vector<std::int64_t> const& offset = chain.linked.carried.offset;
+    return chain.is_linked() && std::upper_bound(offset.begin(), offset.end(), a) ==
+                                    std::upper_bound(offset.begin(), offset.end(), b);
+}
+
+/// Counts links of one kind and keeps the first.
+struct DoubtfulLinks {
+    std::int64_t count = 0;
+    std::string chain;  // of the first
+    std::int64_t inboard = 0, outboard = 0;
+    double length = 0, bond = 0;  // nm
+
+    void add(ChainSpec const& of, LinkedBeads const& link, double bond_length = 0) {
+        if (count++ > 0) return;
+        chain = of.name, inboard = link.inboard, outboard = link.outboard;
+        length = link.length, bond = bond_length;
+    }
+    /// Adds the links of one more chain.
+    void add(DoubtfulLinks const& more) {
+        std::int64_t const before = count;
+        if (before == 0) *this = more;
+        count = before + more.count;
+    }
+    /// The first link's beads, counted from 1, with their chain.
+    std::string first() const {
+        return fmt::format("beads {} and {} of chain `{}`", inboard + 1, outboard + 1,
+                           shown(chain));
+    }
+};
+
+/// Number of bonds between particles of a draft that no link joins. Those within a rigid body do
+/// not count.
+std::int64_t off_links(Draft const& draft, std::vector<LinkedBeads> const& links,
+                       std::set<std::pair<std::int64_t, std::int64_t>> const& bonds) {
+    std::set<std::pair<std::int64_t, std::int64_t>> linked;
+    for (LinkedBeads const& link : links) linked.insert(std::minmax(link.inboard, link.outboard));
+    if (draft.chain.is_ring())
+        linked.emplace(0, static_cast<std::int64_t>(draft.chain.bead_count()) - 1);
+    return std::count_if(bonds.begin(), bonds.end(), [&](auto const& bond) {
+        std::pair const beads(bond.first - draft.particle, bond.second - draft.particle);
+        return !linked.contains(beads) && !share_body(draft.chain, beads.first, beads.second);
+    });
+}
+
+void note_unbonded(Scene& scene, DoubtfulLinks const& links, std::int64_t all,
+                   std::int64_t elsewhere) {
+    if (links.count == 0) return;
+    scene.note(fmt::format(
+        "{} of {} links join{} particles that the System neither bonds nor constrains, the first {}"
+        "{}: are `parent` and `map` those of the System?",
+        links.count, all, links.count == 1 ? "s" : "", links.first(),
+        elsewhere == 0 ? ""
+                       : fmt::format(", and {} of its bonds within these chains {} along no link",
+                                     elsewhere, elsewhere == 1 ? "is" : "are")));
+}
+
+void note_lengths(Scene& scene, DoubtfulLinks const& links) {
+    if (links.count == 0) return;
+    scene.note(
+        fmt::format("{} {} at least {:.0f} % longer or shorter than the System's bond, the first "
+                    "{}: {:.4g} nm, "
+                    "its bond {:.4g} nm: are the lengths and `map` those of the System?",
+                    links.count, links.count == 1 ? "link is" : "links are", 100 * noted_difference,
+                    links.first(), links.length, links.bond));
 }
 
 }  // namespace
@@ -67,6 +159,58 @@ double WrittenSystem::largest_spread(std::int64_t first, std::int64_t beads,
     return largest;
 }
 
+bool WrittenSystem::bonded(std::int64_t a, std::int64_t b) const {
+    std::pair<std::int64_t, std::int64_t> const pair = std::minmax(a, b);
+    return between(a, b).holds() ||
+           std::binary_search(links_.custom.begin(), links_.custom.end(), pair);
+}
+
+std::set<std::pair<std::int64_t, std::int64_t>> WrittenSystem::bonds_within(
+    std::int64_t first, std::int64_t last) const {
+    std::set<std::pair<std::int64_t, std::int64_t>> bonds;
+    for (std::int64_t p = first + 1; p <= last; ++p)
+        if (between(p - 1, p).holds()) bonds.emplace(p - 1, p);
+    std::pair const from(first, std::int64_t{0});
+    for (auto far = links_.farther.lower_bound(from);
+         far != links_.farther.end() && far->first.first <= last; ++far)
+        if (far->first.second <= last && far->second.holds()) bonds.insert(far->first);
+    for (auto pair = std::lower_bound(links_.custom.begin(), links_.custom.end(), from);
+         pair != links_.custom.end() && pair->first <= last; ++pair)
+        if (pair->second <= last) bonds.insert(*pair);
+    return bonds;
+}
+
+void WrittenSystem::compare(std::vector<Draft> const& drafts, Scene& scene) const {
+    DoubtfulLinks unbonded, other_length;
+    std::int64_t links_of_these = 0, bonds_elsewhere = 0;
+    for (Draft const& draft : drafts) {
+        DoubtfulLinks here;
+        std::int64_t bonded_here = 0;
+        std::vector<LinkedBeads> const links = linked_beads(draft.chain);
+        for (LinkedBeads const& link : links) {
+            if (!link.ends_there) continue;
+            std::int64_t const a = draft.particle + link.inboard,
+                               b = draft.particle + link.outboard;
+            bonded(a, b) ? void(++bonded_here) : here.add(draft.chain, link);
+            Joining const bond = between(a, b);
+            if (bond.holds() &&
+                std::abs(link.length - bond.length) >= noted_difference * bond.length)
+                other_length.add(draft.chain, link, bond.length);
+        }
+        if (here.count == 0) continue;
+        std::int64_t const off = off_links(
+            draft, links,
+            bonds_within(draft.particle,
+                         draft.particle + static_cast<std::int64_t>(draft.chain.bead_count()) - 1));
+        // A System may leave all links to the scene, and close rings or cross-link them.
+        if (bonded_here == 0 && off < here.count) continue;
+        links_of_these += here.count + bonded_here, bonds_elsewhere += off;
+        unbonded.add(here);
+    }
+    note_unbonded(scene, unbonded, links_of_these, bonds_elsewhere);
+    note_lengths(scene, other_length);
+}
+
 bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads) const {
     for (std::int64_t k = 1; k < beads; ++k) {
         double const one = length(a + k), other = length(b + k);
@@ -78,11 +222,13 @@ bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads) co
 void WrittenSystem::judge(std::vector<Draft> const& drafts, Scene& scene) const {
     StiffLinks links(scene.forces.openmm->temperature, openmm_key(scene.file, "system"));
     for (Draft const& draft : drafts)
-        for (auto const& [inboard, outboard] : linked_beads(draft.chain)) {
-            std::int64_t const a = draft.particle + inboard, b = draft.particle + outboard;
+        for (LinkedBeads const& link : linked_beads(draft.chain)) {
+            std::int64_t const a = draft.particle + link.inboard,
+                               b = draft.particle + link.outboard;
             if (Joining const joining = between(a, b); joining.holds()) links.add(a, b, joining);
         }
     for (std::string const& note : links.notes()) scene.note(note);
+    compare(drafts, scene);
     note_box_that_no_force_knows(scene, links_.periodic);
     note_screening(scene, links_.screening);
 }

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "reader/chains.hpp"
@@ -32,7 +34,7 @@ class WrittenSystem {
     /// lengths.
     bool alike(std::int64_t a, std::int64_t b, std::int64_t beads) const;
     /// Notes soft springs of the System that links of these chains replace; throws InputError for
-    /// the softest.
+    /// the softest. Notes links where the System has no bond, or one of another length.
     void judge(std::vector<Draft> const& drafts, Scene&) const;
     /// True if a force of the System is periodic.
     bool is_periodic() const { return links_.periodic; }
@@ -40,6 +42,14 @@ class WrittenSystem {
   private:
     /// What joins two particles; it holds nothing if they are not joined.
     Joining between(std::int64_t a, std::int64_t b) const;
+    /// True if any bond, of custom forces too, or constraint joins two particles.
+    bool bonded(std::int64_t a, std::int64_t b) const;
+    /// Pairs of particles from `first` to `last` that bonds or constraints join, the lower one
+    /// first.
+    std::set<std::pair<std::int64_t, std::int64_t>> bonds_within(std::int64_t first,
+                                                                 std::int64_t last) const;
+    /// Notes the links of all drafts that are not those of the System.
+    void compare(std::vector<Draft> const& drafts, Scene&) const;
 
     /// Links between consecutive particles of the System.
     SystemLinks links_;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
@@ -143,6 +144,31 @@ void make_cut_chains_whole(std::vector<PdbChain>& chains, Joinings const& joinin
             moved == 1 ? "1 chain" : fmt::format("{} chains", moved), moved == 1 ? "is" : "are"));
 }
 
+/// Pairs of particles that custom bonds and compounds of two particles join, in ascending order.
+std::vector<std::pair<std::int64_t, std::int64_t>> custom_bonds(OpenMM::System const& system) {
+    std::vector<std::pair<std::int64_t, std::int64_t>> pairs;
+    std::vector<double> ignored;
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        OpenMM::Force const& force = system.getForce(i);
+        if (auto const* bonds = dynamic_cast<OpenMM::CustomBondForce const*>(&force))
+            for (int j = 0; j < bonds->getNumBonds(); ++j) {
+                int a, b;
+                bonds->getBondParameters(j, a, b, ignored);
+                pairs.emplace_back(std::minmax(a, b));
+            }
+        auto const* compounds = dynamic_cast<OpenMM::CustomCompoundBondForce const*>(&force);
+        if (compounds == nullptr || compounds->getNumParticlesPerBond() != 2) continue;
+        std::vector<int> both;
+        for (int j = 0; j < compounds->getNumBonds(); ++j) {
+            compounds->getBondParameters(j, both, ignored);
+            pairs.emplace_back(std::minmax(both.at(0), both.at(1)));
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
 }  // namespace
 
 SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_file) {
@@ -159,6 +185,7 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     joinings.for_each_farther([&](int low, int high, Joining const& joining) {
         links.farther.emplace(std::pair(low, high), joining);
     });
+    links.custom = custom_bonds(*system);
     return links;
 }
 

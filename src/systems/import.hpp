@@ -63,6 +63,9 @@ struct SystemLinks {
     /// Harmonic bonds and constraints between particles that are not consecutive, by the lower and
     /// the higher particle.
     std::map<std::pair<std::int64_t, std::int64_t>, Joining> farther;
+    /// Pairs that CustomBondForces and compounds of two particles bond, each with the lower
+    /// particle first, in ascending order.
+    std::vector<std::pair<std::int64_t, std::int64_t>> custom;
     /// Sentences on what was left out.
     std::vector<std::string> notes;
     /// Screening of the System's charges, if that is recognised.

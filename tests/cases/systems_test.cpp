@@ -115,6 +115,56 @@ TEST(BranchedMolecules, RunWholeIfTheSceneSaysOnWhichBeadEachHangs) {
     EXPECT_NEAR(run.energy("HarmonicAngleForce"), 8.174290, 1e-4);
 }
 
+/// Notes of case 13's branched chain with another text of the scene in place of `from`, with the
+/// System's bonds or without them.
+std::string notes_of_branched(std::string const& from, std::string const& to, bool bonds = true) {
+    TemporaryFolder const folder;
+    std::ostringstream scene;
+    scene << std::ifstream(case_file("13-two-beads-a-unit/branched.yaml")).rdbuf();
+    std::string text = scene.str();
+    std::size_t const at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    // Bonds that stay springs are periodic.
+    std::ofstream(folder / "s.yaml") << text << "box: {periodic: [20, 20, 20]}\n";
+    std::ostringstream system;
+    system << std::ifstream(case_file("13-two-beads-a-unit/system.xml")).rdbuf();
+    std::ofstream(folder / "system.xml")
+        << (bonds ? system.str()
+                  : std::regex_replace(system.str(), std::regex("<Bond [^>]*>"), ""));
+    Ended const e = catena({"check", folder / "s.yaml", "--json", "-"});
+    expect_good(e);
+    return e.status == 0 ? e.json().at("notes").dump() : "";
+}
+
+// Bead 19 hangs on bead 17 in the System.
+TEST(LinksOfTheScene, ThatJoinOtherParticlesThanTheSystemAreNoted) {
+    std::string const own = "parent: 17";
+    EXPECT_FALSE(holds(notes_of_branched(own, own), "are `parent` and `map`"));
+    std::string const notes = notes_of_branched(own, "parent: 18");
+    EXPECT_TRUE(holds(notes,
+                      "1 of 19 links joins particles that the System neither bonds nor constrains, "
+                      "the first beads 18 and 19 of chain `rna`, and 1 of its bonds within these "
+                      "chains is along no link: are `parent` and `map` those of the System?"))
+        << notes;
+}
+
+TEST(LinksOfTheScene, AreLeftToItByASystemWithoutBonds) {
+    std::string const own = "parent: 17";
+    EXPECT_FALSE(holds(notes_of_branched(own, "parent: 18", false), "neither bonds"));
+}
+
+// Bonds of a side bead are 0.54 nm long; 1 % more is not noted.
+TEST(LinksOfTheScene, ThatAreMuchLongerThanTheSystemsBondsAreNoted) {
+    std::string const own = "[9.9500, 5.2000, 5.5400]";
+    EXPECT_FALSE(holds(notes_of_branched(own, "[9.9500, 5.2000, 5.5450]"), "longer or shorter"));
+    std::string const notes = notes_of_branched(own, "[9.9500, 5.2000, 5.6000]");
+    EXPECT_TRUE(holds(notes,
+                      "1 link is at least 2 % longer or shorter than the System's bond, the first "
+                      "beads 19 and 20 of chain `rna`: 0.6 nm, its bond 0.54 nm"))
+        << notes;
+}
+
 // sqrt(kT/k) = sqrt(2.436 / 20) nm = 0.349 nm, 92 % of 0.38 nm.
 TEST(Springs, ThatAreSoftAreNoLinks) {
     expect_refused(check("20-springs-that-are-no-links/soft.yaml"), 2,

@@ -574,6 +574,17 @@ TEST_F(DamagedPackage, SettingsOfAnotherSystemAreSaid) {
         << e.out;
 }
 
+TEST_F(DamagedPackage, AFolderAboveTheRunAndItsConfigurationSayWhatToName) {
+    expect_refused(catena({"import", "."}, here.path()), 2, "its folder idr holds one: name that");
+    expect_refused(catena({"import", "idr/config.yaml"}, here.path()), 2,
+                   "the file is not a serialised System (idr/config.yaml): name its folder");
+}
+
+TEST_F(DamagedPackage, AFrictionOfZeroIsSaid) {
+    replace("friction_coeff: 0.02", "friction_coeff: 0");
+    expect_note("config.yaml has friction 0: without a thermostat");
+}
+
 TEST_F(DamagedPackage, ASystemThatIsEmptyIsNamed) {
     write(folder + "/idr.xml", "");
     expect_refused(import(), 2, "the file idr.xml holds no serialised System (idr)");

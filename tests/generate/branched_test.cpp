@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -124,6 +125,21 @@ TEST(Branched, StarsWithMoreArmsThanFitAreGrownWithOverlaps) {
         ASSERT_EQ(crowded.notes.size(), 1U) << generator;
         EXPECT_NE(crowded.notes[0].find("overlaps of beads closer than 1 nm"), std::string::npos);
         EXPECT_LE(look(crowded.chains[0]).first, 1e-13);
+    }
+}
+
+/// From 13 arms on, caps of 60 degrees do not fit around a bead; 12 do.
+TEST(Branched, ThirteenArmsTakeNoStepsBack) {
+    for (int const arms : {12, 13, 16}) {
+        auto const begin = std::chrono::steady_clock::now();
+        Scene const star = scene_of("star: {arms: " + std::to_string(arms) +
+                                    ", arm_length: 20, length: 1, excluded: 1}");
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5)) << arms;
+        EXPECT_EQ(star.notes.size(), arms > 12 ? 1U : 0U) << arms;
+        if (star.notes.empty()) continue;
+        EXPECT_NE(star.notes[0].find("give a smaller `excluded`, let fewer links end on one bead"),
+                  std::string::npos)
+            << star.notes[0];
     }
 }
 

@@ -196,6 +196,50 @@ TEST(Packing, around_chains_that_keep_their_shape) {
             << c;
 }
 
+/// Stars keep their shape, and a lattice of their spheres has room for one of 20.
+std::string stars(int count) {
+    return "chains: [{count: " + std::to_string(count) +
+           ", generator: {star: {arms: 4, arm_length: 8, length: 1}}}]\n"
+           "box: {periodic: [20, 20, 20]}";
+}
+
+TEST(Places, branched_chains_without_room_side_by_side_are_inserted) {
+    Scene const scene = read(stars(20));
+    ASSERT_EQ(scene.notes.size(), 1U);
+    EXPECT_NE(scene.notes[0].find("20 chains that keep their shape do not fit side by side into "
+                                  "the box: they start at random places"),
+              std::string::npos)
+        << scene.notes[0];
+    double nearest = 1e300;
+    std::vector<Bead> const beads = all_beads(scene);
+    for (Bead const& a : beads)
+        for (Bead const& b : beads) {
+            if (a.chain >= b.chain) continue;
+            Vec3 apart = a.at - b.at;
+            for (int x = 0; x < 3; ++x) apart[x] -= 20 * std::round(apart[x] / 20);
+            nearest = std::min(nearest, norm(apart));
+        }
+    EXPECT_GE(nearest, 1 - 1e-6);
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 1; k < chain.size(); ++k)
+            EXPECT_NEAR(norm(chain.beads.position[k] -
+                             chain.beads.position[static_cast<std::size_t>(chain.parent[k])]),
+                        1, 1e-12);
+    Scene const again = read(stars(20));
+    for (std::size_t c = 0; c < scene.chains.size(); ++c)
+        EXPECT_EQ(norm(scene.chains[c].beads.position[0] - again.chains[c].beads.position[0]), 0);
+}
+
+TEST(Places, branched_chains_that_fit_nowhere_are_refused_with_the_number_that_did) {
+    std::string const message = refusal_of(stars(400));
+    EXPECT_TRUE(std::regex_match(
+        message, std::regex("the box 20 x 20 x 20 has room for [0-9] chains? side by side, each "
+                            "within a sphere [0-9.]+ wide, not for 400; at random places [0-9]+ "
+                            "found room \\(s.yaml: chains\\[0\\], line 1\\): enlarge the box or "
+                            "lower `count`.*")))
+        << message;
+}
+
 TEST(Packing, that_finds_no_place_says_how_far_it_got) {
     std::string beads;
     for (int i = 0; i < 64; ++i) {

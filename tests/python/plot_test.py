@@ -83,7 +83,9 @@ def check_means(runs, scratch):
                        (f'{{"observables": {{"{name}": {{"mean": null, "standard_error": null}}}}}}', f"[{unit}]")):
         with open(summary, "w", encoding="utf-8") as file:
             file.write(text)
-        labels = [label for label, _ in module.observable_panels(names, records, module.read_means(folder))]
+        panels = module.observable_panels(names, records, module.read_means(folder))
+        labels = [label for label, _, _ in panels]
+        check([mean for _, _, mean in panels if mean is not None] == ([2.71828] if "2.718" in said else []), f"the line is not at the mean of the label: {panels}")
         check(any(label.lower().startswith(name.replace("_", " ").lower()) and label.endswith(said) for label in labels), f"{said} is not in {labels}")
 
 
@@ -101,7 +103,7 @@ def check_joints(runs, scratch):
     import plot as module
     _, joints = module.read_joints(os.path.join(folder, "trajectory.h5md"))
     panels = module.joint_panels(joints, "3,1")
-    check([label for label, _ in panels] == ["q of joint 3", "q of joint 1"] and panels[0][1][-1] == 0.2 * (frames - 1), f"wrong panels: {panels}")
+    check([label for label, *_ in panels] == ["q of joint 3", "q of joint 1"] and panels[0][1][-1] == 0.2 * (frames - 1), f"wrong panels: {panels}")
 
 
 def main():

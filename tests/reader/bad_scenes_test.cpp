@@ -115,9 +115,9 @@ chains: [{generator: {pendulum: {links: 3}}, count: 1000}])y",
      "enlarge the box or lower `count`; only free, unbranched chains of a `sequence` or `fasta` "
      "without `positions` are packed more densely"},
     {"tethers_too_many_for_box", R"y(box: {periodic: [10, 10, 10]}
-chains: [{sequence: GGG, model: calvados2, base: fixed, count: 1000, conformation: self_avoiding}])y",
+chains: [{sequence: GGG, model: calvados2, base: fixed, count: 9000, conformation: self_avoiding}])y",
      "the box 10 x 10 x 10 has room for 216 chains side by side, each within a sphere 1.52 wide, "
-     "not for 1000 (s.yaml: chains[0], line 2): "
+     "not for 9000; at random places 1094 found room (s.yaml: chains[0], line 2): "
      "enlarge the box or lower `count`; only free, unbranched chains of a `sequence` or `fasta` "
      "without `positions` are packed more densely"},
     {"packing_beyond_any", R"y(box: {periodic: [10, 10, 10]}
@@ -419,8 +419,8 @@ forces: {openmm: {builder: calvados2}})y",
     {"openmm_of_unknown_residue", R"y(chains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]
 forces: {openmm: {builder: calvados2}})y",
      "residue `UNK` has no parameters in calvados2 (s.yaml: chains[0], bead 1, line 1): give the "
-     "chain as `sequence`, or its beads a "
-     "`residue` among the twenty amino acids"},
+     "chain as `sequence`, its beads a `residue` among the twenty amino acids, or their table "
+     "(`model: {residues: FILE.csv}`)"},
     {"no_replicas", "replicas: 0\nchains: [{sequence: GGG, model: calvados2}]",
      "replicas 0 is below 1 (s.yaml: replicas, line 1): give 1 or more"},
     {"replicas_in_a_box", R"y(replicas: 2

@@ -158,6 +158,17 @@ INSTANTIATE_TEST_SUITE_P(
                 "functionality"},
         Refusal{"huge", "chains: [{generator: {dendrimer: {generations: 400, length: 1}}}]",
                 "make it smaller"},
+        Refusal{"excluded_beyond_two_links",
+                "chains: [{generator: {star: {arms: 3, arm_length: 2, length: 1, excluded: "
+                "2.1}}}]",
+                "beads 2.1 apart, but two links reach 2 only (s.yaml: "
+                "chains[0].generator.star.excluded, line 1): give less than the length of two "
+                "links"},
+        Refusal{"table_without_the_residue",
+                "units: md\nchains: [{model: calvados2, bodies: [{mass: 1, residue: ALA, position: "
+                "[0, 0, 0]}, {mass: 1, residue: KGB, position: [1, 0, 0], joint: {type: link}}]}]",
+                "residue `KGB` is not in calvados2 (s.yaml: chains[0], bead 2, line 2): give each "
+                "bead a `residue` of that table"},
         Refusal{"sequence_keys",
                 "chains: [{conformation: extended, generator: {brush: {backbone: 4, side_length: "
                 "2, length: 1}}}]",

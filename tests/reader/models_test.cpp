@@ -36,6 +36,24 @@ TEST_F(Models, of_files_give_masses_names_and_links) {
     EXPECT_TRUE(s.notes.empty());
 }
 
+/// Beads written one by one keep their masses and lengths; the table gives their forces.
+TEST_F(Models, of_files_hold_for_beads_one_by_one) {
+    write("t.csv", columns + glycol);
+    auto const beads = [](std::string const& last) {
+        return with_table(
+            "bodies: [{mass: 7, residue: PEG, position: [0, 0, 0]}, {mass: 7, residue: PEG, "
+            "position: [0.5, 0, 0], joint: {type: link}}, {mass: 7, position: [0, 0.6, 0], "
+            "parent: 1, joint: {type: link}" +
+            last + "}]");
+    };
+    Scene const s = read(beads(", residue: PEG"));
+    EXPECT_EQ(s.chains[0].beads.mass, (std::vector<double>{7, 7, 7}));
+    EXPECT_EQ(s.chains[0].beads.length, (std::vector<double>{0, 0.5, 0.6}));
+    EXPECT_EQ(s.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 0}));
+    EXPECT_EQ(ForceResidues(*s.forces.openmm).find("PEG")->sigma, 0.4);
+    EXPECT_NE(refusal(beads("")).find("residue `UNK` is not in "), std::string::npos);
+}
+
 TEST_F(Models, of_files_decide_the_motion) {
     write("t.csv", columns + serines);
     std::string const before = read(with_table("sequence: SBSS")).hash;
