@@ -21,6 +21,8 @@ namespace {
 
 /// Largest coordinate: a double resolves 1e-7 there.
 double constexpr farthest = 1e9;
+/// Largest number of bodies of a chain for which random places are tried.
+std::size_t constexpr longest_inserted = 20'000;
 
 /// Sphere around the centre of the chain's bounding box, with the gap of two links.
 Sphere sphere_around(ChainSpec const& chain) {
@@ -112,11 +114,13 @@ Lattice place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere
 }
 
 /// True if random places may serve where the lattice has too few: for beads and bodies on links,
-/// unless all may be regrown if the scene asks for it.
+/// unless all may be regrown if the scene asks for it. Trials of longer chains take minutes.
 bool may_insert(std::vector<Draft*> const& moving) {
-    return std::all_of(
-               moving.begin(), moving.end(),
-               [](Draft const* d) { return d->chain.is_beads() || d->chain.is_linked(); }) &&
+    return std::all_of(moving.begin(), moving.end(),
+                       [](Draft const* d) {
+                           bool const links = d->chain.is_beads() || d->chain.is_linked();
+                           return links && d->chain.size() <= longest_inserted;
+                       }) &&
            !std::all_of(moving.begin(), moving.end(),
                         [](Draft const* d) { return d->regrown == Regrowth::if_asked; });
 }
