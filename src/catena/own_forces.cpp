@@ -103,12 +103,16 @@ void add_couples(ChainGroup const& group, View<3> forces, std::int64_t first, Ma
 
 }  // namespace
 
-Scene with_force_points(Scene scene) {
+void refuse_own_forces_on_gpu(Scene const& scene) {
     if (uses_gpu(scene.solver.backend))
         throw InputError(
             "own forces are computed on the host",
             own_force + (": solver.backend " + std::string(name_of(scene.solver.backend))),
             "use auto, segments, openmp or serial");
+}
+
+Scene with_force_points(Scene scene) {
+    refuse_own_forces_on_gpu(scene);
     for (ChainSpec& chain : scene.chains) {
         if (chain.is_beads()) continue;
         if (scene.forces.openmm)

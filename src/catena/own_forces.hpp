@@ -12,6 +12,9 @@
 
 namespace catena {
 
+/// Throws InputError if the scene asks for a GPU, which does not support own forces.
+void refuse_own_forces_on_gpu(Scene const&);
+
 /// Returns the scene whose rigid bodies carry the points of an own force. Throws InputError if own
 /// forces do not support the scene: on a GPU, and on rigid bodies beside OpenMM's forces.
 Scene with_force_points(Scene);

@@ -42,6 +42,7 @@ double implicit_step_of(Scene const& scene) {
 
 /// Returns the start of a scene in memory.
 Scene start_in_memory(Scene const& given, bool is_forced, Communicator const& alone) {
+    if (is_forced) refuse_own_forces_on_gpu(given);
     Scene const scene = with_dynamics(given, alone);
     return start_of(scene, axes_of(scene), is_forced, alone);
 }
