@@ -192,28 +192,23 @@ std::size_t accelerations_of(ChainSpec const& chain) {
     return count;
 }
 
-/// True if a body has drag.
-bool resists(std::vector<std::array<double, 2>> const& drag) {
-    return std::any_of(drag.begin(), drag.end(),
-                       [](auto const& d) { return d[0] != 0 || d[1] != 0; });
-}
-
 }  // namespace
 
 std::string not_for_peers(Scene const& scene) {
     auto const among = [](JointType joint) { return pivots(joint) || has_quaternion(joint); };
-    ForceSpec const& forces = scene.forces;
-    if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 ||
-        forces.angular_drag != 0)
-        return "not a single chain without drag and OpenMM";
+    std::string unknown;
+    terms::for_each([&](auto term) {
+        if (!term.known_to_peers && terms::acts_in<decltype(term)>(scene)) unknown = term.name;
+    });
+    if (scene.chains.size() != 1) return "not a single chain";
+    if (!unknown.empty()) return "forces that they lack (" + unknown + ")";
     ChainSpec const& chain = scene.chains.front();
     if (chain.tip != Tip::free) return "a closed chain";
     if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
     if (chain.is_beads()) return chain.base == Base::free ? "" : "beads fixed to the ground";
     if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among))
         return "joints neither revolute nor spherical";
-    return chain.bodies.driven.empty() && !resists(chain.bodies.drag) ? ""
-                                                                      : "driven joints or drag";
+    return chain.bodies.driven.empty() ? "" : "driven joints";
 }
 
 std::vector<double> peer_table(ChainSpec const& chain, Vec3 const& gravity) {

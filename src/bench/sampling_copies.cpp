@@ -13,6 +13,7 @@
 #include "integrate/chain_system.hpp"
 #include "reader/load_scene.hpp"
 #include "structure/calvados2.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::command {
 namespace {
@@ -48,8 +49,11 @@ void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
     if (!scene.forces.openmm || scene.forces.openmm->builder.empty())
         refuse("bench sampling takes forces of CALVADOS 2 or 3, whose bonds OpenMM then computes",
                "add forces: {openmm: {builder: calvados2}}");
-    if (norm(scene.forces.gravity) > 0 || scene.forces.linear_drag != 0)
-        refuse("gravity or drag, which OpenMM's own integrators ignore", "leave them out");
+    terms::for_each([&](auto term) {
+        if (!term.known_to_openmm && terms::acts_in<decltype(term)>(scene))
+            refuse(fmt::format("{}, which OpenMM's own integrators ignore", term.name),
+                   "leave them out");
+    });
     if (!scene.dynamics.given)
         refuse("the scene has no dynamics section",
                "add dynamics: {integrator: g-baoab, step: 0.01}");

@@ -13,6 +13,7 @@
 #include "keys/maps.hpp"
 #include "scene/branches.hpp"
 #include "scene/fields.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::scene {
 
@@ -68,8 +69,7 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
 
 /// Records which of the optional arrays are needed, and empties the others.
 struct Needed {
-    bool torque = false, spring = false, damping = false, wrench = false, drag = false,
-         first_axis = false, pitch = false;
+    bool torque = false, spring = false, damping = false, first_axis = false, pitch = false;
 
     /// Marks the arrays that this joint needs.
     void take(JointEntry const& joint) {
@@ -84,22 +84,10 @@ struct Needed {
         if (!torque) bodies.torque = {};
         if (!spring) bodies.stiffness = {}, bodies.rest = {};
         if (!damping) bodies.damping = {};
-        if (!wrench) bodies.wrench = {};
-        if (!drag) bodies.drag = {};
         if (!first_axis) bodies.first_axis = {};
         if (!pitch) bodies.pitch = {};
     }
 };
-
-/// Reads `wrench: {torque, force}`, in W at the centre of mass; zero without the key.
-std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
-    std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
-    if (!wrench) return load;
-    Fields const parts(*wrench, keys::wrench);
-    if (Node const* const torque = parts.find("torque")) load.first = vector3(*torque);
-    if (Node const* const force = parts.find("force")) load.second = vector3(*force);
-    return load;
-}
 
 /// Throws InputError for bodies other than beads that have the key `parent`.
 void refuse_parents(Node const& bodies) {
@@ -183,15 +171,8 @@ BodyList kind_of_list(Node const& bodies) {
     return rigid ? BodyList::linked : BodyList::beads;
 }
 
-std::array<double, 2> read_drag(Node const& drag) {
-    Fields const parts(drag, keys::drag);
-    Node const* const linear = parts.find("linear");
-    Node const* const angular = parts.find("angular");
-    return {linear ? non_negative(*linear) : 0, angular ? non_negative(*angular) : 0};
-}
-
 // The arrays have one entry per body at first, also those that are usually empty.
-ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> const& scene_drag) {
+ExplicitBodies read_bodies(Node const& node, Base base) {
     ExplicitBodies made;
     BodyArrays& bodies = made.bodies;
     Needed needed;
@@ -207,12 +188,6 @@ ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> co
         append(bodies, entry);
         if (entry.planar && !made.planar) made.planar = body.find("joint");
         needed.take(entry);
-        Node const* const wrench = body.find("wrench");
-        bodies.wrench.push_back(read_wrench(wrench));
-        needed.wrench = needed.wrench || wrench;
-        Node const* const drag = body.find("drag");
-        bodies.drag.push_back(drag ? read_drag(*drag) : scene_drag);
-        needed.drag = needed.drag || drag;
         carried.add(body.find("beads"));
     }
     needed.drop_rest(bodies);
@@ -225,7 +200,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
     std::vector<std::int64_t> inboard;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
         Node const& item = node.items[k];
-        for (char const* const key : {"com", "inertia", "wrench", "drag", "beads"})
+        for (char const* const key : terms::keys_beside({"com", "inertia"}, {"beads"}))
             if (Node const* const extra = item.find(key))
                 fail(*extra, fmt::format("key `{}` does not apply to a point bead on a link", key),
                      "leave it out or change `joint`");

@@ -22,9 +22,9 @@ struct ExplicitBodies {
     /// chain are parallel.
     Node const* planar = nullptr;
 };
-/// Reads rigid bodies on any joints but links and checks every number. `scene_drag` {linear,
-/// angular} applies to bodies without drag of their own. Throws InputError that names the body.
-ExplicitBodies read_bodies(Node const& bodies, Base base, std::array<double, 2> const& scene_drag);
+/// Reads rigid bodies on any joints but links and checks every number. Loads of bodies are read
+/// afterwards (terms::read_bodies()). Throws InputError that names the body.
+ExplicitBodies read_bodies(Node const& bodies, Base base);
 
 /// Point beads read from a list.
 struct ExplicitBeads {
@@ -38,8 +38,5 @@ struct ExplicitBeads {
 /// Reads beads {mass, position, velocity, residue, parent, joint: {type: link, length}}. Throws
 /// InputError for keys of rigid bodies, and for a `parent` that is not an earlier bead.
 ExplicitBeads read_beads(Node const& bodies, Base base);
-
-/// Reads `drag: {linear, angular}`; both default to 0. Throws InputError for negative values.
-std::array<double, 2> read_drag(Node const& drag);
 
 }  // namespace catena::scene

@@ -2,6 +2,7 @@
 #include "bodies/hdf5_bodies.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::scene {
 
@@ -55,7 +57,7 @@ class Hdf5Bodies {
 
     /// Reads the datasets in the order of their dependencies: joints decide which numbers a body
     /// needs.
-    BodyArrays read() {
+    ChainSpec read() {
         refuse_unknown();
         read_masses();
         read_joints();
@@ -63,10 +65,53 @@ class Hdf5Bodies {
         read_axes();
         read_state();
         read_forces();
-        return std::move(bodies_);
+        return std::move(chain_);
     }
 
   private:
+    /// The datasets as force terms read them (ForceTerm::read_table()).
+    struct Loads {
+        Hdf5Bodies& file;
+
+        bool has(char const* name) const { return file.table_.has(name); }
+        /// Throws InputError if the dataset is absent.
+        void need(char const* name, char const* remedy) const { file.need(name, remedy); }
+        /// Reads three numbers per body; check(k, v) takes them.
+        template <class Check>
+        void vectors(char const* name, std::vector<Vec3>& into, Check const& check) const {
+            file.vectors(name, into, check);
+        }
+        /// Reads a number per coordinate of each joint.
+        void coordinates(char const* name, std::vector<Vec3>& into) const {
+            file.vectors(name, into, [&](std::size_t k, Vec3& v) {
+                file.refuse_unused(name, k, v.data, file.count(k));
+            });
+        }
+        /// Reads such numbers and refuses negative ones.
+        void resistances(char const* name, std::vector<Vec3>& into) const {
+            file.resistances(name, into);
+        }
+        void positions(char const* name, std::vector<std::array<double, 4>>& into) const {
+            file.positions(name, into);
+        }
+        /// Reads `width` numbers per body, if the dataset is there; make(k, numbers) returns the
+        /// entry.
+        template <class Entry, class Make>
+        void rows(char const* name, std::size_t width, std::vector<Entry>& into,
+                  Make const& make) const {
+            if (!has(name)) return;
+            into.resize(file.table_.rows());
+            file.table_.for_each(name, {{width}}, [&](std::size_t k, double const* v, std::size_t) {
+                into[k] = make(k, v);
+            });
+        }
+        [[noreturn]] void refuse_negative(char const* name, std::size_t k,
+                                          std::span<double const> v) const {
+            file.table_.refuse(name, k, fmt::format("{} {} is negative", name, fmt::join(v, ", ")),
+                               "give 0 or positive numbers");
+        }
+    };
+
     /// Throws InputError for a dataset that is not declared, with the nearest known name.
     void refuse_unknown() const {
         std::vector<std::string_view> const known = keys::datasets.names();
@@ -279,43 +324,22 @@ class Hdf5Bodies {
         });
     }
 
-    /// Reads `torque`, `stiffness`, `damping` [n, 3], `rest` [n, 4], `wrench` [n, 6] (torque,
-    /// force) and `drag` [n, 2]. All are optional; `rest` needs `stiffness`.
+    /// Reads the datasets of force terms, which are all optional.
     void read_forces() {
-        if (table_.has("torque"))
-            vectors("torque", bodies_.torque,
-                    [&](std::size_t k, Vec3& v) { refuse_unused("torque", k, v.data, count(k)); });
-        if (table_.has("rest")) need("stiffness", "springs that are relaxed at `rest` have one");
-        if (table_.has("stiffness")) {
-            resistances("stiffness", bodies_.stiffness);
-            positions("rest", bodies_.rest);
-        }
-        if (table_.has("damping")) resistances("damping", bodies_.damping);
-        if (table_.has("wrench")) {
-            bodies_.wrench.resize(table_.rows());
-            table_.for_each("wrench", {{6}}, [&](std::size_t k, double const* v, std::size_t) {
-                bodies_.wrench[k] = {vector_at(v), vector_at(v + 3)};
-            });
-        }
-        if (!table_.has("drag")) return;
-        bodies_.drag.resize(table_.rows());
-        table_.for_each("drag", {{2}}, [&](std::size_t k, double const* v, std::size_t) {
-            if (!(v[0] >= 0 && v[1] >= 0))
-                table_.refuse("drag", k, fmt::format("drag {}, {} is negative", v[0], v[1]),
-                              "give 0 or positive numbers");
-            bodies_.drag[k] = {v[0], v[1]};
-        });
+        Loads loads{*this};
+        terms::for_each([&](auto term) { decltype(term)::read_table(loads, chain_); });
     }
 
     Hdf5Table table_;
     Base base_;
-    BodyArrays bodies_;
+    ChainSpec chain_;
+    BodyArrays& bodies_ = chain_.bodies;
 };
 
 }  // namespace
 
 // The trial runs in a child process and shows whether HDF5 survives the file; its result is lost.
-BodyArrays read_hdf5_bodies(std::string const& path, Base base) {
+ChainSpec read_hdf5_bodies(std::string const& path, Base base) {
     std::string const end = trial([&] { Hdf5Bodies(path, base).read(); }, limits_for_file(path));
     if (!end.empty())
         throw InputError("the file is damaged, HDF5 fails to read it: " + end, shown_path(path),

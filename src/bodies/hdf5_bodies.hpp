@@ -7,10 +7,10 @@
 
 namespace catena::scene {
 
-/// Reads the file `path` block by block into the arrays; inputs/keys/bodies.md lists its datasets.
-/// Every check of the YAML reader applies. A child process reads the file first, because HDF5
-/// crashes on many damaged files. Throws InputError that names file, dataset and body. A build
-/// without HDF5 throws "built without HDF5".
-BodyArrays read_hdf5_bodies(std::string const& path, Base base);
+/// Reads the bodies of the file `path` and their loads, block by block, into a chain;
+/// inputs/keys/bodies.md lists its datasets. Every check of the YAML reader applies. A child
+/// process reads the file first, because HDF5 crashes on many damaged files. Throws InputError that
+/// names file, dataset and body. A build without HDF5 throws "built without HDF5".
+ChainSpec read_hdf5_bodies(std::string const& path, Base base);
 
 }  // namespace catena::scene

@@ -4,7 +4,7 @@
 
 namespace catena::scene {
 
-BodyArrays read_hdf5_bodies(std::string const& path, Base) {
+ChainSpec read_hdf5_bodies(std::string const& path, Base) {
     throw built_without(
         "HDF5", "bodies " + path,
         "install HDF5 (libhdf5-dev) and build again, or write the bodies as a list");

@@ -46,16 +46,11 @@ Found find(Scene const& scene, Communicator const& communicator, bool skipped) {
 
 /// Returns the numbers of loads and OpenMM's lines as JSON.
 Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
-    ForcesOnJoints const found = forces_on_joints(scene);
     Vec3 const& g = scene.forces.gravity;
-    return {{"gravity", {g[0], g[1], g[2]}},
-            {"springs", found.springs},
-            {"dampers", found.dampers},
-            {"torques", found.torques},
-            {"motions", found.motions},
-            {"wrenches", found.wrenches},
-            {"drag", found.drag},
-            {"openmm", openmm}};
+    Json forces{{"gravity", {g[0], g[1], g[2]}}};
+    for (terms::TermCount const& each : loads_of(scene)) forces[each.name] = each.count;
+    forces["openmm"] = openmm;
+    return forces;
 }
 
 /// Returns the dynamics as JSON; null if the scene has none.
@@ -110,7 +105,7 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
                                scene.chains_a_replica() == 1 ? "chain" : "chains"));
     text.entry("bodies", std::to_string(scene.bodies()));
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
-    text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");
+    text.entry("box", scene.box ? "periodic " + terms::vector_text(*scene.box) : "none");
     std::vector<ChainConcentration> const concentrations = concentrations_of(scene);
     for (std::size_t i = 0; i < concentrations.size(); ++i)
         text.entry(i == 0 ? "concentration" : "", concentrations[i].text());
@@ -125,8 +120,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     if (d.bodies > 0)
         text.entry("blocks of bodies", block_text(false, d.bodies, scene.solver.handles));
     text.heading("forces");
-    text.entry("gravity", vector_text(scene.forces.gravity));
-    text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
+    text.entry("gravity", terms::vector_text(scene.forces.gravity));
+    text.entry("joints and bodies", loads_text(scene));
     for (std::size_t i = 0; i < openmm.size(); ++i) text.entry(i == 0 ? "OpenMM" : "", openmm[i]);
     text.heading("dynamics");
     text.entry("integrator", dynamics_text(scene));

@@ -15,6 +15,7 @@
 #include "plan/predictions.hpp"
 #include "plan/savings.hpp"
 #include "scene/branch_limits.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::command {
 namespace {
@@ -245,7 +246,7 @@ void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& p
     Memory const memory = memory_of(scene, ranks);
     text.heading("memory per rank");
     text.entry("host", bytes_text(memory.sum()));
-    std::string const why = scene::why_host_alone(scene);
+    std::string const why = terms::why_host_alone(scene);
     text.entry("GPU", why.empty() ? bytes_text(predictions.gpu_memory) + " with backend cuda" +
                                         (predictions.no_gpu.empty() ? "" : ", if there were a GPU")
                                   : "not usable: " + why);
@@ -307,8 +308,8 @@ void add_backend(Text& text, Json& json, ChainSystem const& system, std::string 
 void add_forces(Text& text, Json& json, ChainSystem const& system) {
     Scene const& scene = system.scene();
     text.heading("forces");
-    text.entry("gravity", vector_text(scene.forces.gravity));
-    text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
+    text.entry("gravity", terms::vector_text(scene.forces.gravity));
+    text.entry("joints and bodies", loads_text(scene));
     json["openmm"] = nullptr;
     if (!system.openmm()) return;
     json["openmm"] = system.openmm()->description();

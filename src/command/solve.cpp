@@ -44,7 +44,14 @@ std::string why_no_inverse_dynamics(ChainSystem const& system) {
     if (any_chain([](ChainSpec const& c) { return c.is_linked(); })) return "bodies are on links";
     if (any_chain([](ChainSpec const& c) { return !c.is_beads() && c.tip == Tip::jointed; }))
         return "bodies form a loop";
-    return scene.dynamics.fixman ? "inverse dynamics has no Fixman potential" : "";
+    std::string lacking;
+    terms::for_each([&](auto term) {
+        using Term = decltype(term);
+        if constexpr (Term::unknown_to_oracles != nullptr)
+            if (terms::acts_in<Term>(scene))
+                lacking = fmt::format("inverse dynamics has no {}", Term::unknown_to_oracles);
+    });
+    return lacking;
 }
 
 /// Returns the recursive Newton-Euler residual of the worst chain, or null where the oracle cannot

@@ -26,14 +26,4 @@ std::vector<LocalPiece> local_pieces(ChainGroup const& group, Scene const& scene
     return pieces;
 }
 
-PotentialEnergy potential_in(Vec3 const& gravity, ChainGroup const& group,
-                             Field<3> const& position) {
-    PotentialEnergy e;
-    e.gravity.reserve(static_cast<std::size_t>(group.size));
-    for (std::int64_t k = 0; k < group.size; ++k)
-        e.gravity.push_back(-group.mass.view().at(k, 0) * dot(gravity, position[k]));
-    e.springs.assign(static_cast<std::size_t>(group.size), 0.0);
-    return e;
-}
-
 }  // namespace catena

@@ -13,6 +13,7 @@
 
 #include "chain/chain_group.hpp"
 #include "dca/solver.hpp"
+#include "dynamics/body_loads.hpp"
 #include "dynamics/constrained_step.hpp"
 #include "kinematics/carried_beads.hpp"
 #include "kinematics/link_geometry.hpp"
@@ -35,13 +36,6 @@ struct BodyResults {
     /// Constraint [torque, force] on body k at its inboard joint.
     std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
-};
-
-/// Potential energy of each body on this rank, kJ/mol.
-struct PotentialEnergy {
-    /// Energy of gravity, of the inboard joint's springs and of the Fixman potential. The last is
-    /// empty unless the scene uses it.
-    std::vector<double> gravity, springs, fixman;
 };
 
 /// The larger of two numbers; NaN if either is NaN.
@@ -80,8 +74,6 @@ std::vector<HeldTip> held_tips(ChainGroup const& group, End const& end) {
     }
     return tips;
 }
-/// Potential energy of bodies at `position` in the field `gravity` (W). Springs count as zero.
-PotentialEnergy potential_in(Vec3 const& gravity, ChainGroup const&, Field<3> const& position);
 
 /// A named array of the state, with `width` numbers per body.
 struct StateArray {

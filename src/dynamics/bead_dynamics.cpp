@@ -107,6 +107,17 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
     return communicator.max(worst);
 }
 
+namespace {
+
+/// Adds the constant forces on beads, if there are any.
+template <class Dynamics>
+std::unique_ptr<Dynamics> with_constants(std::unique_ptr<Dynamics> beads) {
+    if (beads->given().wrenches) beads->use(std::make_unique<ConstantOnBeads>(beads->given()));
+    return beads;
+}
+
+}  // namespace
+
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene,
                                                      Executor const& executor,
                                                      Communicator const& communicator,
@@ -117,14 +128,14 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Sc
             group, scene, space, communicator, std::move(solver));
         if (scene.dynamics.fixman)
             beads->use(std::make_unique<BranchedFixman>(group, scene, executor));
-        return beads;
+        return with_constants(std::move(beads));
     }
     auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, space, communicator,
                                                            std::move(solver));
     if (scene.dynamics.fixman)
         beads->use(
             std::make_unique<LinkFixman>(group, scene, executor, communicator, beads->solver()));
-    return beads;
+    return with_constants(std::move(beads));
 }
 
 }  // namespace catena

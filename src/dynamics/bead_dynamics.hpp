@@ -9,8 +9,8 @@
 #include "dca/solvers/tree_solver.hpp"
 #include "dynamics/absolute_dynamics.hpp"
 #include "dynamics/bead_step.hpp"
+#include "dynamics/bead_term.hpp"
 #include "dynamics/closing.hpp"
-#include "dynamics/fixman.hpp"
 
 namespace catena {
 
@@ -62,7 +62,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
           space_(space),
           communicator_(communicator),
           solver_(std::move(solver)),
-          gravity_(scene.forces.gravity),
+          given_(make_body_loads(group, scene)),
           links_(links_of(group)),
           halves_(halves_over(group.length, space.on_host())),
           piece_(local_pieces(group, scene)),
@@ -103,14 +103,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         held([&] { solver_->assemble_matrices(directions()); });
     }
     void set_simple_forces() override {
-        forces_ = {gravity_, {}};
+        forces_ = {given_.gravity, {}};
         forces_are_ahead_ = true;
-        if (!fixman_) return;
+        if (terms_.empty()) return;
         settle_forces();
-        fixman_->add_forces(directions(), force_.view());
+        for (auto const& term : terms_) term->add_forces(directions(), force_.view());
     }
-    /// Adds the Fixman potential to the forces. Host only.
-    void use(std::unique_ptr<FixmanPotential> fixman) { fixman_ = std::move(fixman); }
+    /// Adds a term to the forces. Host only.
+    void use(std::unique_ptr<BeadTerm> term) { terms_.push_back(std::move(term)); }
+    BodyLoads const& given() const { return given_; }
     View<3> bead_forces() override {
         settle_forces();
         forces_are_out_ = true;
@@ -278,8 +279,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     PotentialEnergy potential() override {
         // OpenMM's energy computation overwrites its forces, so sum them first.
         settle_forces();
-        PotentialEnergy energy = potential_in(gravity_, group_, space_.read(position_));
-        if (fixman_) energy.fixman = fixman_->energy();
+        auto const& position = space_.read(position_);
+        PotentialEnergy energy = potential_of(given_, group_.size, [&](std::int64_t k) {
+            return terms::PlacedBody{k, group_.mass.view().at(k, 0), position[k]};
+        });
+        for (auto const& term : terms_) term->set_energy(energy);
         return energy;
     }
     ChainGroup const& group() const override { return group_; }
@@ -444,7 +448,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     Space space_;
     Communicator const& communicator_;
     std::unique_ptr<ChainSolver> solver_;
-    Vec3 gravity_;
+    BodyLoads given_;
     std::vector<std::uint8_t> links_;
     Field<1> halves_;
     std::vector<LocalPiece> piece_;
@@ -466,7 +470,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     /// DeviceParticles::order of the OpenMM particles to which the last step already wrote the
     /// positions.
     std::int64_t put_at_step_ = never;
-    std::unique_ptr<FixmanPotential> fixman_;
+    std::vector<std::unique_ptr<BeadTerm>> terms_;
 };
 
 }  // namespace catena

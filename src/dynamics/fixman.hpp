@@ -5,21 +5,20 @@
 
 #include <vector>
 
-#include "dca/solver.hpp"
+#include "dynamics/bead_term.hpp"
 #include "joints/joint_models.hpp"
 #include "kinematics/link_geometry.hpp"
 
 namespace catena {
 
 /// Force and energy of the potential of one group of chains.
-class FixmanPotential {
+class FixmanPotential : public BeadTerm {
   public:
-    virtual ~FixmanPotential() = default;
-    /// Adds its force on each bead (W) at the configuration of the last assembled matrices.
-    /// Collective.
-    virtual void add_forces(ConfigurationView const&, View<3> force) = 0;
     /// Energy by bead from the last add_forces(), kJ/mol; only the sum has a meaning.
     virtual std::vector<double> energy() const = 0;
+    void set_energy(PotentialEnergy& to) const final {
+        to[terms::place_of_energy<terms::FixmanTerm>()] = energy();
+    }
 };
 
 /// Computes both for unbranched chains from entries of T^-1 (ChainSolver::invert()).

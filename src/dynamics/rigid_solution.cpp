@@ -8,17 +8,16 @@ namespace catena {
 
 PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given,
                              Field<3> const& position, Field<4> const& orientation) {
-    PotentialEnergy e = potential_in(given.gravity, group, position);
-    for (std::int64_t k = 0; given.springs && k < group.size; ++k) {
-        if (!is_ball(group.joint[k])) continue;
+    return potential_of(given, group.size, [&](std::int64_t k) {
+        auto const at = static_cast<std::size_t>(k);
+        terms::PlacedBody body{k, group.mass.view().at(k, 0), position[k], group.joint[at], {}};
+        if (!given.springs || !is_ball(body.joint)) return body;
         Quat const inboard =
-            group.is_first[k] ? Quat::identity() : as_quaternion(orientation[k - 1]);
-        Quat const rotation = turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]),
-                                            as_quaternion(orientation[k]));
-        e.springs[static_cast<std::size_t>(k)] =
-            spherical_spring_energy(given.stiffness[k], as_quaternion(given.rest[k]), rotation);
-    }
-    return e;
+            group.is_first[at] ? Quat::identity() : as_quaternion(orientation[k - 1]);
+        body.q = as_vector(turn_of_joint(inboard, as_quaternion(group.joint_rotation[k]),
+                                         as_quaternion(orientation[k])));
+        return body;
+    });
 }
 
 BodyResults RigidSolution::results() const {

@@ -13,6 +13,7 @@
 #include "mpi/collectives.hpp"
 #include "mpi/thread_limit.hpp"
 #include "scene/branch_limits.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -61,7 +62,7 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (std::string const why = scene::why_host_alone(scene); uses_gpu(asked) && !why.empty())
+    if (std::string const why = terms::why_host_alone(scene); uses_gpu(asked) && !why.empty())
         throw InputError(why, "solver.backend: " + std::string(name_of(asked)),
                          "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
@@ -288,8 +289,9 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
 
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
-    // Forces of the Fixman potential need the matrices.
-    bool const at_once = !project && solves_once() && !scene_.dynamics.fixman;
+    bool const at_once = !project && solves_once() && !terms::any_of([&](auto term) {
+        return term.needs_matrices && terms::acts_in<decltype(term)>(scene_);
+    });
     for (auto const& group : joint_) update(*group, at_once);
     if (at_once)
         for (auto const& group : absolute_) group->set_simple_forces();

@@ -122,7 +122,7 @@ class ChainSystem {
     std::vector<SceneWindows::Run> own_runs() const {
         return SceneWindows(communicator_, groups_).own_runs();
     }
-    /// Returns the potential energy term by term, kJ/mol: gravity, springs, fixman, then OpenMM's
+    /// Returns the potential energy term by term, kJ/mol: terms::energy_columns(), then OpenMM's
     /// terms. OpenMM's terms are the same on every rank; the others are valid on rank 0 only.
     /// Collective.
     std::vector<EnergyTerm> potential_energy();
@@ -255,7 +255,7 @@ class ChainSystem {
     void describe_beads();
     /// Sets the owners of beads.
     void order_beads_by_rank();
-    /// True if only OpenMM's forces act on the beads and there is no Fixman potential.
+    /// True if all chains are of beads, and no term but OpenMM's forces has an energy.
     bool is_free_of_potentials() const;
     std::vector<BodyResults> results() const;
     std::size_t index_of(ChainGroup const&) const;

@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "mpi/collectives.hpp"
 #include "mpi/first_rank.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -194,24 +195,23 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
 }
 
 bool ChainSystem::is_free_of_potentials() const {
-    return norm(scene_.forces.gravity) == 0 && !scene_.dynamics.fixman &&
+    return !terms::has_potential(scene_) &&
            std::all_of(groups_.begin(), groups_.end(),
                        [](auto const& group) { return group->beads; });
 }
 
 std::vector<EnergyTerm> ChainSystem::potential_energy() {
-    int const width = scene_.dynamics.fixman ? 3 : 2;
+    std::vector<terms::EnergyColumn> const columns = terms::energy_columns(scene_);
+    auto const width = static_cast<int>(columns.size());
     std::vector<std::vector<double>> own(groups_.size());
     auto const add = [&](ChainGroup const& group, PotentialEnergy const& e) {
         std::vector<double>& rows = own[index_of(group)];
         rows.reserve(static_cast<std::size_t>(group.size * width));
-        for (auto k = std::size_t{0}; k < static_cast<std::size_t>(group.size); ++k) {
-            rows.insert(rows.end(), {e.gravity[k], e.springs[k]});
-            if (scene_.dynamics.fixman) rows.push_back(e.fixman[k]);
-        }
+        for (auto k = std::size_t{0}; k < static_cast<std::size_t>(group.size); ++k)
+            for (terms::EnergyColumn const& column : columns) rows.push_back(e[column.place][k]);
     };
-    std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
-    if (scene_.dynamics.fixman) terms.push_back({"fixman", 0.0});
+    std::vector<EnergyTerm> terms;
+    for (terms::EnergyColumn const& column : columns) terms.push_back({column.name, 0.0});
     // Path `device`: potential() also waits for the forces, whose arrays OpenMM's energies
     // overwrite.
     if (on_device() || !is_free_of_potentials()) {

@@ -11,6 +11,7 @@
 #include "integrate/chain_system.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/freedom.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -44,9 +45,10 @@ void cut(ChainSpec& chain, std::size_t size) {
     cut(b.mass, size), cut(b.com, size), cut(b.inertia, size), cut(b.joint, size),
         cut(b.axis, size), cut(b.rotation, size);
     cut(b.translation, size), cut(b.q, size), cut(b.qd, size), cut(b.first_axis, size),
-        cut(b.pitch, size), cut(b.torque, size);
-    cut(b.stiffness, size), cut(b.damping, size), cut(b.rest, size), cut(b.wrench, size),
-        cut(b.drag, size);
+        cut(b.pitch, size);
+    terms::for_each_column([&](auto const& column) { cut(b.*column.values, size); });
+    for (TermNumbers& each : chain.term_numbers)
+        cut(each.values, size * static_cast<std::size_t>(each.width));
     std::erase_if(b.driven, [&](DrivenJoint const& joint) {
         return joint.body >= static_cast<std::int64_t>(size);
     });

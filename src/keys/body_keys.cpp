@@ -37,6 +37,13 @@ constexpr Key velocity{"velocity",
 constexpr Key residue{
     "residue",     "text", "`UNK`", "", "Topology and force field know the bead by this name.",
     "residue: ALA"};
+constexpr Key force{"force",
+                    "3 numbers",
+                    "`[0, 0, 0]`",
+                    "energy / length",
+                    "This constant force acts on the bead or at the centre of mass, in W; its "
+                    "energy counts.",
+                    "force: [0, 0, 5]"};
 constexpr Key link_type{"type",      "`link`", "required", "", "The body hangs on a rigid link.",
                         "type: link"};
 constexpr std::string_view as_coordinate = "radians or length";
@@ -53,6 +60,7 @@ constexpr Key body_keys[] = {
      "wrench: {force: [0, 0, -5]}"},
     {"drag", "map", "that of `forces`", "", "Viscous drag acts on this body.",
      "drag: {linear: 0.2}"},
+    force,
     carried,
 };
 
@@ -139,6 +147,7 @@ constexpr Key bead_keys[] = {
     position,
     velocity,
     residue,
+    force,
     {"joint", "`{type: link}`", "required but for bead 1", "",
      "This link connects the bead to the one it hangs on.", "joint: {type: link}"},
     {"parent", "integer, 1 to the bead's number less 1", "the bead before", "",
@@ -165,6 +174,7 @@ constexpr Key linked_keys[] = {
     {"omega", "3 numbers", "`[0, 0, 0]`", "radians / time",
      "A rigid body has this angular velocity, in B.", "omega: [0, 0, 0.1]"},
     residue,
+    force,
     carried,
     {"joint", "map", "required but for body 1", "",
      "This link connects the body to the one before it.", "joint: {type: link, length: 0.4}"},
@@ -215,6 +225,8 @@ constexpr Key dataset_keys[] = {
      "A row is the torque and the force on a body, in W."},
     {"drag", "[n, 2]", "that of `forces`", "mass / time; mass length^2 / time",
      "A row is the linear and the angular drag of a body."},
+    {"force", "[n, 3]", "0", "energy / length",
+     "A row is the constant force at the centre of mass of a body, in W; its energy counts."},
     {"free_position", "[3]", "0", "length", "Body 1 of a free base has its origin here in W."},
     {"free_velocity", "[3]", "0", "length / time",
      "The origin of body 1 of a free base has this velocity, in W."},

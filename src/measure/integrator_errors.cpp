@@ -1,14 +1,16 @@
 // Work-precision studies of the integrators.
 #include "measure/integrator_errors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "error.hpp"
 #include "measure/integration.hpp"
 #include "scene/freedom.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -130,14 +132,10 @@ std::optional<double> slope_from(double shortest, std::vector<IntegratorPoint> c
     return errors.size() < 2 ? std::nullopt : std::optional(slope_of(errors));
 }
 
-/// True if joint torques or wrenches act on the chain. They do work, so that the change of energy
-/// is not an error.
-bool works_on_bodies(ChainSpec const& chain) {
-    auto const is_zero = [](Vec3 const& v) { return norm(v) == 0; };
-    auto const& [torque, wrench] = std::tie(chain.bodies.torque, chain.bodies.wrench);
-    return !std::all_of(torque.begin(), torque.end(), is_zero) ||
-           !std::all_of(wrench.begin(), wrench.end(),
-                        [&](auto const& w) { return is_zero(w.first) && is_zero(w.second); });
+/// True if a force term does work on the bodies, so that the change of energy is not an error.
+bool does_work(Scene const& scene) {
+    return terms::any_of(
+        [&](auto term) { return term.does_work && terms::acts_in<decltype(term)>(scene); });
 }
 
 /// The reference solution, and settings of the comparison.
@@ -262,13 +260,15 @@ bool IntegratorStudy::valid() const {
 std::string why_integrators_cannot_be_compared(Scene const& scene) {
     if (scene.forces.openmm)
         return "OpenMM's forces are discontinuous at their cutoffs and have lists of their own";
-    if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
-        return "its drag changes with velocities";
+    std::string changing;
+    terms::for_each([&](auto term) {
+        if (term.depends_on_velocities && terms::acts_in<decltype(term)>(scene))
+            changing = fmt::format("its {} changes with velocities", term.in_messages);
+    });
+    if (!changing.empty()) return changing;
     for (ChainSpec const& c : scene.chains) {
         if (c.velocities == StartVelocities::thermal)
             return "its start is thermal and differs between integrators";
-        if (!c.bodies.drag.empty() || !c.bodies.damping.empty())
-            return "its drag or dampers change with velocities";
         if (!c.bodies.driven.empty()) return "its joints are driven";
     }
     return integrators_of(scene).empty() ? "no integrator supports all its chains" : "";
@@ -280,7 +280,7 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     study.title = scene.title;
     study.bodies = scene.bodies();
     study.time = time;
-    bool const works = std::any_of(scene.chains.begin(), scene.chains.end(), works_on_bodies);
+    bool const works = does_work(scene);
     if (works) study.no_energy_error = "torques or wrenches do work on the bodies";
     study.no_implicit = why_explicit_alone(springs_of(scene));
     std::vector<Integrator> const compared = integrators_of(scene);

@@ -6,6 +6,7 @@
 #include "generate/random.hpp"
 #include "oracle/algebra.hpp"
 #include "scene/branches.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -132,8 +133,10 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     BodyArrays& b = chain.bodies;
     move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation),
         move(b.q), move(b.qd);
-    move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness),
-        move(b.damping), move(b.rest), move(b.wrench);
+    move(b.free_position), move(b.free_velocity);
+    terms::for_each_column([&](auto const& column) {
+        if (!column.named) move(b.*column.values);
+    });
     move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity),
         move(chain.beads.anchor);
     TipJoint& tip = chain.tip_joint;
@@ -144,7 +147,12 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     move(l.mass), move(l.inertia), move(l.position), move(l.velocity), move(l.orientation),
         move(l.omega), move(l.inboard);
     move(l.outboard), move(l.anchor);
-    move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
+    move(b.first_axis), move(b.pitch);
+    terms::for_each_column([&](auto const& column) {
+        if (column.named) move(b.*column.values);
+    });
+    move(b.driven);
+    for (TermNumbers& each : chain.term_numbers) move(each.values);
     return chain;
 }
 

@@ -6,6 +6,7 @@
 
 #include "joints/joint_models.hpp"
 #include "observe/observables.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -84,33 +85,55 @@ void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes)
     inboard->torque(pushing * (norm(b.translation[k] - b.com[k - 1]) + shift));
 }
 
-/// Upper bound of f M^-1 f: the value for bodies that no joint holds. `gravity`: acceleration, 0 if
-/// it does not count.
-double square_of(ChainSpec const& chain, double gravity) {
+/// Size of the constant forces on body k whose energy a column counts.
+double held_force(ChainSpec const& chain, std::size_t k) {
     double sum = 0;
-    for (double const mass : chain.beads.mass) sum += mass * gravity * gravity;
-    for (double const mass : chain.linked.mass) sum += mass * gravity * gravity;
+    terms::for_each([&](auto term) {
+        terms::ConstantWrench own;
+        if (term.energy != nullptr && decltype(term)::constant_wrench(chain, k, own))
+            sum += norm(own.second);
+    });
+    return sum;
+}
+
+/// Adds the constant wrenches on body k whose work no column counts.
+void add_wrenches(ChainSpec const& chain, std::size_t k, Pushes& pushes) {
+    terms::for_each([&](auto term) {
+        terms::ConstantWrench own;
+        if (term.does_work && decltype(term)::constant_wrench(chain, k, own))
+            pushes.force(norm(own.second)), pushes.torque(norm(own.first));
+    });
+}
+
+/// Upper bound of f M^-1 f of beads and bodies on links that nothing holds, as square_of().
+double square_of_links(ChainSpec const& chain, std::vector<double> const& masses, double gravity,
+                       bool with_potentials) {
+    double sum = 0;
+    for (std::size_t k = 0; k < masses.size(); ++k) {
+        double const mass = masses[k], force = with_potentials ? held_force(chain, k) : 0;
+        sum += force == 0 ? mass * gravity * gravity
+                          : (mass * gravity + force) * (mass * gravity + force) / mass;
+    }
+    return sum;
+}
+
+/// Upper bound of f M^-1 f: the value for bodies that no joint holds. Without `with_potentials`,
+/// gravity and other forces whose energy a column counts are left out.
+double square_of(Scene const& scene, ChainSpec const& chain, bool with_potentials) {
+    double const gravity = with_potentials ? norm(scene.forces.gravity) : 0;
+    double sum = square_of_links(chain, chain.beads.mass, gravity, with_potentials);
+    sum += square_of_links(chain, chain.linked.mass, gravity, with_potentials);
     BodyArrays const& b = chain.bodies;
     std::vector<Pushes> pushes;
     for (std::size_t k = 0; k < b.size(); ++k) pushes.emplace_back(b.mass[k], b.inertia[k]);
     for (std::size_t k = 0; k < b.size(); ++k) {
         pushes[k].force(gravity * b.mass[k]);
-        if (!b.wrench.empty())
-            pushes[k].force(norm(b.wrench[k].second)), pushes[k].torque(norm(b.wrench[k].first));
+        add_wrenches(chain, k, pushes[k]);
+        if (with_potentials) pushes[k].force(held_force(chain, k));
         if (!b.torque.empty()) add_torque(b, k, pushes);
     }
     for (Pushes const& each : pushes) sum += each.square();
     return sum;
-}
-
-/// True if the chain has prescribed motions, joint torques or wrenches.
-bool has_load(ChainSpec const& chain) {
-    BodyArrays const& b = chain.bodies;
-    return !b.driven.empty() ||
-           std::any_of(b.torque.begin(), b.torque.end(),
-                       [](Vec3 const& torque) { return norm(torque) > 0; }) ||
-           std::any_of(b.wrench.begin(), b.wrench.end(),
-                       [](auto const& w) { return norm(w.first) + norm(w.second) > 0; });
 }
 
 }  // namespace
@@ -121,20 +144,22 @@ double drift_of_step(DynamicsSpec const& d) {
     return x < 1e-4 ? 1 : x / std::tanh(x);
 }
 
-Heating heating_of(Scene const& scene, bool with_gravity) {
+Heating heating_of(Scene const& scene, bool with_potentials) {
     auto const any = [&](auto const& is) {
         return std::any_of(scene.chains.begin(), scene.chains.end(), is);
     };
-    double const gravity = norm(scene.forces.gravity);
+    bool const driven = any([](ChainSpec const& chain) { return !chain.bodies.driven.empty(); });
     Heating found;
-    found.is_pushed = gravity > 0 || any(has_load);
+    found.is_pushed = driven || terms::any_of([&](auto term) {
+                          return term.pushes && terms::acts_in<decltype(term)>(scene);
+                      });
     if (!found.is_pushed) return found;
-    if (any([](ChainSpec const& chain) { return !chain.bodies.driven.empty(); })) {
+    if (driven) {
         found.unknown = "motions are prescribed, whose kinetic energy is not thermal";
         return found;
     }
     double sum = 0;
-    for (ChainSpec const& chain : scene.chains) sum += square_of(chain, with_gravity ? gravity : 0);
+    for (ChainSpec const& chain : scene.chains) sum += square_of(scene, chain, with_potentials);
     double const friction = scene.dynamics.friction / drift_of_step(scene.dynamics);
     found.excess = sum / (friction * friction * static_cast<double>(degrees_of_freedom(scene)) *
                           scene.boltzmann());

@@ -14,8 +14,9 @@ namespace catena {
 /// reaches exactly that; potentials and joints reduce it.
 struct Heating {
     bool is_pushed = false;  // external loads exist
-    double excess =
-        0;  // largest rise of the mean kinetic temperature, K; includes gravity with `with_gravity`
+    /// Largest rise of the mean kinetic temperature, K; includes the work of gravity and of other
+    /// potentials with `with_potentials`.
+    double excess = 0;
     std::string unknown;  // reason why no bound can be computed, e.g. "motions are prescribed";
                           // empty if there is one
 };
@@ -23,8 +24,9 @@ struct Heating {
 /// friction * step / 2. It holds for schemes that drift in halves about an exact thermostat (BAOAB;
 /// Leimkuhler & Matthews, Molecular Dynamics, 2015, ch. 7). The limit for short steps is 1.
 double drift_of_step(DynamicsSpec const&);
-/// Computes the heating of a scene whose integrator has a thermostat with friction. `with_gravity`:
-/// frames do not contain gravity's potential energy, so that its work counts as heating.
-Heating heating_of(Scene const&, bool with_gravity);
+/// Computes the heating of a scene whose integrator has a thermostat with friction.
+/// `with_potentials`: frames do not contain potential energies, so that the work of gravity and of
+/// constant forces counts as heating.
+Heating heating_of(Scene const&, bool with_potentials);
 
 }  // namespace catena

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "observe/observables.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -40,15 +41,11 @@ bool any(std::vector<Vec3> const& values) {
     return std::any_of(values.begin(), values.end(), [](Vec3 const& v) { return norm(v) > 0; });
 }
 
-/// True if no load, damper, drag or prescribed motion changes the energy of a chain.
-bool conserves_energy_of(ChainSpec const& chain) {
-    BodyArrays const& b = chain.bodies;
-    if (any(b.torque) || any(b.damping) || !b.driven.empty()) return false;
-    if (std::any_of(b.wrench.begin(), b.wrench.end(),
-                    [](auto const& w) { return norm(w.first) + norm(w.second) > 0; }))
-        return false;
-    return std::none_of(b.drag.begin(), b.drag.end(),
-                        [](auto const& d) { return d[0] > 0 || d[1] > 0; });
+/// True if no force term or prescribed motion changes the energy of a chain.
+bool conserves_energy_of(Scene const& scene, ChainSpec const& chain) {
+    return chain.bodies.driven.empty() && !terms::any_of([&](auto term) {
+               return term.does_work && decltype(term)::count(scene, chain) > 0;
+           });
 }
 
 /// True if kinetic energy measures the thermostat's temperature. Bodies in SI units that start at
@@ -127,8 +124,8 @@ Fit fit_line(std::vector<double> const& at, std::vector<double> const& values) {
 bool EnergyWatch::conserves_energy(Scene const& scene) {
     if (is_langevin(scene.dynamics.integrator) || is_implicit(scene.dynamics.integrator))
         return false;
-    if (scene.forces.linear_drag > 0 || scene.forces.angular_drag > 0) return false;
-    return std::all_of(scene.chains.begin(), scene.chains.end(), conserves_energy_of);
+    return std::all_of(scene.chains.begin(), scene.chains.end(),
+                       [&](ChainSpec const& chain) { return conserves_energy_of(scene, chain); });
 }
 
 EnergyWatch::EnergyWatch(Scene const& scene)

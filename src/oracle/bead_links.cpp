@@ -3,6 +3,7 @@
 #include "joints/joint_models.hpp"
 #include "oracle/joint.hpp"
 #include "scene/branches.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::oracle {
 
@@ -42,7 +43,8 @@ std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
 
 template <class S>
 V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
-    V3<S> const weight = S(chain.beads.mass[k]) * lift<S>(loads.gravity);
+    V3<S> const weight = S(chain.beads.mass[k]) * lift<S>(loads.gravity) +
+                         lift<S>(terms::constant_wrench(chain, k).second);
     V3<S> const drag = S(loads.linear_drag) * lift<S>(chain.beads.velocity[k]);
     return loads.bead_forces.empty() ? weight - drag
                                      : weight + lift<S>(loads.bead_forces[k]) - drag;

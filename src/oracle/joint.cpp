@@ -6,6 +6,7 @@
 
 #include "error.hpp"
 #include "oracle/rotations.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -149,12 +150,13 @@ void add_bead_forces(CarriedBeads const& beads, std::size_t k, Loads const& load
 
 /// Reads external wrenches, drag, forces on carried beads, and closure errors.
 template <class S>
-void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& links) {
+void read_loads(ChainSpec const& chain, Loads const& loads, std::vector<Link<S>>& links) {
+    BodyArrays const& b = chain.bodies;
     std::vector<Attitude<S>> const attitude = attitudes(links);
     for (std::size_t k = 0; k < links.size(); ++k) {
         Link<S>& link = links[k];
         M3<S> const& r = attitude[k].orientation;
-        auto const wrench = entry(b.wrench, k);
+        auto const wrench = terms::constant_wrench(chain, k);
         auto const drag = b.drag.empty()
                               ? std::array<double, 2>{loads.linear_drag, loads.angular_drag}
                               : b.drag[k];
@@ -329,7 +331,7 @@ std::vector<Link<S>> read_links(ChainSpec const& chain, Loads const& loads) {
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) link.inertia(i, j) = S(b.inertia[k](i, j));
     }
-    read_loads(b, loads, links);
+    read_loads(chain, loads, links);
     return links;
 }
 

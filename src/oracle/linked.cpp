@@ -4,6 +4,7 @@
 
 #include "error.hpp"
 #include "oracle/rotations.hpp"
+#include "terms/force_terms.hpp"
 
 // Link forces of a chain of bodies and beads. They solve T lambda = r, where T is symmetric,
 // positive definite and tridiagonal. A link exerts lambda u on its outboard end and -lambda u on
@@ -19,6 +20,7 @@ LinkedBody<S> read_body(ChainSpec const& chain, Loads const& loads, std::size_t 
     body.mass = S(b.mass[k]);
     body.bead = b.is_bead(k);
     body.force = body.mass * lift<S>(loads.gravity) - S(loads.linear_drag) * lift<S>(b.velocity[k]);
+    body.force = body.force + lift<S>(terms::constant_wrench(chain, k).second);
     if (!loads.wrenches.empty()) body.force = body.force + lift<S>(loads.wrenches[k].second);
     body.orientation = body.bead ? M3<S>::identity() : matrix(unit<S>(b.orientation[k]));
     body.torque = body.omega = V3<S>::zero();

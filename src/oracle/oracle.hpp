@@ -12,7 +12,8 @@
 
 namespace catena::oracle {
 
-/// Loads on a chain in addition to the wrenches, torques, springs and dampers of its ChainSpec.
+/// Loads on a chain in addition to the constant wrenches, torques, springs and dampers of its
+/// ChainSpec.
 struct Loads {
     Vec3 gravity = Vec3::zero();  // W
     /// Forces on beads, W, one per bead (bodies and linked chains: one per carried bead, in order).

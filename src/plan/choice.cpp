@@ -10,6 +10,7 @@
 #include "mpi/first_rank.hpp"
 #include "plan/cache.hpp"
 #include "scene/branch_limits.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::plan {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
     if (scene.solver.refine > 0) return "refinement computes residuals on the host";
-    return scene::why_host_alone(scene);
+    return terms::why_host_alone(scene);
 }
 /// True if OpenMM is free to use the GPU for its forces, so that beads could stay there between
 /// OpenMM and the solver.

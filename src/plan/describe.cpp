@@ -12,11 +12,6 @@
 namespace catena::command {
 namespace {
 
-/// True if one of the numbers is not zero.
-bool any(double const* values, int count) {
-    return std::any_of(values, values + count, [](double v) { return v != 0; });
-}
-
 /// Returns the name of the chain's kind of handles.
 char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
 
@@ -68,40 +63,24 @@ Json chains_json(Scene const& scene) {
     return list;
 }
 
-ForcesOnJoints forces_on_joints(Scene const& scene) {
-    ForcesOnJoints found;
-    for (ChainSpec const& chain : scene.chains) {
-        BodyArrays const& b = chain.bodies;
-        bool const everywhere = scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0;
-        found.motions += std::ssize(b.driven);
-        if (b.drag.empty() && everywhere) found.drag += std::ssize(b.mass);
-        for (auto const& drag : b.drag) found.drag += any(drag.data(), 2);
-        for (Vec3 const& v : b.stiffness) found.springs += any(v.data, 3);
-        for (Vec3 const& v : b.damping) found.dampers += any(v.data, 3);
-        for (Vec3 const& v : b.torque) found.torques += any(v.data, 3);
-        for (auto const& [torque, force] : b.wrench)
-            found.wrenches += any(torque.data, 3) || any(force.data, 3);
-    }
-    return found;
+std::vector<terms::TermCount> loads_of(Scene const& scene) {
+    std::vector<terms::TermCount> all = terms::counts(scene);
+    terms::TermCount driven{"motions", "prescribed motions", "joint", "joints", true, 0};
+    for (ChainSpec const& chain : scene.chains) driven.count += std::ssize(chain.bodies.driven);
+    all.insert(std::find_if(all.begin(), all.end(),
+                            [](terms::TermCount const& each) { return !each.on_joints; }),
+               driven);
+    return all;
 }
 
-std::string forces_text(ForcesOnJoints const& found) {
+std::string loads_text(Scene const& scene) {
     std::string text;
-    auto const add = [&](std::int64_t count, char const* what, char const* one, char const* many) {
-        if (count > 0)
-            text += fmt::format("{}{} on {}", text.empty() ? "" : ", ", what,
-                                counted(count, one, many));
-    };
-    add(found.springs, "springs", "joint", "joints");
-    add(found.dampers, "dampers", "joint", "joints");
-    add(found.torques, "torques", "joint", "joints");
-    add(found.motions, "prescribed motions", "joint", "joints");
-    add(found.wrenches, "wrenches", "body", "bodies");
-    add(found.drag, "drag", "body", "bodies");
+    for (terms::TermCount const& each : loads_of(scene))
+        if (each.count > 0)
+            text += fmt::format("{}{} on {}", text.empty() ? "" : ", ", each.text,
+                                counted(each.count, each.on_one, each.on_many));
     return text.empty() ? "none" : text;
 }
-
-std::string vector_text(Vec3 const& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
 
 char const* time_unit(Scene const& scene) { return scene.si ? "s" : "ps"; }
 char const* energy_unit(Scene const& scene) { return scene.si ? "J" : "kJ/mol"; }
@@ -116,7 +95,7 @@ std::string dynamics_text(Scene const& scene) {
         text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction,
                             time_unit(scene), d.seed);
     if (d.tolerance > 0) text += fmt::format(", inner steps to tolerance {:g}", d.tolerance);
-    if (d.fixman) text += fmt::format(", Fixman potential at {} K", d.temperature);
+    terms::for_each([&](auto term) { text += decltype(term)::dynamics_text(scene); });
     return text;
 }
 

@@ -9,6 +9,7 @@
 #include "console/text.hpp"
 #include "integrate/step_limit.hpp"
 #include "scene/scene.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::command {
 
@@ -19,15 +20,11 @@ Table chain_table(Scene const&);
 /// Returns [{"name", "bodies", "kind", "base"}] for every chain, with "tip" if the tip is jointed.
 Json chains_json(Scene const&);
 
-/// Numbers of joints, and for wrenches and drag of bodies, on which each kind of load acts.
-struct ForcesOnJoints {
-    std::int64_t springs = 0, dampers = 0, torques = 0, motions = 0, wrenches = 0, drag = 0;
-};
-ForcesOnJoints forces_on_joints(Scene const&);
+/// Numbers of joints, bodies or beads on which each force term acts (terms::counts()), and of
+/// joints with prescribed motion, which follow the terms on joints.
+std::vector<terms::TermCount> loads_of(Scene const&);
 /// Returns for example "springs on 2 joints, ..."; "none" if nothing acts.
-std::string forces_text(ForcesOnJoints const&);
-/// Returns "[x, y, z]".
-std::string vector_text(Vec3 const&);
+std::string loads_text(Scene const&);
 
 /// Returns for example "g-baoab, 5000 steps of 0.01 ps (50 ps), ...".
 std::string dynamics_text(Scene const&);

@@ -94,7 +94,7 @@ std::function<double(std::int64_t)> following(Family const& family) {
 /// Collects the computations that are left out.
 class List {
   public:
-    explicit List(ForcesOnJoints const& found) : found_(found) {}
+    explicit List(Scene const& scene) : scene_(scene) {}
     void add(std::string const& text, std::size_t share = 0,
              std::function<double(std::int64_t)> const& takes = {}) {
         lines_.push_back({text, share, takes});
@@ -109,13 +109,16 @@ class List {
     /// Adds what chains of rigid bodies do without.
     void add_bodies(ChainGroup const& group, Family const& family, std::size_t share) {
         if (group.axes == Axes::joint) {
-            if (!group.has_tips() && !group.carried_in_scene && found_.drag == 0) {
+            if (!group.has_tips() && !group.carried_in_scene &&
+                !some_acts([](auto term) { return term.uses_positions; })) {
                 add("positions and linear velocities of bodies: nothing in the scene depends on "
                     "them; computed for output and energies only",
-                    share, change_of(family, [](Scene& scene, std::size_t) {
-                        scene.forces.linear_drag = 1e-6;
+                    share, change_of(family, [](Scene& scene, std::size_t n) {
+                        terms::for_each([&](auto term) {
+                            if (term.uses_positions) decltype(term)::put(scene, n);
+                        });
                     }));
-                if (found_.wrenches == 0)
+                if (!some_acts([](auto term) { return term.uses_orientations; }))
                     add("orientations of all bodies but the first of each chain: nothing in the "
                         "scene acts along ground axes; computed for output only");
             }
@@ -148,21 +151,20 @@ class List {
             return family.linked ? std::function<double(std::int64_t)>()
                                  : change_of(family, change);
         };
-        Vec3 const ones{{1, 1, 1}};
-        if (found_.springs == 0)
-            add("joint springs: there are none", share, on_all([ones](Scene& s, std::size_t n) {
-                    s.chains[0].bodies.stiffness.assign(n, ones);
-                }));
-        if (found_.dampers == 0)
-            add("joint dampers: there are none", share, on_all([ones](Scene& s, std::size_t n) {
-                    s.chains[0].bodies.damping.assign(n, ones);
-                }));
-        if (found_.wrenches == 0)
-            add("external wrenches: there are none", share, on_all([ones](Scene& s, std::size_t n) {
-                    s.chains[0].bodies.wrench.assign(n, {ones, ones});
-                }));
+        terms::for_each([&](auto term) {
+            using Term = decltype(term);
+            if constexpr (Term::saving != nullptr)
+                if (!terms::acts_in<Term>(scene_))
+                    add(std::string(Term::saving) + ": there are none", share, on_all(&Term::put));
+        });
     }
-    ForcesOnJoints found_;
+    /// True if a term with the property acts.
+    template <class Property>
+    bool some_acts(Property const& property) const {
+        return terms::any_of(
+            [&](auto term) { return property(term) && terms::acts_in<decltype(term)>(scene_); });
+    }
+    Scene const& scene_;
     std::vector<Savings> lines_;
 };
 
@@ -187,7 +189,7 @@ double seconds_without(Family const& family, std::int64_t bodies) {
 }  // namespace
 
 std::vector<Savings> left_out(Scene const& scene, ChainSystem const& system) {
-    List list(forces_on_joints(scene));
+    List list(scene);
     bool const full_handles = carries_all(scene.solver.handles);
     std::vector<plan::Share> const shares =
         plan::shares_of(scene, axes_of(system), system.communicator().size());

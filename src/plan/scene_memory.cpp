@@ -1,5 +1,6 @@
 // Estimates the memory of a scene from the sizes of the arrays on one rank.
 #include <algorithm>
+#include <span>
 
 #include "dca/articulated.hpp"
 #include "dca/simd/side_by_side.hpp"
@@ -8,6 +9,7 @@
 #include "plan/describe.hpp"
 #include "scene/branch_limits.hpp"
 #include "scene/freedom.hpp"
+#include "terms/force_terms.hpp"
 #include "tree/branches.hpp"
 
 namespace catena::command {
@@ -113,13 +115,15 @@ double scene_bytes(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
     double const bead = sizeof(double) * 8 + sizeof(std::string),
                  body = sizeof(double) * (1 + 3 + 6 + 3 + 9 + 3 + 4 + 3) + 1;
-    double const loads =
-        sizeof(double) *
-        (3.0 * static_cast<double>(b.torque.size() + b.stiffness.size() + b.damping.size()) +
-         4.0 * static_cast<double>(b.rest.size()) + 6.0 * static_cast<double>(b.wrench.size()));
+    double loads = 0;
+    terms::for_each_column([&](auto const& column) {
+        std::span const values = b.*column.values;
+        loads += static_cast<double>(values.size_bytes());
+    });
+    for (TermNumbers const& each : chain.term_numbers)
+        loads += sizeof(double) * static_cast<double>(each.values.size());
     double const more = sizeof(double) * (3.0 * static_cast<double>(b.first_axis.size()) +
-                                          static_cast<double>(b.pitch.size()) +
-                                          2.0 * static_cast<double>(b.drag.size()));
+                                          static_cast<double>(b.pitch.size()));
     double const linked = sizeof(double) * (1 + 6 + 6 + 4 + 3 + 6 + 1);
     double const carried = sizeof(double) * 4 + sizeof(std::string);
     return sizeof(std::int64_t) * static_cast<double>(chain.parent.size()) +

@@ -31,6 +31,7 @@
 #include "scene/files.hpp"
 #include "scene/freedom.hpp"
 #include "structure/residue_names.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::scene {
 
@@ -287,8 +288,10 @@ class ChainReader {
         } else if (source_.kind == Node::Kind::map) {
             request_.allow("rigid bodies", {});
             Node const& file = Fields(source_, keys::hdf5).need("hdf5", "hdf5: chain.h5");
-            chain.bodies =
+            ChainSpec made =
                 read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
+            chain.bodies = std::move(made.bodies);
+            chain.term_numbers = std::move(made.term_numbers);
         } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
             velocities = explicit_beads(request_, source_, chain);
         } else if (kind == BodyList::linked) {
@@ -300,12 +303,12 @@ class ChainReader {
             velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});
-            ForceSpec const& forces = request_.scene.forces;
-            ExplicitBodies made =
-                read_bodies(source_, request_.base, {forces.linear_drag, forces.angular_drag});
+            ExplicitBodies made = read_bodies(source_, request_.base);
             chain.bodies = std::move(made.bodies);
             if (made.planar) planar = made.planar;
         }
+        if (source_.key == "bodies" && source_.kind == Node::Kind::list)
+            terms::read_bodies(source_, request_.scene.forces, chain);
         // No bead of a branched chain is known to be the end of a protein.
         if (chain.is_branched()) request_.protein_ends = {false, false};
         join_tip(chain, tip_, request_);

@@ -14,6 +14,7 @@
 #include "generate/cells.hpp"
 #include "generate/start_fit.hpp"
 #include "keys/maps.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::scene {
 
@@ -40,7 +41,7 @@ class LinkedReader {
                     fail(*extra,
                          fmt::format("key `{}` does not apply to a point bead on a link", key),
                          "leave it out or give `inertia`");
-        for (char const* const key : {"wrench", "drag"})
+        for (char const* const key : terms::keys_beside({}, {}))
             if (Node const* const extra = item.find(key))
                 fail(*extra, fmt::format("key `{}` does not apply to a chain of links", key),
                      "leave it out");

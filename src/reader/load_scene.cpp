@@ -33,8 +33,8 @@
 #include "reader/validation.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
-#include "scene/hash.hpp"
 #include "scene/node.hpp"
+#include "terms/hash.hpp"
 
 namespace catena {
 

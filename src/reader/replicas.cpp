@@ -13,7 +13,7 @@
 #include "math/cubic_lattice.hpp"
 #include "place/chain_motion.hpp"
 #include "reader/chain_request.hpp"
-#include "scene/hash.hpp"
+#include "terms/hash.hpp"
 
 namespace catena::scene {
 namespace {

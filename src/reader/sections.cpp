@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "bodies/bodies.hpp"
 #include "keys/maps.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/force_changes.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::scene {
 
@@ -268,11 +268,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
 ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::string const& file) {
     Fields const fields(node, keys::forces);
     ForceSpec forces;
-    take(fields, "gravity", forces.gravity, vector3);
-    if (Node const* const drag = fields.find("drag")) {
-        auto const [linear, angular] = read_drag(*drag);
-        forces.linear_drag = linear, forces.angular_drag = angular;
-    }
+    terms::read(fields, forces);
     if (Node const* const openmm = fields.find("openmm"))
         forces.openmm = read_openmm(*openmm, dynamics, si, file);
     return forces;

@@ -15,6 +15,7 @@
 #include "scene/force_changes.hpp"
 #include "scene/freedom.hpp"
 #include "structure/calvados2.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena::scene {
 
@@ -33,35 +34,27 @@ void check_names(std::vector<Draft> const& drafts) {
 std::string const joint_integrators =
     "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`";
 
-/// Throws InputError at the first body whose value acts, as decided by `acts`.
-template <class Value>
-void refuse_at_body(Draft const& draft, std::vector<Value> const& values,
-                    bool (*acts)(Value const&), std::string const& what,
-                    std::string const& remedy) {
-    auto const found = std::find_if(values.begin(), values.end(), acts);
-    if (found != values.end())
-        fail_at(*draft.node, "body", found - values.begin() + 1, what, remedy);
-}
-
-/// Refuses dissipative forces. Absolute coordinates do not support them, and a thermostat does not
-/// compensate them.
+/// Refuses forces that depend on velocities. Absolute coordinates do not support them, and a
+/// thermostat does not compensate them.
 void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft) {
     Integrator const integrator = scene.dynamics.integrator;
     std::string const under = fmt::format(" with integrator {}", name_of(integrator));
     std::string const thermostat =
         name_of(is_langevin(integrator) ? integrator : Integrator::g_baoab);
-    BodyArrays const& bodies = draft.chain.bodies;
-    refuse_at_body<Vec3>(
-        draft, bodies.damping, [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; },
-        "joint damping" + under,
-        joint_integrators + ", or set `damping: 0` (" + thermostat + " has `friction`)");
-    if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
-        fail(*root.find("forces")->find("drag"), "drag" + under,
-             joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
-    refuse_at_body<std::array<double, 2>>(
-        draft, bodies.drag, [](std::array<double, 2> const& d) { return d[0] != 0 || d[1] != 0; },
-        "drag" + under,
-        joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
+    terms::for_each([&](auto term) {
+        using Term = decltype(term);
+        if constexpr (Term::depends_on_velocities) {
+            if (Term::count(scene, draft.chain) == 0) return;
+            std::string const what = Term::in_messages + under,
+                              remedy = fmt::format("{}, or {} ({} has `friction`)",
+                                                   joint_integrators, Term::remedy, thermostat);
+            for (std::size_t k = 0; k < draft.chain.size(); ++k)
+                if (Term::acts_on(draft.chain, k))
+                    fail_at(*draft.node, "body", static_cast<std::int64_t>(k) + 1, what, remedy);
+            if constexpr (Term::scene_key != nullptr)
+                fail(*root.find("forces")->find(Term::scene_key), what, remedy);
+        }
+    });
 }
 
 /// Checks that springs and dampers add a well-conditioned inertia along all coordinates of a joint,
@@ -158,14 +151,19 @@ void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& d
         fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
 }
 
-/// Refuses drag in scenes with links. Drag acts on rigid bodies; silence about the others would be
+/// Refuses forces for all bodies that do not act on links: silence about the others would be
 /// misleading.
-void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
-    if (scene.forces.linear_drag == 0 && scene.forces.angular_drag == 0) return;
+void check_forces(Node const& root, Scene const& scene, Draft const& draft) {
     if (!draft.chain.is_beads() && !draft.chain.is_linked()) return;
-    fail(*root.find("forces")->find("drag"),
-         fmt::format("drag on chain `{}`, which has links", shown(draft.chain.name)),
-         "leave it out: g-baoab has `friction`");
+    terms::for_each([&](auto term) {
+        using Term = decltype(term);
+        if constexpr (Term::scene_key != nullptr && !Term::on_links)
+            if (Term::is_everywhere(scene.forces))
+                fail(*root.find("forces")->find(Term::scene_key),
+                     fmt::format("{} on chain `{}`, which has links", Term::in_messages,
+                                 shown(draft.chain.name)),
+                     "leave it out: g-baoab has `friction`");
+    });
 }
 
 /// Checks that thermal velocities can be drawn for the chain.
@@ -304,7 +302,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         // Copies of one entry have the same properties.
         if (previous && previous->node == draft.node) continue;
         previous = &draft;
-        check_drag(root, scene, draft);
+        check_forces(root, scene, draft);
         check_handles(root, scene, draft, branched);
         if (scene.dynamics.given) check_integrator(root, scene, draft);
         check_fixman(root, scene.dynamics, draft);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/output.hpp"
-#include "scene/deciding.hpp"
+#include "terms/deciding.hpp"
 
 namespace catena {
 

@@ -13,7 +13,7 @@
 #include "io/output.hpp"
 #include "observe/run_verdict.hpp"
 #include "run/simulation.hpp"
-#include "scene/deciding.hpp"
+#include "terms/deciding.hpp"
 
 namespace catena {
 

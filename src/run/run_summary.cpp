@@ -12,6 +12,7 @@
 #include "run/force_summary.hpp"
 #include "scene/alike_chains.hpp"
 #include "systems/charges.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 namespace {
@@ -51,7 +52,7 @@ Json system_of(Scene const& scene) {
     for (ChainSpec const& chain : scene.chains)
         beads += static_cast<std::int64_t>(chain.bead_count());
     Json system{{"description", scene::chains_text(scene)},
-                {"forces", scene::forces_text(scene)},
+                {"forces", terms::forces_text(scene)},
                 {"chains", scene.chains.size()},
                 {"bodies", scene.bodies()},
                 {"beads", beads},

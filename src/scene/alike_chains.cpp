@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <string_view>
 
 #include "scene/freedom.hpp"
@@ -35,13 +34,6 @@ std::string text_of(Scene const& scene, AlikeChains const& run) {
     return text + (run.count == 1 ? fmt::format(" ({})", name)
                                   : fmt::format(" ({} to {})", name,
                                                 scene.name_in_file(run.first + run.count - 1)));
-}
-
-std::string text_of(OpenMmSpec const& openmm) {
-    if (openmm.builder.empty())
-        return "OpenMM System " + std::filesystem::path(openmm.system).filename().string();
-    return fmt::format("{} at {} K and {} mol/l", openmm.builder, openmm.temperature,
-                       openmm.ionic_strength);
 }
 
 }  // namespace
@@ -78,18 +70,6 @@ std::string chains_text(Scene const& scene) {
     if (runs.size() > most_named)
         text += fmt::format("; {} other chains", scene.chains_a_replica() - runs[most_named].first);
     if (scene.replicas > 1) text += fmt::format("; {} replicas", scene.replicas);
-    return text;
-}
-
-std::string forces_text(Scene const& scene) {
-    std::string text;
-    auto const add = [&](std::string const& part) { text += (text.empty() ? "" : ", ") + part; };
-    ForceSpec const& forces = scene.forces;
-    if (forces.openmm) add(text_of(*forces.openmm));
-    if (norm(forces.gravity) > 0)
-        add(fmt::format("gravity [{}, {}, {}]", forces.gravity[0], forces.gravity[1],
-                        forces.gravity[2]));
-    if (forces.linear_drag > 0 || forces.angular_drag > 0) add("drag");
     return text;
 }
 

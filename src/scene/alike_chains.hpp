@@ -26,8 +26,5 @@ std::string tip_name(ChainSpec const&);
 /// once, and long lists end with a count. Chains of a replica count once: "1 chain of 140 beads
 /// (asyn); 256 replicas".
 std::string chains_text(Scene const&);
-/// Returns what acts on the chains in words: the force model of OpenMM, gravity and drag; empty if
-/// nothing does.
-std::string forces_text(Scene const&);
 
 }  // namespace catena::scene

@@ -31,12 +31,6 @@ bool has_branches(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(), branches);
 }
 
-std::string why_host_alone(Scene const& scene) {
-    std::string const why = scene.dynamics.why_host_alone();
-    if (!why.empty() || !has_branches(scene)) return why;
-    return "branched chains are computed on the host";
-}
-
 void refuse_unsupported_branches(Scene const& scene, std::int64_t ranks) {
     for (ChainSpec const& chain : scene.chains)
         if (branches(chain)) refuse_parts(scene, chain);

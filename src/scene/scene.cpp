@@ -41,13 +41,6 @@ char const* name_of(JointType type) {
     return with_joint(type, [](auto model) { return decltype(model)::name; });
 }
 
-std::string DynamicsSpec::why_host_alone() const {
-    if (fixman) return "the Fixman force is computed on the host";
-    if (given && !traits_of(integrator).on_gpu)
-        return std::string("integrator ") + name_of(integrator) + " works on the host";
-    return "";
-}
-
 char const* name_of(Backend backend) {
     switch (backend) {
         case Backend::automatic:

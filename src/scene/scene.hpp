@@ -179,6 +179,13 @@ struct BeadArrays {
     std::size_t size() const { return mass.size(); }
 };
 
+/// Numbers that a force term without arrays of its own keeps for each body of a chain.
+struct TermNumbers {
+    std::string term;  // Name of the term (src/terms).
+    int width = 0;     // Numbers per body.
+    std::vector<double> values;
+};
+
 /// One chain. Exactly one of `beads`, `bodies` and `linked` is filled. `count: N` in a scene yields
 /// N such chains.
 struct ChainSpec {
@@ -198,6 +205,8 @@ struct ChainSpec {
     /// Chain identifiers and residue numbers of the beads, for topology files; empty unless a
     /// structure file gives them.
     Members members = {};
+    /// Numbers by term and body; a term that acts on no body is absent.
+    std::vector<TermNumbers> term_numbers = {};
 
     bool is_beads() const { return beads.size() > 0; }
     bool is_linked() const { return linked.size() > 0; }
@@ -276,9 +285,6 @@ struct DynamicsSpec {
     /// True if the scene gives the number of steps. It tells `steps: 0`, a single frame, from a
     /// missing key.
     bool has_steps = false;
-
-    /// Returns the reason that excludes GPUs, or an empty string if a GPU can run these dynamics.
-    std::string why_host_alone() const;
 };
 
 /// Implementation of the solver; inputs/keys/solver.md describes each.

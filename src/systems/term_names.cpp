@@ -4,6 +4,7 @@
 
 #include "scene/node.hpp"
 #include "systems/model.hpp"
+#include "terms/force_terms.hpp"
 
 namespace catena {
 
@@ -63,8 +64,8 @@ std::string shown_name(OpenMM::Force const& force) {
 
 std::vector<std::string> term_names(OpenMM::System const& system, std::vector<int> const& forces) {
     std::vector<std::string> names;
-    std::vector<std::string> taken{"potential", "kinetic", "total", "gravity",
-                                   "springs",   "fixman"};  // columns that the run itself writes
+    std::vector<std::string> taken = terms::names_of_energies();  // columns of the run itself
+    taken.insert(taken.end(), {"potential", "kinetic", "total"});
     for (int const i : forces) {
         std::string const name = shown_name(system.getForce(i));
         std::string unique = name;

@@ -83,9 +83,9 @@ TEST(PeerAnswers, ChainsThatTheTableCannotHoldAreNotAskedAbout) {
     EXPECT_EQ(not_for_peers(scene), "joints neither revolute nor spherical");
     scene = case_of("coil", "16 bodies").scene(1);
     scene.chains[0].bodies.drag.assign(16, {0, 0.5});
-    EXPECT_EQ(not_for_peers(scene), "driven joints or drag");
+    EXPECT_EQ(not_for_peers(scene), "forces that they lack (drag)");
     scene.forces.linear_drag = 1;
-    EXPECT_EQ(not_for_peers(scene), "not a single chain without drag and OpenMM");
+    EXPECT_EQ(not_for_peers(scene), "not a single chain");
 }
 
 PeerProgram made_up(std::string const& name, std::string const& script) {

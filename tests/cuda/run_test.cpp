@@ -2,6 +2,7 @@
 #include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "reader/load_scene.hpp"
+#include "terms/force_terms.hpp"
 #include "tests/run/whole_run.hpp"
 #include "tests/support/gpu.hpp"
 
@@ -13,8 +14,7 @@ class GpuRun : public WholeRun {
     void SetUp() override { need_gpu(catena::testing::world()); }
     /// Whether the scene is one for the host, which then refuses the GPU in one line.
     bool is_refused(Backend backend) {
-        if (parse_scene(GetParam().text, "scene.yaml").dynamics.why_host_alone().empty())
-            return false;
+        if (terms::why_host_alone(parse_scene(GetParam().text, "scene.yaml")).empty()) return false;
         try {
             run(catena::testing::world(), "refused", 40, "", backend);
             ADD_FAILURE() << "not refused";

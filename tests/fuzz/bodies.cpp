@@ -12,7 +12,8 @@ void catena::fuzz::read(std::string_view bytes) {
     NamedFile const file(bytes);
     try {
         BodyArrays const bodies =
-            scene::read_hdf5_bodies(file.path(), bytes.size() % 2 == 0 ? Base::fixed : Base::free);
+            scene::read_hdf5_bodies(file.path(), bytes.size() % 2 == 0 ? Base::fixed : Base::free)
+                .bodies;
         require(!bodies.mass.empty() && bodies.inertia.size() == bodies.mass.size() &&
                 bodies.joint.size() == bodies.mass.size());
     } catch (InputError const&) {

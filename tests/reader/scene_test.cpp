@@ -5,7 +5,7 @@
 #include <map>
 
 #include "reader/load_scene.hpp"
-#include "scene/deciding.hpp"
+#include "terms/deciding.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/reader/refusal.hpp"
 

@@ -53,9 +53,10 @@ class JointDynamicsIn final : public JointDynamics {
           tip_(tips_at_start(group, scene, communicator)),
           reach_(reach_of(group, scene)),
           has_wrenches_(given_.wrenches || group.carried_beads() > 0),
-          has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
-          needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
-          needs_orientations_(given_.wrenches || needs_positions_),
+          has_forces_(has_wrenches_ || given_.act_on_bodies() ||
+                      (given_.joint_loads && group.has_screws)),
+          needs_positions_(given_.use_positions() || group.has_tips() || group.carried_in_scene),
+          needs_orientations_(given_.use_orientations() || needs_positions_),
           eliminates_revolute_joints_(solver_->eliminates_revolute_joints()),
           in_run_(eliminates_revolute_joints_ ? revolutes_in_runs(group)
                                               : std::vector<std::uint8_t>{}),
@@ -469,7 +470,7 @@ class JointDynamicsIn final : public JointDynamics {
     /// True if the gyroscopic torque is the only torque on bodies, on any rank, so that the solver
     /// can compute it.
     bool leaves_torques() const {
-        return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged &&
+        return leaves_loads_ && !given_.joint_loads && !given_.act_on_bodies() &&
                !group_.carried_in_scene;
     }
     /// True if ranks may call follow_revolutes(), that is, if no load depends on positions. All

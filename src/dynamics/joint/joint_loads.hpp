@@ -117,6 +117,16 @@ struct JointLoads {
     CATENA_HD Vec3At<Place> omega(Place k) const {
         return read(scan.motion.omega, k);
     }
+    /// Velocity of the inboard end of body k, B.
+    template <class Place>
+    CATENA_HD Vec3At<Place> velocity(Place k) const {
+        return read(scan.motion.velocity, k);
+    }
+    /// Numbers that a force term has for body k.
+    template <int D, class Place>
+    CATENA_HD auto load(ConstView<D> const& field, Place k) const {
+        return read(field, k);
+    }
     /// Handle 1 of body k from its centre of mass, B.
     template <class Place>
     CATENA_HD Vec3At<Place> r1(Place k) const {
@@ -172,37 +182,18 @@ struct JointLoads {
     CATENA_HD void set_joint_load(Place k) const {
         using Real = RealAt<Place>;
         if (drive_of(k)) return write(joint_load, k, Vector<Real, 4>::zero());
-        Vec3At<Place> along = read(given.torque, k);
         Vec3At<Place> qd = read(scan.state.qd, k);
         if constexpr (is_one_body<Place>)
             if (implicit.has(k)) qd = implicit.start.load(k);
-        auto const q = read(scan.state.q, k);
-        if (given.springs) {
-            auto const stiffness = read(given.stiffness, k);
-            auto const rest = read(given.rest, k);
-            if (!is_ball(joints().type(k))) {
-                for (int i = 0; i < 3; ++i) along[i] = along[i] - stiffness[i] * (q[i] - rest[i]);
-            } else if constexpr (is_one_body<Place>) {
-                along = along +
-                        spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
-            }
-        }
-        if (given.dampers) {
-            auto const damping = read(given.damping, k);
-            for (int i = 0; i < 3; ++i) along[i] = along[i] - damping[i] * qd[i];
-        }
+        Vec3At<Place> const along =
+            LoadedJoint<Place>{given, k, joints().type(k), read(scan.state.q, k), qd}.along();
         if constexpr (is_one_body<Place>)
             if (implicit.has(k)) return set_implicit(k, along);
         write(joint_load, k, load_along_axes(k, along));
     }
     /// Torque about the axis of a revolute joint that has no prescribed motion and is not implicit.
     CATENA_HD double torque_about_revolute(std::int64_t k) const {
-        double along = given.torque.at(k, 0);
-        if (given.springs)
-            along =
-                along - given.stiffness.at(k, 0) * (scan.state.q.at(k, 0) - given.rest.at(k, 0));
-        if (given.dampers) along = along - given.damping.at(k, 0) * scan.state.qd.at(k, 0);
-        return along;
+        return LoadedAxis{given, k, scan.state.q, scan.state.qd}.along();
     }
     /// Inertia B along coordinate i of joint k.
     CATENA_HD double implicit_inertia(std::int64_t k, int i) const {
@@ -354,11 +345,16 @@ struct JointLoads {
     CATENA_HD void set_biases(Place k) const {
         if (!left.biases || !in_run.has(k)) set_bias(k, rotation(k), joints().axes(k));
     }
+    /// Adds the terms' forces that act on body k in its own axes.
+    template <class Place, class... Terms>
+    CATENA_HD void add_terms(Place k, Vec3At<Place>& moment, Vec3At<Place>& push,
+                             TypeList<Terms...>) const {
+        (Terms::add_on_body(*this, k, moment, push), ...);
+    }
     /// Sets the total torque and force on body k, except joint constraint forces.
     template <class Place>
     CATENA_HD void set_wrench(Place k) const {
         using Vector3 = Vec3At<Place>;
-        Vector3 const w = omega(k);
         // The gyroscopic torque of a planar chain is perpendicular to its axis and has no effect on
         // the motion. It may be large, so that its rounding would have one.
         Vector3 moment = joints().planar ? Vector3::zero() : -gyroscopic_torque(k),
@@ -370,11 +366,7 @@ struct JointLoads {
             moment = moment + transposed_times(axes, outside.torque);
             push = push + transposed_times(axes, outside.force);
         }
-        if (given.dragged) {
-            auto const drag = read(given.drag, k);
-            push = plus_scaled(push, -drag[0], read(scan.motion.velocity, k) - cross(w, r1(k)));
-            moment = plus_scaled(moment, -drag[1], w);
-        }
+        add_terms(k, moment, push, terms::ForceTerms{});
         write(torque, k, moment);
         // Motion across the plane is impossible.
         if (joints().planar && has_forces) {

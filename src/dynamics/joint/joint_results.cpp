@@ -33,6 +33,28 @@ Vec3 JointSolution::outside_force(std::int64_t k) const {
     return given.wrenches ? f + given.wrench_force[k] : f;
 }
 
+/// Bodies of a solution as force terms see them (ForceTerm::add_on_body()).
+struct SolvedBodies {
+    JointSolution const& of;
+    BodyLoads const& given;
+
+    Vec3 omega(std::int64_t k) const { return of.omega.load(k); }
+    Vec3 velocity(std::int64_t k) const { return of.velocity.load(k); }
+    Vec3 r1(std::int64_t k) const { return of.group.r1[k]; }
+    template <int D>
+    Vector<double, D> load(Field<D> const& field, std::int64_t k) const {
+        return field[k];
+    }
+};
+
+Vec3 JointSolution::force_of_terms(std::int64_t k) const {
+    Vec3 moment = Vec3::zero(), push = Vec3::zero();
+    terms::for_each([&](auto term) {
+        decltype(term)::add_on_body(SolvedBodies{*this, given}, k, moment, push);
+    });
+    return push;
+}
+
 BodyResults JointSolution::results(Communicator const& communicator) const {
     BodyResults r;
     for (std::int64_t k = 0; k < group.size; ++k) {
@@ -68,13 +90,10 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
     std::vector<NeededWrench> needed;
     for (std::int64_t k = 0; k < group.size; ++k) {
         Mat3 const to_ground = orientation(k);
-        Vec3 drag = Vec3::zero();
-        if (given.dragged)
-            drag = (-given.drag[k][0]) * (velocity.load(k) - cross(omega.load(k), group.r1[k]));
         Vec3 const needed_force =
             group.mass.view().at(k, 0) *
                 (r.acceleration[static_cast<std::size_t>(k)] - given.gravity) -
-            outside_force(k) - to_ground * drag;
+            outside_force(k) - to_ground * force_of_terms(k);
         Vec3 const moment = to_ground * (as_symmetric(group.inertia[k]) * alpha.load(k) +
                                          gyroscopic_torque(k) - torque.load(k));
         Vec3 const to_next =
@@ -100,23 +119,12 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
 
 PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Field<4> const& q,
                              BodyMotion const& motion) {
-    PotentialEnergy e;
-    for (std::int64_t k = 0; k < group.size; ++k) {
+    return potential_of(given, group.size, [&](std::int64_t k) {
         Vec3 const com =
             motion.origin[k] - to_matrix(as_quaternion(motion.orientation[k])) * group.r1[k];
-        e.gravity.push_back(-group.mass.view().at(k, 0) * dot(given.gravity, com));
-        e.springs.push_back(0.0);
-        if (!given.springs) continue;
-        Vec3 const stiffness = given.stiffness[k];
-        Vector<double, 4> const rest = given.rest[k], at = q[k];
-        if (is_ball(group.joint[k]))
-            e.springs.back() =
-                spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(at));
-        else if (!floats(group.joint[k]))
-            for (int i = 0; i < 3; ++i)
-                e.springs.back() += 0.5 * stiffness[i] * (at[i] - rest[i]) * (at[i] - rest[i]);
-    }
-    return e;
+        return terms::PlacedBody{k, group.mass.view().at(k, 0), com,
+                                 group.joint[static_cast<std::size_t>(k)], q[k]};
+    });
 }
 
 }  // namespace catena

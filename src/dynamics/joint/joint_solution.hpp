@@ -62,6 +62,8 @@ struct JointSolution {
     }
     /// External force on body k, W.
     Vec3 outside_force(std::int64_t k) const;
+    /// Force of the terms that act in the axes of body k, B.
+    Vec3 force_of_terms(std::int64_t k) const;
     /// Forces and moments on one body, by origin.
     struct Terms;
     struct Pair {

@@ -184,8 +184,10 @@ class FollowRevolutes {
     /// Torque about the axes, as JointLoads::set_joint_load computes it.
     Vector<Real, 1> torque(Column k, Vector<Real, 1> const& q, Vector<Real, 1> const& qd) const {
         Real along = read(torque_, k)[0];
-        if (stiffness_.origin) along = along - read(stiffness_, k)[0] * (q[0] - read(rest_, k)[0]);
-        if (damping_.origin) along = along - read(damping_, k)[0] * qd[0];
+        if (stiffness_.origin)
+            along =
+                terms::JointSpring::plus(along, read(stiffness_, k)[0], q[0], read(rest_, k)[0]);
+        if (damping_.origin) along = terms::JointDamper::plus(along, read(damping_, k)[0], qd[0]);
         return {{along}};
     }
     /// Replaces the values in lanes `begin` whose run begins a chain by the stored ones, since a

@@ -7,19 +7,9 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "terms/deciding_value.hpp"
 
 namespace catena::scene {
-
-/// Effect of a changed value on a branch. `fixed`: a branch must keep the value. `start`: the value
-/// belongs to the scene's first state, which a checkpoint replaces. `free`: a branch may change the
-/// value.
-enum class Role { free, fixed, start };
-
-/// One value as text, under its key.
-struct DecidingValue {
-    std::string key, value;  // "dynamics.temperature", "300"; a fingerprint for many numbers
-    Role role = Role::free;
-};
 
 /// Returns everything that enters fingerprint(), dynamics first, chains last. Chains beyond the
 /// first thousand share an entry. Throws InputError if a file named by the scene can no longer be

@@ -1,5 +1,5 @@
 // Implements the list of deciding values and its comparison.
-#include "scene/deciding.hpp"
+#include "terms/deciding.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,28 +8,27 @@
 #include <span>
 #include <utility>
 
-#include "scene/force_changes.hpp"
-#include "scene/hash.hpp"
+#include "terms/force_terms.hpp"
+#include "terms/hash.hpp"
 
 namespace catena::scene {
 namespace {
 
 constexpr std::size_t most_single_chains = 1000;
-constexpr std::size_t longest_list = 200;  // characters
 
 constexpr char const* key_of_replicas = "replicas";
 
 /// Text of the value of a key that a scene lacks.
 std::string absent(std::string const& key) { return key == key_of_replicas ? "1" : "none"; }
 
-using Values = std::vector<DecidingValue>;
+using Values = DecidingValues;
 
-template <class Number>
-void add(Values& values, std::string key, Number const& number, Role role = Role::free) {
-    values.push_back({std::move(key), fmt::format("{}", number), role});
+/// Adds the terms' values for all bodies that stand in this section.
+void add_terms(Values& values, Scene const& scene, terms::Section section) {
+    terms::for_each([&](auto term) {
+        if (decltype(term)::section == section) decltype(term)::decide(scene, values);
+    });
 }
-
-std::string text_of(Vec3 const& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
 
 void add_dynamics(Values& values, DynamicsSpec const& d) {
     if (!d.given) return;
@@ -40,46 +39,6 @@ void add_dynamics(Values& values, DynamicsSpec const& d) {
     add(values, "dynamics.seed", d.seed);
     add(values, "dynamics.constraint_tolerance", d.constraint_tolerance);
     if (d.tolerance > 0) add(values, "dynamics.tolerance", d.tolerance);
-    if (d.fixman) add(values, "dynamics.fixman", d.fixman);
-}
-
-void add_openmm(Values& values, OpenMmSpec const& o) {
-    std::string const at = "forces.openmm.";
-    auto const content = [&](char const* key, std::string const& path) {
-        if (!path.empty()) add(values, at + key, "content " + content_print(path));
-    };
-    if (!o.builder.empty()) add(values, at + "builder", o.builder);
-    content("system", o.system);
-    content(o.builder.empty() ? "topology" : "residues", o.topology);
-    std::vector<std::string> map;
-    for (auto const& [chain, range] : chain_map(o))
-        map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
-    std::string list = fmt::format("{}", fmt::join(map, ", "));
-    if (list.size() > longest_list)
-        list = fmt::format("{} entries {}", map.size(),
-                           text_print(list));  // one line names the difference
-    if (!map.empty()) add(values, at + (o.builder.empty() ? "map" : "charge_termini"), list);
-    add(values, at + "temperature", o.temperature);
-    add(values, at + "ionic_strength", o.ionic_strength);
-    if (o.ph) add(values, at + "ph", *o.ph);
-    add(values, at + "switch_width", o.switch_width);
-    if (!o.force_groups.empty())
-        add(values, at + "force_groups", fmt::format("{}", fmt::join(o.force_groups, ", ")));
-    ForceChanges const changes = changes_of(o);
-    if (!changes.leave_out.empty())
-        add(values, at + "leave_out", fmt::format("{}", fmt::join(changes.leave_out, ", ")));
-    for (auto const& [force, length] : changes.links)
-        add(values, fmt::format("{}links.{}", at, force), length);
-    for (std::size_t i = 0; i < changes.extra.size(); ++i)
-        add(values, fmt::format("{}extra[{}]", at, i),
-            "content " + content_print(changes.extra[i]));
-}
-
-void add_forces(Values& values, ForceSpec const& f) {
-    add(values, "forces.gravity", text_of(f.gravity));
-    add(values, "forces.drag.linear", f.linear_drag);
-    add(values, "forces.drag.angular", f.angular_drag);
-    if (f.openmm) add_openmm(values, *f.openmm);
 }
 
 /// Adds the fingerprints of chains. `holds_start` is true if the ground holds a tip at its start
@@ -113,8 +72,9 @@ void add_chains(Values& values, std::span<ChainSpec const> chains) {
 std::vector<DecidingValue> deciding_values(Scene const& scene) {
     Values values;
     add_dynamics(values, scene.dynamics);
-    add_forces(values, scene.forces);
-    add(values, "box", scene.box ? text_of(*scene.box) : "none");
+    if (scene.dynamics.given) add_terms(values, scene, terms::Section::dynamics);
+    add_terms(values, scene, terms::Section::forces);
+    add(values, "box", scene.box ? terms::vector_text(*scene.box) : "none");
     add(values, "units", scene.si ? "si" : "md", Role::fixed);
     if (scene.replicas > 1) add(values, key_of_replicas, scene.replicas, Role::fixed);
     add_chains(values, scene.chains);

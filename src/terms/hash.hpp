@@ -21,8 +21,5 @@ struct ChainPrints {
     std::string loads, positions, velocities;
 };
 ChainPrints prints_of(std::span<ChainSpec const> chains);
-/// Returns the fingerprint of a file's content. Throws as fingerprint() does.
-std::string content_print(std::string const& path);
-std::string text_print(std::string const& text);
 
 }  // namespace catena::scene

@@ -1,0 +1,35 @@
+// Force terms that act on single beads of a group in absolute coordinates, on the host.
+#pragma once
+
+#include "dca/solver.hpp"
+#include "dynamics/body_loads.hpp"
+
+namespace catena {
+
+/// Force and energy of one term.
+class BeadTerm {
+  public:
+    virtual ~BeadTerm() = default;
+    /// Adds its force on each bead (W) at the configuration of the last assembled matrices.
+    /// Collective.
+    virtual void add_forces(ConfigurationView const&, View<3> force) = 0;
+    /// Sets its energy by bead from the last add_forces(), kJ/mol, unless the beads' positions
+    /// suffice (ForceTerm::energy_of()).
+    virtual void set_energy(PotentialEnergy&) const {}
+};
+
+/// The constant forces of all terms (terms::constant_wrench()).
+class ConstantOnBeads final : public BeadTerm {
+  public:
+    /// `loads` must outlive this object.
+    explicit ConstantOnBeads(BodyLoads const& loads) : loads_(loads) {}
+    void add_forces(ConfigurationView const&, View<3> force) override {
+        for (std::int64_t k = 0; k < force.size; ++k)
+            force.store(k, force.load(k) + loads_.wrench_force[k]);
+    }
+
+  private:
+    BodyLoads const& loads_;
+};
+
+}  // namespace catena
