@@ -4,7 +4,6 @@
 #include <limits>
 #include <sstream>
 
-#include "dynamics/joint/embedded_steps.hpp"
 #include "integrate/checkpoint_values.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
@@ -13,10 +12,31 @@
 namespace catena {
 namespace {
 
+/// Coefficients of RK5(4)7M (Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980). Six stages make
+/// a step of fifth order. The rates after it, which are the first of the next step, complete the
+/// embedded solution of fourth order.
+struct DormandPrince {
+    static constexpr int stages = EmbeddedStage::stages;
+    static constexpr double weight[stages][stages] = {
+        {1.0 / 5, 0, 0, 0, 0, 0},
+        {3.0 / 40, 9.0 / 40, 0, 0, 0, 0},
+        {44.0 / 45, -56.0 / 15, 32.0 / 9, 0, 0, 0},
+        {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0, 0},
+        {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0},
+        {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+    static constexpr double time[stages] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+    /// Weights of the difference of the two orders; the last one belongs to the rates after the
+    /// step.
+    static constexpr double difference[stages + 1] = {
+        71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+};
+
 constexpr double eps = std::numeric_limits<double>::epsilon();
 // Inner steps of one time step, rejected ones included.
 constexpr std::int64_t most_inner_steps = 100000;
 constexpr char const* name_of_state = "inner_step";
+
+constexpr JointOperation save_rates{JointOperator::save};
 
 /// JointIntegrator of the Dormand-Prince pair.
 class DormandPrinceSteps final : public JointIntegrator {
@@ -44,7 +64,7 @@ class DormandPrinceSteps final : public JointIntegrator {
     void prepare() override {
         if (ready_) return make_ghosts(system_);
         solve();
-        for (JointDynamics* const group : groups_) group->carry_rates();
+        for (JointDynamics* const group : groups_) group->apply(save_rates, 0);
         ready_ = true;
     }
 
@@ -55,7 +75,7 @@ class DormandPrinceSteps final : public JointIntegrator {
         for (double done = 0; done < h;) {
             if (done > 0) begin_at(start + done);
             double const left = h - done;
-            for (InnerStep inner;; inner.again = true) {
+            for (InnerStep inner{start + done};; inner.again = true) {
                 if (tries++ == most_inner_steps)
                     refuse(start + done, control_.state().length,
                            "100,000 inner steps are not enough");
@@ -72,7 +92,7 @@ class DormandPrinceSteps final : public JointIntegrator {
                 done = reaches ? h : done + inner.length;
                 break;
             }
-            for (JointDynamics* const group : groups_) group->carry_rates();
+            for (JointDynamics* const group : groups_) group->apply(save_rates, 0);
             ready_ = !has_tips_;
             ++now_.closings;
         }
@@ -96,7 +116,8 @@ class DormandPrinceSteps final : public JointIntegrator {
     /// Computes all stages of an inner step. Returns false if the step is far too long.
     bool advance(InnerStep const& inner) {
         for (int stage = 0; stage < DormandPrince::stages; ++stage) {
-            for (JointDynamics* const group : groups_) group->embedded_stage(stage, inner);
+            EmbeddedStage const s = embedded_stage(stage, inner);
+            for (JointDynamics* const group : groups_) group->apply(s);
             if (tolerance_ > 0 && is_wild(inner.length)) return false;
             solve();
         }
@@ -131,7 +152,7 @@ class DormandPrinceSteps final : public JointIntegrator {
         AllowedErrors const allowed{tolerance_, tolerance_ * reach, {turning, sliding}};
         double worst = 0;
         for (JointDynamics* const group : groups_)
-            worst = larger(worst, group->embedded_error(length, allowed));
+            worst = larger(worst, group->embedded_error(embedded_difference(length), allowed));
         return all.max(worst);
     }
     /// Throws on every rank: all ranks find the same reason.
@@ -154,6 +175,21 @@ class DormandPrinceSteps final : public JointIntegrator {
 };
 
 }  // namespace
+
+EmbeddedStage embedded_stage(int stage, InnerStep const& step) {
+    EmbeddedStage s{
+        stage, step.again && stage == 0, {}, step.start + DormandPrince::time[stage] * step.length};
+    if (DormandPrince::time[stage] == 1) s.time = step.end;
+    for (int i = 0; i <= stage; ++i) s.weight[i] = DormandPrince::weight[stage][i] * step.length;
+    return s;
+}
+
+EmbeddedDifference embedded_difference(double length) {
+    EmbeddedDifference d;
+    for (int i = 0; i <= DormandPrince::stages; ++i)
+        d.weight[i] = DormandPrince::difference[i] * length;
+    return d;
+}
 
 std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem& system, double tolerance,
                                                      double step) {

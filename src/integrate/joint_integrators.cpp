@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "integrate/joint_program.hpp"
+
 namespace catena {
 
 bool has_jointed_tips(Scene const& scene) {
@@ -11,30 +13,19 @@ bool has_jointed_tips(Scene const& scene) {
 }
 
 SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {
-    IntegratorTraits const& traits = traits_of(d.integrator);
-    if (traits.refined) {
-        // The corrections of tips change the state, so the next step cannot take over the last
-        // evaluation.
-        int const evaluations = traits.evaluations + (traits.adaptive && tips ? 1 : 0);
-        return {evaluations, evaluations};
-    }
-    return traits.langevin && d.friction > 0 ? SweepsAStep{2, 3} : SweepsAStep{1, 2};
+    if (!traits_of(d.integrator).adaptive) return program_of(d.integrator, d.friction > 0).sweeps();
+    // The corrections of tips change the state, so the next step cannot take over the last
+    // evaluation.
+    int const evaluations = EmbeddedStage::stages + (tips ? 1 : 0);
+    return {evaluations, evaluations};
 }
 
 std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem& system, DynamicsSpec const& d) {
-    switch (d.integrator) {
-        case Integrator::rk4:
-            return make_runge_kutta4(system);
-        case Integrator::dormand_prince:
-            return make_dormand_prince(system, d.tolerance, d.step);
-        case Integrator::velocity_verlet:
-            return make_velocity_verlet(system);
-        case Integrator::staggered:
-            return make_kicks(system, {});
-        default:
-            return make_kicks(system,
-                              {d.friction, system.scene().boltzmann() * d.temperature, d.seed});
-    }
+    IntegratorTraits const& traits = traits_of(d.integrator);
+    if (traits.adaptive) return make_dormand_prince(system, d.tolerance, d.step);
+    if (!traits.langevin) return make_program(system, program_of(d.integrator, false));
+    return make_program(system, program_of(d.integrator, d.friction > 0),
+                        {d.friction, system.scene().boltzmann() * d.temperature, d.seed});
 }
 
 void make_ghosts(ChainSystem& system) {

@@ -70,7 +70,7 @@ class JointStepper final : public Stepper {
     void save(ChainSystem::OwnState& own) const override {
         if (!integrator_->carries_rates()) return;
         for (JointDynamics const* const group : system_.joint())
-            system_.add_rates(group->group(), group->carried_rates(), own);
+            system_.add_rates(group->group(), group->saved_rates(), own);
     }
     void branch(Checkpoint const& c) override {
         origin_ = number_in(c, array_of_origin, 0);
@@ -83,7 +83,7 @@ class JointStepper final : public Stepper {
         if (integrator_->carries_rates()) {
             std::vector<JointRates> const rates = system_.own_rates(c.arrays);
             std::vector<JointDynamics*> const groups = system_.joint();
-            for (std::size_t g = 0; g < groups.size(); ++g) groups[g]->carry_rates(rates[g]);
+            for (std::size_t g = 0; g < groups.size(); ++g) groups[g]->save_rates(rates[g]);
         }
         integrator_->restored(c);
     }

@@ -174,8 +174,8 @@ constexpr Key openmm_keys[] = {
 
 constexpr Key dynamics_keys[] = {
     {"integrator",
-     "`rk4`, `dormand-prince`, `velocity-verlet`, `staggered`, `baoab`, `implicit-baoab`, "
-     "`rattle`, `g-baoab`, `implicit-g-baoab`",
+     "`rk4`, `dormand-prince`, `velocity-verlet`, `leapfrog`, `staggered`, `baoab`, "
+     "`implicit-baoab`, `rattle`, `g-baoab`, `implicit-g-baoab`",
      "required", "", "One integrator moves all chains of the scene.", "integrator: g-baoab"},
     {"step", "number > 0", "required", "time",
      "A step is this long; with a `tolerance` it is made of shorter inner steps.", "step: 0.01"},

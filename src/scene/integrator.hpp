@@ -13,6 +13,7 @@ enum class Integrator : std::uint8_t {
     rk4,
     dormand_prince,
     velocity_verlet,
+    leapfrog,
     staggered,
     baoab,
     implicit_baoab,
@@ -37,8 +38,6 @@ struct IntegratorTraits {
     /// True if a step consists of whole evaluations, whose solutions are refined `solver.refine`
     /// times. The other integrators solve more than once with one matrix.
     bool refined;
-    /// Evaluations per step of a refined integrator; 0 for others.
-    int evaluations;
     /// True if a step has an error estimate, which may choose its length. Such a step takes over
     /// the last evaluation of the step before.
     bool adaptive;
@@ -57,18 +56,19 @@ struct IntegratorTraits {
 };
 
 /// One row per integrator, in the order of the enumeration.
-inline constexpr std::array<IntegratorTraits, 9> integrators{{
+inline constexpr std::array<IntegratorTraits, 10> integrators{{
     // clang-format off
-    // kind                        name                code order stability joint  refined evaluations adaptive langevin implicit on_gpu rotor
-    {Integrator::rk4,              "rk4",              0,   4,    2.8284,   true,  true,   4,          false,   false,   false,   true,  2.0},
-    {Integrator::dormand_prince,   "dormand-prince",   8,   5,    3.3,      true,  true,   6,          true,    false,   false,   true,  2.0},
-    {Integrator::velocity_verlet,  "velocity-verlet",  3,   2,    2.0,      true,  true,   1,          false,   false,   false,   true,  2.0},
-    {Integrator::staggered,        "staggered",        4,   2,    2.0,      true,  false,  0,          false,   false,   true,    false, 0.5},
-    {Integrator::baoab,            "baoab",            5,   2,    2.0,      true,  false,  0,          false,   true,    false,   false, 2.0},
-    {Integrator::implicit_baoab,   "implicit-baoab",   6,   2,    2.0,      true,  false,  0,          false,   true,    true,    false, 2.0},
-    {Integrator::rattle,           "rattle",           1,   2,    2.0,      false, false,  0,          false,   false,   false,   true,  2.0},
-    {Integrator::g_baoab,          "g-baoab",          2,   2,    2.0,      false, false,  0,          false,   true,    false,   true,  2.0},
-    {Integrator::implicit_g_baoab, "implicit-g-baoab", 7,   2,    2.0,      false, false,  0,          false,   true,    true,    false, 2.0},
+    // kind                        name                code order stability joint  refined adaptive langevin implicit on_gpu rotor
+    {Integrator::rk4,              "rk4",              0,   4,    2.8284,   true,  true,   false,   false,   false,   true,  2.0},
+    {Integrator::dormand_prince,   "dormand-prince",   8,   5,    3.3,      true,  true,   true,    false,   false,   true,  2.0},
+    {Integrator::velocity_verlet,  "velocity-verlet",  3,   2,    2.0,      true,  true,   false,   false,   false,   true,  2.0},
+    {Integrator::leapfrog,         "leapfrog",         9,   2,    2.0,      true,  false,  false,   false,   false,   true,  2.0},
+    {Integrator::staggered,        "staggered",        4,   2,    2.0,      true,  false,  false,   false,   true,    false, 0.5},
+    {Integrator::baoab,            "baoab",            5,   2,    2.0,      true,  false,  false,   true,    false,   false, 2.0},
+    {Integrator::implicit_baoab,   "implicit-baoab",   6,   2,    2.0,      true,  false,  false,   true,    true,    false, 2.0},
+    {Integrator::rattle,           "rattle",           1,   2,    2.0,      false, false,  false,   false,   false,   true,  2.0},
+    {Integrator::g_baoab,          "g-baoab",          2,   2,    2.0,      false, false,  false,   true,    false,   true,  2.0},
+    {Integrator::implicit_g_baoab, "implicit-g-baoab", 7,   2,    2.0,      false, false,  false,   true,    true,    false, 2.0},
     // clang-format on
 }};
 

@@ -49,7 +49,8 @@ void expect_the_bits_of_the_hosts(Scene const& scene, bool sweeps, bool scans) {
     std::vector<double> last;
     for (int i = 0; i < 2 * times; ++i) {
         for (ChainSystem* const system : {&direct, &host}) {
-            for (auto const& chains : system->joint()) chains->verlet_move(0.01);
+            for (auto const& chains : system->joint())
+                chains->apply({JointOperator::drift_saved}, 0.01);
             system->evaluate(i < times);
         }
         std::vector<double> const found = solution_of(direct).acceleration;

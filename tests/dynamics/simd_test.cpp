@@ -12,6 +12,7 @@
 #include "kinematics/joint_kinematics.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/mpi/world.hpp"
+#include "tests/support/integrators.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "dynamics/joint/embedded_steps.hpp"
 #include "error.hpp"
+#include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
 #include "integrate/stepper.hpp"
 #include "reader/load_scene.hpp"
@@ -165,23 +165,24 @@ TEST(Adaptive, RejectedStepsLeaveNoTrace) {
                 Scene const scene = swinging(joints, base);
                 ChainSystem system(scene, Axes::joint, *communicator);
                 system.solve_joint_groups();
-                for (JointDynamics* const group : system.joint()) group->carry_rates();
+                for (JointDynamics* const group : system.joint())
+                    group->apply({JointOperator::save}, 0);
                 auto const step = [&](InnerStep const& s) {
-                    for (int stage = 0; stage < DormandPrince::stages; ++stage) {
+                    for (int stage = 0; stage < EmbeddedStage::stages; ++stage) {
                         for (JointDynamics* const group : system.joint())
-                            group->embedded_stage(stage, s);
+                            group->apply(embedded_stage(stage, s));
                         system.solve_joint_groups();
                     }
                 };
                 if (rejected) {
-                    step({0.3, 0.3, false});
-                    step({0.1, 0.1, true});
+                    step({0, 0.3, 0.3, false});
+                    step({0, 0.1, 0.1, true});
                 }
-                step({0.01, 0.01, rejected});
+                step({0, 0.01, 0.01, rejected});
                 auto arrays = system.state();
                 for (JointDynamics* const group : system.joint())
-                    arrays["error"].push_back(
-                        group->embedded_error(0.01, {1e-6, 1e-6, {1e-6, 1e-6}}));
+                    arrays["error"].push_back(group->embedded_error(embedded_difference(0.01),
+                                                                    {1e-6, 1e-6, {1e-6, 1e-6}}));
                 return arrays;
             };
             EXPECT_EQ(after(true), after(false))

@@ -12,6 +12,7 @@
 #include "reader/load_scene.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
+#include "tests/support/integrators.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/variants.hpp"
 
@@ -118,7 +119,8 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
             std::pow(10.0, static_cast<double>(seed % 13) - 6);  // B from far below M to far above
         Scene const scene = with_backend(scene_of(chain));
         ChainSystem system(scene, Axes::joint, *communicator_, h);
-        system.joint().front()->drift(0.0);  // whose velocities are those before a kick
+        system.joint().front()->apply({JointOperator::drift},
+                                      0.0);  // whose velocities are those before a kick
         system.evaluate();
         auto const found = system.accelerations().joint_acceleration;
         for (DrivenJoint const& driven : chain.bodies.driven)
@@ -165,7 +167,7 @@ Scene swinging(RandomJoints joints, Base base, bool damped) {
 
 using Make = std::unique_ptr<JointIntegrator> (*)(ChainSystem&);
 std::unique_ptr<JointIntegrator> make_staggered(ChainSystem& system) {
-    return make_kicks(system, {});
+    return make_joint(system, Integrator::staggered);
 }
 
 /// Positions after `time` in so many steps.
@@ -291,7 +293,8 @@ TEST(Staggered, SamplesHarmonicSpringsExactly) {
     for (double const times : {0.5, 10.0, 1000.0}) {
         double const h = times / stiffest(scene.chains[0]);
         ChainSystem system(scene, Axes::joint, *communicator, h);
-        auto const integrator = make_kicks(system, {1.5 / h, kt, 11});
+        auto const integrator =
+            make_program(system, program_of(Integrator::baoab, true), {1.5 / h, kt, 11});
         double sum = 0;
         std::int64_t samples = 0;
         for (int i = 0; i < 1200; ++i) {

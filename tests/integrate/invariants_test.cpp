@@ -1,9 +1,12 @@
 // Momentum, angular momentum, energy and closed joints under the integrators, and their order.
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "integrate/joint_integrators.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/integrate/constrained_run.hpp"
+#include "tests/support/integrators.hpp"
 
 namespace catena::test {
 namespace {
@@ -86,15 +89,32 @@ TEST(Langevin, HeatsAColdChainToItsTemperature) {
     }
 }
 
+TEST(Programs, HaveTheSweepsOfTheirOperators) {
+    auto const sweeps = [](Integrator integrator, bool warm) {
+        SweepsAStep const s = program_of(integrator, warm).sweeps();
+        return std::pair(s.matrices, s.biases);
+    };
+    EXPECT_EQ(sweeps(Integrator::rk4, false), std::pair(4, 4));
+    EXPECT_EQ(sweeps(Integrator::velocity_verlet, false), std::pair(1, 1));
+    EXPECT_EQ(sweeps(Integrator::leapfrog, false), std::pair(1, 2));
+    EXPECT_EQ(sweeps(Integrator::staggered, false), std::pair(1, 2));
+    EXPECT_EQ(sweeps(Integrator::baoab, true), std::pair(2, 3));
+    EXPECT_EQ(sweeps(Integrator::implicit_baoab, false), std::pair(1, 2));
+    for (IntegratorTraits const& row : integrators)
+        if (row.joint_coordinates && !row.adaptive)
+            EXPECT_FALSE(program_of(row.kind, row.langevin).step.empty()) << row.name;
+        else
+            EXPECT_THROW(program_of(row.kind, false), std::logic_error) << row.name;
+}
+
 /// log2 of the ratio of errors at two step sizes against a reference with many steps.
-double order_of(Scene const& scene, bool fourth) {
+double order_of(Scene const& scene, Integrator integrator) {
     auto const communicator = serial_communicator();
     double constexpr time = 0.2;
     auto const end_of = [&](int steps, bool reference) {
         ChainSystem system(scene, Axes::joint, *communicator);
         JointDynamics& dynamics = *system.joint().front();
-        auto const integrator =
-            reference || fourth ? make_runge_kutta4(system) : make_velocity_verlet(system);
+        auto const integrator = make_joint(system, reference ? Integrator::rk4 : integrator);
         system.close_tips();
         for (int i = 0; i < steps; ++i) {
             dynamics.set_time(i * time / steps);
@@ -125,8 +145,10 @@ TEST(JointIntegrators, HaveTheirOrderForEveryJoint) {
                                 ", seed: 6}}}]\nforces: {gravity: [0, 1, -2], drag: {linear: 0.3, "
                                 "angular: 0.1}}\n",
                             "scene.yaml");
-            EXPECT_NEAR(order_of(scene, true), 4.0, 0.4) << joint << " " << base;
-            EXPECT_NEAR(order_of(scene, false), 2.0, 0.3) << joint << " " << base;
+            EXPECT_NEAR(order_of(scene, Integrator::rk4), 4.0, 0.4) << joint << " " << base;
+            for (Integrator const second : {Integrator::velocity_verlet, Integrator::leapfrog})
+                EXPECT_NEAR(order_of(scene, second), 2.0, 0.3)
+                    << joint << " " << base << " " << name_of(second);
         }
 }
 

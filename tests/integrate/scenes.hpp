@@ -65,6 +65,18 @@ inline RunScene const run_scenes[] = {
      "forces: {gravity: [0, 0, -1]}\n"
      "dynamics: {integrator: rk4, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: "
      "10}\n"},
+    {"leapfrog_revolute",
+     "chains: [{name: a, base: fixed, generator: {random: {bodies: 60, joint: revolute, seed: "
+     "1}}}, {name: b, base: free, generator: {random: {bodies: 13, joint: spherical, seed: 2}}}]\n"
+     "forces: {gravity: [0, 0, -1]}\n"
+     "dynamics: {integrator: leapfrog, step: 0.001, steps: 20}\noutput: {every: 5, "
+     "checkpoint_every: 10, joint_forces: true}\n"},
+    {"pulled",
+     "chains: [{name: a, bodies: [{mass: 1, position: [0, 0, 0], force: [-1, 0, 0]}, {mass: 1, "
+     "position: [1, 0.5, 0], joint: {type: link}}, {mass: 1, position: [2, 0, 0], joint: {type: "
+     "link}, force: [1, 0, 0]}]}]\n"
+     "dynamics: {integrator: rattle, step: 0.001, steps: 20}\noutput: {every: 5, "
+     "checkpoint_every: 10}\n"},
     {"rk4_spherical",
      "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: spherical, seed: "
      "1}}}]\n"

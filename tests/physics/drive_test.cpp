@@ -7,6 +7,7 @@
 #include "integrate/joint_integrators.hpp"
 #include "observe/observables.hpp"
 #include "reader/load_scene.hpp"
+#include "tests/support/integrators.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,5 +1,5 @@
-// Step of the Dormand-Prince pair for the coordinates of one body in joint coordinates, and the
-// difference of its two orders, in any Space.
+// Step of an embedded Runge-Kutta pair for the coordinates of one body in joint coordinates, and
+// the difference of its two orders, in any Space.
 #pragma once
 
 #include "dynamics/joint/joint_dynamics.hpp"
@@ -8,47 +8,14 @@
 
 namespace catena {
 
-/// Coefficients of RK5(4)7M (Dormand & Prince, J. Comput. Appl. Math. 6, 19, 1980). Six stages make
-/// a step of fifth order. The rates after it, which are the first of the next step, complete the
-/// embedded solution of fourth order.
-struct DormandPrince {
-    static constexpr int stages = 6;
-    static constexpr double weight[stages][stages] = {
-        {1.0 / 5, 0, 0, 0, 0, 0},
-        {3.0 / 40, 9.0 / 40, 0, 0, 0, 0},
-        {44.0 / 45, -56.0 / 15, 32.0 / 9, 0, 0, 0},
-        {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0, 0},
-        {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656, 0},
-        {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-    static constexpr double time[stages] = {1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-    /// Weights of the difference of the two orders; the last one belongs to the rates after the
-    /// step.
-    static constexpr double difference[stages + 1] = {
-        71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-};
-
-/// Coefficients of one stage, times the length of the step. Device code cannot access DormandPrince
-/// itself.
-struct EmbeddedStage {
-    int number = 0;
-    /// Repeats from the start of the previous step, whose first rates are known.
-    bool again = false;
-    double weight[DormandPrince::stages] = {};
-    double time = 0;  // Time of the resulting state, ps.
-};
-/// Weights of the difference, times the length of the step.
-struct EmbeddedDifference {
-    double weight[DormandPrince::stages + 1] = {};
-};
-
 /// Rates of all stages, with the operations on one body.
 struct EmbeddedSteps {
     /// Numbers kept per stage: rates of q and qd of a body; rates of position and velocity of a
     /// base.
     static constexpr int rates = 7, base_rates = 6;
     JointSteps steps;
-    View<DormandPrince::stages * rates> kept;  // Stages one after the other.
-    View<DormandPrince::stages * base_rates> kept_base;
+    View<EmbeddedStage::stages * rates> kept;  // Stages one after the other.
+    View<EmbeddedStage::stages * base_rates> kept_base;
 
     /// Keeps the current rates and moves the state to the next stage; after the last stage, to the
     /// end of the step.
@@ -57,14 +24,14 @@ struct EmbeddedSteps {
         using Real = RealAt<Place>;
         JointChains const& chains = steps.chains;
         StateView const &state = chains.scan.state, &start = steps.start;
-        bool const first = s.number == 0, last = s.number == DormandPrince::stages - 1;
+        bool const first = s.number == 0, last = s.number == EmbeddedStage::stages - 1;
         if (first && !s.again) {
             write(start.q, k, read(state.q, k));
             write(start.qd, k, read(state.qd, k));
         }
         if (!s.again)
             write(of_stage(s.number), k,
-                  rates_of(k, first ? read(steps.carried.qdd, k) : chains.rate(k)));
+                  rates_of(k, first ? read(steps.saved.qdd, k) : chains.rate(k)));
         Vector<Real, 4> q = read(start.q, k);
         Vec3At<Place> qd = read(start.qd, k);
         for (int i = 0; i <= s.number; ++i) {
@@ -93,7 +60,7 @@ struct EmbeddedSteps {
         if (!s.again) {
             Vec3 const v = state.base_velocity.load(piece);
             Vec3 const a =
-                first ? steps.carried.base_acceleration.load(piece) : steps.chains.base_rate(k);
+                first ? steps.saved.base_acceleration.load(piece) : steps.chains.base_rate(k);
             base_of_stage(s.number).store(
                 piece, Vector<double, base_rates>{{v[0], v[1], v[2], a[0], a[1], a[2]}});
         }
@@ -140,8 +107,8 @@ struct EmbeddedSteps {
                            AllowedErrors const& allowed) const {
         JointChains const& chains = steps.chains;
         if (chains.drive_of(k)) return 0;
-        Vector<double, rates> e = d.weight[DormandPrince::stages] * rates_of(k, chains.rate(k));
-        for (int i = 0; i < DormandPrince::stages; ++i)
+        Vector<double, rates> e = d.weight[EmbeddedStage::stages] * rates_of(k, chains.rate(k));
+        for (int i = 0; i < EmbeddedStage::stages; ++i)
             e = plus_scaled(e, d.weight[i], of_stage(i).load(k));
         Vec3 const of_speed{{e[4], e[5], e[6]}};
         Vec3 of_place{{e[0], e[1], e[2]}};
@@ -160,10 +127,10 @@ struct EmbeddedSteps {
     CATENA_HD double base_error(std::int64_t k, EmbeddedDifference const& d,
                                 AllowedErrors const& allowed) const {
         std::int64_t const p = steps.chains.joints().piece_of(k);
-        double const after = d.weight[DormandPrince::stages];
+        double const after = d.weight[EmbeddedStage::stages];
         Vec3 x = after * steps.chains.scan.state.base_velocity.load(p),
              v = after * steps.chains.base_rate(k);
-        for (int i = 0; i < DormandPrince::stages; ++i) {
+        for (int i = 0; i < EmbeddedStage::stages; ++i) {
             Vector<double, base_rates> const rate = base_of_stage(i).load(p);
             x = plus_scaled(x, d.weight[i], Vec3{{rate[0], rate[1], rate[2]}});
             v = plus_scaled(v, d.weight[i], Vec3{{rate[3], rate[4], rate[5]}});
@@ -206,8 +173,8 @@ struct EmbeddedSteps {
 /// Storage of the stages' rates.
 template <class Space>
 struct EmbeddedRates {
-    typename Space::template FieldOf<DormandPrince::stages * EmbeddedSteps::rates> kept;
-    typename Space::template FieldOf<DormandPrince::stages * EmbeddedSteps::base_rates> kept_base;
+    typename Space::template FieldOf<EmbeddedStage::stages * EmbeddedSteps::rates> kept;
+    typename Space::template FieldOf<EmbeddedStage::stages * EmbeddedSteps::base_rates> kept_base;
 
     explicit EmbeddedRates(ChainGroup const& group)
         : kept(group.size), kept_base(std::ssize(group.pieces)) {}

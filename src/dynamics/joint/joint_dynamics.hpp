@@ -7,7 +7,7 @@
 
 #include "dca/solver.hpp"
 #include "dynamics/absolute_dynamics.hpp"
-#include "dynamics/constrained_step.hpp"
+#include "dynamics/joint/joint_operation.hpp"
 #include "kinematics/joint_kinematics.hpp"
 
 namespace catena {
@@ -17,12 +17,6 @@ struct JointRates {
     Field<3> qdd, base_acceleration;
 };
 
-/// A substep of an adaptive integrator, within a step of given length.
-struct InnerStep {
-    /// Length of the substep, and the time at its end, ps.
-    double length = 0, end = 0;
-    bool again = false;  // Repeats from the start of the last substep, which was rejected.
-};
 /// Largest velocities of each kind, rad/ps and nm/ps. Those of free bases and sliding joints are
 /// linear.
 struct Speeds {
@@ -82,13 +76,13 @@ class JointDynamics : public BeadHost {
     /// Copies the last set rates to the host.
     virtual JointRates rates() const = 0;
 
-    // Steps, stage by stage. Each stage except the first half of a Verlet step follows a solve().
-    /// Stage 0, 1, 2 or 3 of a Runge-Kutta step of length h.
-    virtual void runge_kutta(int stage, double h) = 0;
-    /// Stage 0 to 5 of a step of the Dormand-Prince pair (embedded_steps.hpp), which starts from
-    /// the carried accelerations. The start of the step is kept, so that a step with `again` can
-    /// repeat it.
-    virtual void embedded_stage(int stage, InnerStep const&) = 0;
+    // Steps, operator by operator. Those that use accelerations follow a solve().
+    /// Applies an operator of a step of length h to the state and its time; `evaluate` and
+    /// `evaluate_again` are not among them. Collective for `noise`.
+    virtual void apply(JointOperation const&, double h) = 0;
+    /// Applies a stage of an embedded pair. The start of the step is kept, so that it can be
+    /// repeated.
+    virtual void apply(EmbeddedStage const&) = 0;
     /// Measure of how implausible the next stage is, for a step of this length, on this rank. Its
     /// equations are worth solving if it is below 1.
     virtual double stage_divergence(double length) = 0;
@@ -96,33 +90,14 @@ class JointDynamics : public BeadHost {
     virtual Speeds fastest() = 0;
     /// Largest error of the last substep relative to the tolerances, on this rank; NaN if anything
     /// is not finite. Precondition: another solve() at the substep's end.
-    virtual double embedded_error(double length, AllowedErrors const&) = 0;
+    virtual double embedded_error(EmbeddedDifference const&, AllowedErrors const&) = 0;
     /// Characteristic length: contour length of the longest chain plus the size of a body, nm.
     /// Returns the same value on every rank.
     virtual double reach() const = 0;
-    /// Carries the accelerations of the last solve(). Velocity Verlet and the Dormand-Prince pair
-    /// carry accelerations from step to step.
-    virtual void carry_rates() = 0;
-    /// Carries the given accelerations instead, such as those of a checkpoint.
-    virtual void carry_rates(JointRates const&) = 0;
-    virtual JointRates carried_rates() const = 0;
-    /// First half of a velocity Verlet step of length h: coordinates, and a first guess of
-    /// velocities.
-    virtual void verlet_move(double h) = 0;
-    /// Second half: final velocities, after a solve() with the guess.
-    virtual void verlet_finish(double h) = 0;
-
-    /// Drift: advances coordinates by h at the current velocities. These are kept as the start of
-    /// kick().
-    virtual void drift(double h) = 0;
-    /// Kick: sets velocities to those kept by drift() plus h times the last solved accelerations.
-    virtual void kick(double h) = 0;
-    /// Kick: adds h times the carried accelerations to the current velocities.
-    virtual void kick_by_carried(double h) = 0;
-    /// Thermostat: velocities become keep u + spread xi, with xi normal noise. The covariance of xi
-    /// is the inverse of the mass matrix at the current coordinates, including the parts of springs
-    /// and dampers. `step` keys the noise. Collective.
-    virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
+    /// Saved accelerations (JointOperator::save), on the host.
+    virtual JointRates saved_rates() const = 0;
+    /// Saves the given accelerations, such as those of a checkpoint.
+    virtual void save_rates(JointRates const&) = 0;
 
     /// Computes the motion at the current state, positions included, and copies it to the host.
     /// Collective.

@@ -7,17 +7,10 @@
 namespace catena {
 
 template <class Space>
-void JointDynamicsIn<Space>::embedded_stage(int stage, InnerStep const& step) {
+void JointDynamicsIn<Space>::apply(EmbeddedStage const& stage) {
     if (!pair_) pair_.emplace(group_);
-    if (stage == 0 && !step.again) start_time_ = time_;
-    EmbeddedStage s{stage,
-                    step.again && stage == 0,
-                    {},
-                    start_time_ + DormandPrince::time[stage] * step.length};
-    if (DormandPrince::time[stage] == 1) s.time = step.end;
-    for (int i = 0; i <= stage; ++i) s.weight[i] = DormandPrince::weight[stage][i] * step.length;
-    needs_positions_ ? embedded_stage<true>(s) : embedded_stage<false>(s);
-    time_ = s.time;
+    needs_positions_ ? embedded_stage<true>(stage) : embedded_stage<false>(stage);
+    time_ = stage.time;
 }
 template <class Space>
 template <bool positions>
@@ -49,10 +42,8 @@ Speeds JointDynamicsIn<Space>::fastest() {
 }
 
 template <class Space>
-double JointDynamicsIn<Space>::embedded_error(double length, AllowedErrors const& allowed) {
-    EmbeddedDifference d;
-    for (int i = 0; i <= DormandPrince::stages; ++i)
-        d.weight[i] = DormandPrince::difference[i] * length;
+double JointDynamicsIn<Space>::embedded_error(EmbeddedDifference const& d,
+                                              AllowedErrors const& allowed) {
     return space_.largest(group_.size,
                           [s = embedded(), d, allowed] CATENA_LAMBDA(std::int64_t k) -> double {
                               return s.error(k, d, allowed);

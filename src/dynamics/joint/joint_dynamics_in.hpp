@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -82,9 +83,9 @@ class JointDynamicsIn final : public JointDynamics {
           alpha_(group.size),
           acceleration_(group.size),
           qdd_(group.size),
-          carried_qdd_(group.size),
+          saved_qdd_(group.size),
           base_acceleration_(pieces()),
-          carried_base_acceleration_(pieces()),
+          saved_base_acceleration_(pieces()),
           outboard_end_(1),
           zero_(group.has_tips() ? group.size : 0),
           last_end_(tips()),
@@ -167,44 +168,19 @@ class JointDynamicsIn final : public JointDynamics {
         return {space_.read(qdd_), space_.read(base_acceleration_)};
     }
 
-    void runge_kutta(int stage, double h) override {
-        double const weight[4] = {h / 6, h / 3, h / 3, h / 6}, next[4] = {h / 2, h / 2, h, h};
-        if (stage == 0) start_time_ = time_;
-        RungeKuttaStage const s{stage == 0, stage == 3, weight[stage], next[stage],
-                                start_time_ + next[stage]};
-        needs_positions_ ? runge_kutta<true>(s) : runge_kutta<false>(s);
-        time_ = s.time;
-    }
-    void embedded_stage(int stage, InnerStep const&) override;
+    void apply(JointOperation const& op, double h) override;
+    void apply(EmbeddedStage const&) override;
     double stage_divergence(double length) override;
     Speeds fastest() override;
-    double embedded_error(double length, AllowedErrors const&) override;
+    double embedded_error(EmbeddedDifference const&, AllowedErrors const&) override;
     double reach() const override { return reach_; }
-    void carry_rates() override { set_rates(carried()); }
-    void carry_rates(JointRates const& rates) override {
-        fill(space_, carried_qdd_, rates.qdd);
-        fill(space_, carried_base_acceleration_, rates.base_acceleration);
+    void save_rates(JointRates const& rates) override {
+        fill(space_, saved_qdd_, rates.qdd);
+        fill(space_, saved_base_acceleration_, rates.base_acceleration);
     }
-    JointRates carried_rates() const override {
-        return {space_.read(carried_qdd_), space_.read(carried_base_acceleration_)};
+    JointRates saved_rates() const override {
+        return {space_.read(saved_qdd_), space_.read(saved_base_acceleration_)};
     }
-    void verlet_move(double h) override {
-        needs_positions_ ? verlet_move<true>(h) : verlet_move<false>(h);
-        time_ += h;
-    }
-    void verlet_finish(double h) override {
-        space_.for_each(group_.size,
-                        [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.verlet_finish(k, h); });
-        relative_ = false;
-    }
-
-    void drift(double h) override {
-        needs_positions_ ? drift<true>(h) : drift<false>(h);
-        time_ += h;
-    }
-    void kick(double h) override { kick(h, false); }
-    void kick_by_carried(double h) override { kick(h, true); }
-    void thermalise(Thermostat const&, std::uint64_t step) override;
 
     BodyMotion motion() override;
     BodyResults results() override {
@@ -370,24 +346,29 @@ class JointDynamicsIn final : public JointDynamics {
     }
     /// Applies one stage to all bodies, and sets relative motions unless the next update does so.
     template <bool positions>
-    void runge_kutta(RungeKuttaStage const& stage) {
+    void accumulate(WeightedStage const& stage) {
         JointSteps const s = steps();
-        each_body<positions>([&](JointLoops const& loops,
-                                 auto... bodies) { loops.runge_kutta(s, stage, bodies...); },
-                             [s, stage] CATENA_LAMBDA(std::int64_t k) {
-                                 s.template runge_kutta<positions>(k, stage);
-                             });
+        each_body<positions>(
+            [&](JointLoops const& loops, auto... bodies) { loops.accumulate(s, stage, bodies...); },
+            [s, stage] CATENA_LAMBDA(std::int64_t k) {
+                s.template accumulate<positions>(k, stage);
+            });
         relative_ = !s.chains.left.motions;
     }
     template <bool positions>
     void embedded_stage(EmbeddedStage const&);
     template <bool positions>
-    void verlet_move(double h) {
+    void drift_saved(double h) {
         JointSteps const s = steps();
         space_.for_each(group_.size, [s, h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
-            s.template verlet_move<positions>(k, h, time);
+            s.template drift_saved<positions>(k, h, time);
         });
         relative_ = !s.chains.left.motions;
+    }
+    void kick_mean(double h) {
+        space_.for_each(group_.size,
+                        [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.kick_mean(k, h); });
+        relative_ = false;
     }
     template <bool positions>
     void drift(double h) {
@@ -397,12 +378,15 @@ class JointDynamicsIn final : public JointDynamics {
                         });
         relative_ = true;
     }
-    void kick(double h, bool by_carried) {
-        space_.for_each(group_.size, [s = steps(), h, by_carried] CATENA_LAMBDA(std::int64_t k) {
-            s.kick(k, h, by_carried);
+    void kick(double h, bool by_saved) {
+        space_.for_each(group_.size, [s = steps(), h, by_saved] CATENA_LAMBDA(std::int64_t k) {
+            s.kick(k, h, by_saved);
         });
         relative_ = false;
     }
+    /// Mixes velocities with normal noise, whose covariance is the inverse of the mass matrix at
+    /// the current coordinates, including the parts of springs and dampers. `step` keys the noise.
+    void thermalise(Thermostat const&, std::uint64_t step);
     void set_rates(RatesView const& out) {
         JointChains const c = chains();
         each_body<false>(
@@ -525,7 +509,7 @@ class JointDynamicsIn final : public JointDynamics {
         return {tips_.data(),   reach_,           group_.directions,
                 motion_.view(), last_end_.view(), other_end_.view()};
     }
-    RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
+    RatesView saved() { return {saved_qdd_.view(), saved_base_acceleration_.view()}; }
     /// Views of all arrays for loops over bodies.
     JointChains chains() {
         JointChains c;
@@ -563,9 +547,9 @@ class JointDynamicsIn final : public JointDynamics {
         still.chains.given.gravity = Vec3::zero();
         return still;
     }
-    /// Views for steps of the Dormand-Prince pair.
+    /// Views for steps of an embedded pair.
     EmbeddedSteps embedded() { return {steps(), pair_->kept.view(), pair_->kept_base.view()}; }
-    JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
+    JointSteps steps() { return {chains(), start_.view(), sum_.view(), saved()}; }
     /// Calls use() with the last solution, completed and copied to the host.
     template <class Use>
     auto with_solution(Use const& use);
@@ -614,15 +598,15 @@ class JointDynamicsIn final : public JointDynamics {
     Fixed<6> inertia_;
     Fixed<3> r2_;
     Fixed<6> axes2_;
-    /// State, state at the step's start, and weighted sum of a Runge-Kutta step.
+    /// State, state at the step's start, and weighted sum of its rates (accumulate).
     JointCoordinates<Space> state_, start_, sum_;
     MotionFields<Space> motion_;
     FieldOf<4> joint_load_;
     FieldOf<6> compliance_;
     FieldOf<3> yielding_, noise_force_;
     FieldOf<2> revolute_acceleration_;
-    FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_,
-        carried_base_acceleration_;
+    FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, saved_qdd_, base_acceleration_,
+        saved_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;
     FieldOf<13> last_end_, other_end_;  // Motions of tips' two sides.
@@ -635,4 +619,5 @@ class JointDynamicsIn final : public JointDynamics {
 }  // namespace catena
 
 #include "dynamics/joint/joint_dynamics_embedded.hpp"
+#include "dynamics/joint/joint_dynamics_operators.hpp"
 #include "dynamics/joint/joint_dynamics_refinement.hpp"

@@ -45,8 +45,8 @@ struct KinematicLoops {
 struct StepLoops {
     void (*set_rates)(JointChains const&, RatesView const&, BodyLanes const&, std::int64_t begin,
                       std::int64_t end);
-    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodyLanes const&,
-                        std::int64_t begin, std::int64_t end);
+    void (*accumulate)(JointSteps const&, WeightedStage const&, BodyLanes const&,
+                       std::int64_t begin, std::int64_t end);
     void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodyLanes const&,
                            std::int64_t begin, std::int64_t end);
 };

@@ -8,7 +8,7 @@ namespace catena {
 
 /// One of the four stages: the sum grows by `weight` times the rates. The state becomes the start
 /// plus `next` times the rates, or in the last stage the sum.
-struct RungeKuttaStage {
+struct WeightedStage {
     bool first = false, last = false;
     /// Weights in ps, and the time of the resulting state.
     double weight = 0, next = 0, time = 0;
@@ -18,8 +18,8 @@ struct RungeKuttaStage {
 struct JointSteps {
     JointChains chains;
     StateView start, sum;
-    /// Accelerations that an integrator carries from step to step.
-    RatesView carried;
+    /// Accelerations that JointOperator::save has kept.
+    RatesView saved;
 
     /// Time derivative of a unit quaternion q at angular velocity omega (body axes).
     template <class Real>
@@ -30,9 +30,9 @@ struct JointSteps {
         return {{half * r.w, half * r.x, half * r.y, half * r.z}};
     }
 
-    /// Stage of a Runge-Kutta step for body k.
+    /// Stage with a weighted sum of rates, for body k.
     template <bool positions, class Place>
-    CATENA_HD void runge_kutta(Place k, RungeKuttaStage const& s) const {
+    CATENA_HD void accumulate(Place k, WeightedStage const& s) const {
         using Real = RealAt<Place>;
         using Coordinates = Vector<Real, 4>;
         StateView const& state = chains.scan.state;
@@ -60,15 +60,14 @@ struct JointSteps {
             }
         }
         if constexpr (is_one_body<Place>) {
-            if (chains.on_free_base(k))
-                runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
+            if (chains.on_free_base(k)) accumulate_base(joints.piece_of(k), chains.base_rate(k), s);
             joints.follow_course(state, k, s.time);
         }
         if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
-    /// Stage of a Runge-Kutta step for the free base of a piece.
-    CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration,
-                                    RungeKuttaStage const& s) const {
+    /// The same for the free base of a piece.
+    CATENA_HD void accumulate_base(std::int64_t piece, Vec3 const& acceleration,
+                                   WeightedStage const& s) const {
         StateView const& state = chains.scan.state;
         Vec3 const x = state.base_position.load(piece), v = state.base_velocity.load(piece);
         Vec3 const total = plus_scaled(s.first ? x : sum.base_position.load(piece), s.weight, v);
@@ -91,18 +90,18 @@ struct JointSteps {
         }
     }
 
-    /// First half of a Verlet step: coordinates after h, and a first guess of velocities.
+    /// Drift with the saved accelerations: coordinates after h, and a first guess of velocities.
     /// Prescribed motions are set to `time`.
     template <bool positions>
-    CATENA_HD void verlet_move(std::int64_t k, double h, double time) const {
+    CATENA_HD void drift_saved(std::int64_t k, double h, double time) const {
         StateView const& state = chains.scan.state;
-        Vec3 const qd = state.qd.load(k), qdd = carried.qdd.load(k);
+        Vec3 const qd = state.qd.load(k), qdd = saved.qdd.load(k);
         turn_by(k, plus_scaled(h * qd, 0.5 * h * h, qdd), true);
         start.qd.store(k, qd);
         state.qd.store(k, plus_scaled(qd, h, qdd));
         if (chains.on_free_base(k)) {
             std::int64_t const p = chains.joints().piece_of(k);
-            Vec3 const v = state.base_velocity.load(p), a = carried.base_acceleration.load(p);
+            Vec3 const v = state.base_velocity.load(p), a = saved.base_acceleration.load(p);
             state.base_position.store(
                 p, state.base_position.load(p) + plus_scaled(h * v, 0.5 * h * h, a));
             start.base_velocity.store(p, v);
@@ -111,21 +110,20 @@ struct JointSteps {
         chains.joints().follow_course(state, k, time);
         if (!chains.left.motions) chains.set_relative<positions>(k);
     }
-    /// Second half of a Verlet step: velocities from the mean of the accelerations before and after
-    /// the move.
-    CATENA_HD void verlet_finish(std::int64_t k, double h) const {
+    /// Kick by the mean of the saved accelerations and those at the current state, which it saves.
+    CATENA_HD void kick_mean(std::int64_t k, double h) const {
         StateView const& state = chains.scan.state;
         Vec3 const qdd = chains.rate(k);  // Computed with the guess of qd.
-        state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, carried.qdd.load(k)),
+        state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, saved.qdd.load(k)),
                                       0.5 * h, qdd));
-        carried.qdd.store(k, qdd);
+        saved.qdd.store(k, qdd);
         if (chains.on_free_base(k)) {
             std::int64_t const p = chains.joints().piece_of(k);
-            Vec3 const a = chains.base_rate(k), before = carried.base_acceleration.load(p);
+            Vec3 const a = chains.base_rate(k), before = saved.base_acceleration.load(p);
             state.base_velocity.store(
                 p,
                 plus_scaled(plus_scaled(start.base_velocity.load(p), 0.5 * h, before), 0.5 * h, a));
-            carried.base_acceleration.store(p, a);
+            saved.base_acceleration.store(p, a);
         }
         chains.joints().follow_course(state, k, chains.time);
     }
@@ -148,15 +146,15 @@ struct JointSteps {
         chains.set_relative<positions>(k);
     }
     /// Kick: the velocities kept by drift() plus h times the last solved rates; or, if
-    /// `by_carried`, the current velocities plus h times the carried rates.
-    CATENA_HD void kick(std::int64_t k, double h, bool by_carried) const {
+    /// `by_saved`, the current velocities plus h times the saved rates.
+    CATENA_HD void kick(std::int64_t k, double h, bool by_saved) const {
         StateView const& state = chains.scan.state;
-        StateView const& from = by_carried ? state : start;
+        StateView const& from = by_saved ? state : start;
         state.qd.store(
-            k, plus_scaled(from.qd.load(k), h, by_carried ? carried.qdd.load(k) : chains.rate(k)));
+            k, plus_scaled(from.qd.load(k), h, by_saved ? saved.qdd.load(k) : chains.rate(k)));
         if (chains.on_free_base(k)) {
             std::int64_t const p = chains.joints().piece_of(k);
-            Vec3 const a = by_carried ? carried.base_acceleration.load(p) : chains.base_rate(k);
+            Vec3 const a = by_saved ? saved.base_acceleration.load(p) : chains.base_rate(k);
             state.base_velocity.store(p, plus_scaled(from.base_velocity.load(p), h, a));
         }
         chains.joints().follow_course(state, k, chains.time);

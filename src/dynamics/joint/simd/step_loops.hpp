@@ -19,12 +19,11 @@ template <class Real>
 template <class Real, bool positions>
 struct StepLoopsOf {
     using Bodies = dca::Abreast<Real>;
-    [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage,
-                                             BodyLanes const& bodies, std::int64_t begin,
-                                             std::int64_t end) {
+    [[gnu::flatten]] static void accumulate(JointSteps const& steps, WeightedStage const& stage,
+                                            BodyLanes const& bodies, std::int64_t begin,
+                                            std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i)
-            steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.prefetches},
-                                                  stage);
+            steps.template accumulate<positions>(Bodies{bodies.first[i], bodies.prefetches}, stage);
     }
     [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps,
                                                 EmbeddedStage const& stage, BodyLanes const& bodies,
@@ -32,7 +31,7 @@ struct StepLoopsOf {
         for (std::int64_t i = begin; i < end; ++i)
             steps.template advance<positions>(Bodies{bodies.first[i], bodies.prefetches}, stage);
     }
-    static constexpr StepLoops table() { return {set_rates<Real>, runge_kutta, embedded_stage}; }
+    static constexpr StepLoops table() { return {set_rates<Real>, accumulate, embedded_stage}; }
 };
 
 /// Table of loops with or without positions.
