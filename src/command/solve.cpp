@@ -13,6 +13,7 @@
 #include "integrate/chain_system.hpp"
 #include "measure/accelerations_file.hpp"
 #include "measure/forward_error.hpp"
+#include "measure/oracle_accelerations.hpp"
 #include "measure/timing.hpp"
 #include "mpi/first_rank.hpp"
 #include "observe/observables.hpp"
@@ -62,8 +63,7 @@ Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     double worst = 0;
     std::size_t body = 0, bead = 0;
     for (ChainSpec const& chain : scene.chains) {
-        oracle::Loads loads{
-            scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
+        oracle::Loads loads = oracle_loads(scene, 0, {});
         std::vector<Vec3> accelerations;
         Vec3 base = Vec3::zero();
         for (std::size_t k = 0; k < chain.size(); ++k, ++body) {

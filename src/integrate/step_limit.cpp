@@ -108,7 +108,7 @@ class Displacements {
             s.qd = along_[g].qdd;
             s.base_velocity = along_[g].base_acceleration;
             group.set_state(s);
-            group.drift(small);
+            group.apply({JointOperator::drift}, small);
             s = group.state();
             s.qd = start_[g].qd;
             s.base_velocity = start_[g].base_velocity;

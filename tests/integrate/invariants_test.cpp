@@ -108,13 +108,13 @@ TEST(Programs, HaveTheSweepsOfTheirOperators) {
 }
 
 /// log2 of the ratio of errors at two step sizes against a reference with many steps.
-double order_of(Scene const& scene, Integrator integrator) {
+double order_of(Scene const& scene, Integrator kind) {
     auto const communicator = serial_communicator();
     double constexpr time = 0.2;
     auto const end_of = [&](int steps, bool reference) {
         ChainSystem system(scene, Axes::joint, *communicator);
         JointDynamics& dynamics = *system.joint().front();
-        auto const integrator = make_joint(system, reference ? Integrator::rk4 : integrator);
+        auto const integrator = make_joint(system, reference ? Integrator::rk4 : kind);
         system.close_tips();
         for (int i = 0; i < steps; ++i) {
             dynamics.set_time(i * time / steps);
@@ -131,7 +131,7 @@ double order_of(Scene const& scene, Integrator integrator) {
         for (std::size_t i = 0; i < x.size(); ++i) worst = std::max(worst, norm(x[i] - exact[i]));
         return worst;
     };
-    int const coarse = fourth ? 20 : 40;
+    int const coarse = traits_of(kind).order == 4 ? 20 : 40;
     return std::log2(error_of(coarse) / error_of(2 * coarse));
 }
 

@@ -63,12 +63,11 @@ TEST(ConstantForce, AccelerationsAreTheOracles) {
         EXPECT_LE(error(text), 1e-13) << text;
 }
 
-/// The planar chain keeps forces along its axis out of its solver.
+/// Both are one load to the dynamics, so that no bit differs.
 TEST(ConstantForce, ActsAsAWrenchWithoutTorqueDoes) {
     auto const communicator = serial_communicator();
     std::string text = bodies("revolute, axis: [0, 1, 0]"), other = text;
-    for (std::string const& force : {"[1, -2, 0.5]", "[0, 4, -1]"}) {
-        std::string const key = "force: " + force;
+    for (std::string const key : {"force: [1, -2, 0.5]", "force: [0, 4, -1]"}) {
         other.replace(other.find(key), key.size(), "wrench: {" + key + "}");
     }
     Solution const a = solve(parse_scene(text, "s.yaml"), *communicator),

@@ -14,11 +14,18 @@ namespace {
 TEST(ForceTerms, HaveNamesEnergiesAndKeysOfTheirOwn) {
     std::set<std::string> names, keys;
     terms::for_each([&](auto term) {
-        EXPECT_TRUE(names.insert(term.name).second) << term.name;
-        if (term.body_key != nullptr) EXPECT_TRUE(keys.insert(term.body_key).second);
-        if (term.body_key != nullptr) EXPECT_NE(scene::keys::body.find(term.body_key), nullptr);
-        if (term.scene_key != nullptr) EXPECT_NE(scene::keys::forces.find(term.scene_key), nullptr);
-        if (term.depends_on_velocities) EXPECT_STRNE(term.in_messages, "");
+        using Term = decltype(term);
+        EXPECT_TRUE(names.insert(Term::name).second) << Term::name;
+        if constexpr (Term::body_key != nullptr) {
+            EXPECT_TRUE(keys.insert(Term::body_key).second);
+            EXPECT_NE(scene::keys::body.find(Term::body_key), nullptr);
+        }
+        if constexpr (Term::scene_key != nullptr) {
+            EXPECT_NE(scene::keys::forces.find(Term::scene_key), nullptr);
+        }
+        if constexpr (Term::depends_on_velocities) {
+            EXPECT_STRNE(Term::in_messages, "");
+        }
     });
     std::vector<std::string> const energies = terms::names_of_energies();
     EXPECT_EQ(std::set(energies.begin(), energies.end()).size(), terms::number_of_energies);
