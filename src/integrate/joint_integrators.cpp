@@ -13,6 +13,7 @@ bool has_jointed_tips(Scene const& scene) {
 }
 
 SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {
+    if (!uses_joint_coordinates(d.integrator)) return {0, 0, 0};
     if (!traits_of(d.integrator).adaptive) return program_of(d.integrator, d.friction > 0).sweeps();
     // The corrections of tips change the state, so the next step cannot take over the last
     // evaluation.

@@ -52,8 +52,8 @@ inline bool keeps_matrices(Scene const& scene) {
 }
 /// True if a chain of the scene has a jointed tip; rings have one as well.
 bool has_jointed_tips(Scene const&);
-/// Returns the sweeps per time step, with an adaptive step per inner step. `tips`: true if the
-/// scene has jointed tips.
+/// Returns the sweeps per time step, with an adaptive step per inner step; zeros for integrators in
+/// absolute coordinates. `tips`: true if the scene has jointed tips.
 SweepsAStep sweeps_a_step(DynamicsSpec const&, bool tips);
 /// Makes the integrator that the scene's dynamics names. But for the Dormand-Prince pair each is a
 /// program (joint_program.hpp):
