@@ -27,14 +27,13 @@ struct ConstantForce : ForceTerm {
     static void read_body(scene::Node const& body, std::size_t k, ForceSpec const&,
                           ChainSpec& chain) {
         if (scene::Node const* const given = body.find(body_key))
-            set(chain, k, scene::vector3(*given).data);
+            set(chain, k, scene::vector3(*given));
     }
     template <class Table>
     static void read_table(Table& table, ChainSpec& chain) {
         if (!table.has(body_key)) return;
         std::vector<Vec3> forces;
-        table.vectors(body_key, forces,
-                      [&](std::size_t k, Vec3 const& v) { set(chain, k, v.data); });
+        table.vectors(body_key, forces, [&](std::size_t k, Vec3 const& v) { set(chain, k, v); });
     }
     static bool constant_wrench(ChainSpec const& chain, std::size_t k, ConstantWrench& sum) {
         if (numbers_of(chain, name, k) == nullptr) return false;
@@ -76,8 +75,10 @@ struct ConstantForce : ForceTerm {
         double const* const v = numbers_of(chain, name, k);
         return v ? Vec3{{v[0], v[1], v[2]}} : Vec3::zero();
     }
-    static void set(ChainSpec& chain, std::size_t k, double const (&force)[3]) {
-        std::copy(force, force + 3, numbers_for(chain, name, 3, k));
+    /// A force of 0 leaves the chain as it is without the key.
+    static void set(ChainSpec& chain, std::size_t k, Vec3 const& force) {
+        if (!acts(force) && numbers_of(chain, name, k) == nullptr) return;
+        std::copy(force.data, force.data + 3, numbers_for(chain, name, 3, k));
     }
 };
 

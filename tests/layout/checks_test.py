@@ -47,6 +47,16 @@ def rooms(**files):
         return run(os.path.join(HERE, "rooms.py"), root)
 
 
+def homes(**files):
+    """What homes.py says of these files."""
+    with tempfile.TemporaryDirectory() as root:
+        for path, text in files.items():
+            write(root, path, text)
+        for command in (["init", "-q"], ["add", "-A"]):
+            subprocess.run(["git", "-C", root, *command], check=True)
+        return run(os.path.join(HERE, "homes.py"), root)
+
+
 def commands(catena, page, path="page.md"):
     with tempfile.TemporaryDirectory() as root:
         write(root, path, page)
@@ -67,6 +77,15 @@ def of_rooms():
     yield expect("a wrong order", rooms(**against), 1, "has src/low above src/high")
     full = {f"src/low/{number}.hpp": "" for number in range(41)}
     yield expect("a full folder", rooms(**full), 1, "src/low has 42 files")
+
+
+def of_homes():
+    drag = "if (scene.forces.linear_drag > 0) return;\n"
+    yield expect("one file with drag", homes(**{"src/run/a.cpp": drag, "src/terms/drag.hpp": drag}), 0, "drag: 1 of at most 1")
+    yield expect("drag in two files", homes(**{"src/run/a.cpp": drag, "src/plan/b.cpp": drag}), 1, "drag: 2 of at most 1")
+    yield expect("drag in a comment", homes(**{"src/run/a.cpp": drag, "src/plan/b.cpp": "// " + drag}), 0, "drag: 1 of at most 1")
+    named = homes(**{"src/dynamics/a.hpp": "void verlet_move();\n"})
+    yield expect("an integrator in the dynamics", named, 1, "integrators in the dynamics: 1 of at most 0")
 
 
 def of_pages():
@@ -139,7 +158,7 @@ def of_keys(catena):
 
 
 def main():
-    results = [*of_pages(), *of_rooms()]
+    results = [*of_pages(), *of_rooms(), *of_homes()]
     if sys.argv[1:2] == ["--catena"]:
         catena = os.path.abspath(sys.argv[2])
         results += [*of_commands(catena), *of_keys(catena)]

@@ -69,7 +69,7 @@ Refusal const keys_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}, weight: 2})y",
      "unknown key `weight` (s.yaml: chains[0].bodies[1].weight, body 2, line 5): use one of "
      "`mass`, `com`, `inertia`, `joint`, `wrench`, "
-     "`drag`, `beads`"},
+     "`drag`, `force`, `beads`"},
     {"unknown_near_in_body", R"y(chains:
   - base: fixed
     bodies:
