@@ -22,7 +22,7 @@ struct JointProgram {
 };
 
 /// Returns the program of an integrator in joint coordinates with steps of fixed length; `warm`:
-/// with friction. Throws std::logic_error for the others.
+/// with friction, which Langevin integrators alone have. Throws std::logic_error for the others.
 JointProgram program_of(Integrator, bool warm);
 
 /// Makes the integrator that runs a program. Noise has the thermostat's temperature.

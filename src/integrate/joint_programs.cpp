@@ -47,6 +47,7 @@ JointProgram program_of(Integrator integrator, bool warm) {
         case Integrator::leapfrog:
             return {leapfrog};
         case Integrator::staggered:
+            return {kick_drift_kick, before_kicks};
         case Integrator::baoab:
         case Integrator::implicit_baoab:
             return warm ? JointProgram{baoab, before_kicks}

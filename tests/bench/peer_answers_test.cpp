@@ -84,7 +84,11 @@ TEST(PeerAnswers, ChainsThatTheTableCannotHoldAreNotAskedAbout) {
     scene = case_of("coil", "16 bodies").scene(1);
     scene.chains[0].bodies.drag.assign(16, {0, 0.5});
     EXPECT_EQ(not_for_peers(scene), "forces that they lack (drag)");
+    scene.chains[0].bodies.drag.clear();
+    EXPECT_EQ(not_for_peers(scene), "");
     scene.forces.linear_drag = 1;
+    EXPECT_EQ(not_for_peers(scene), "forces that they lack (drag)");
+    scene.chains.push_back(scene.chains[0]);
     EXPECT_EQ(not_for_peers(scene), "not a single chain");
 }
 

@@ -97,7 +97,8 @@ TEST(Programs, HaveTheSweepsOfTheirOperators) {
     EXPECT_EQ(sweeps(Integrator::rk4, false), std::pair(4, 4));
     EXPECT_EQ(sweeps(Integrator::velocity_verlet, false), std::pair(1, 1));
     EXPECT_EQ(sweeps(Integrator::leapfrog, false), std::pair(1, 2));
-    EXPECT_EQ(sweeps(Integrator::staggered, false), std::pair(1, 2));
+    for (bool const warm : {false, true})  // the default friction is not 0
+        EXPECT_EQ(sweeps(Integrator::staggered, warm), std::pair(1, 2));
     EXPECT_EQ(sweeps(Integrator::baoab, true), std::pair(2, 3));
     EXPECT_EQ(sweeps(Integrator::implicit_baoab, false), std::pair(1, 2));
     for (IntegratorTraits const& row : integrators)
