@@ -122,10 +122,14 @@ Json json_of(Analysis const& a) {
 std::string equilibration_note(Analysis const& a) {
     std::ifstream file(std::filesystem::path(a.trajectory).replace_filename("summary.json"));
     Json const summary = Json::parse(file, nullptr, false);
-    Json::json_pointer const place("/equilibration/frames_left_out");
-    if (a.first_frame > 0 || summary.is_discarded() || !summary.contains(place)) return "";
-    Json const& out = summary[place];
-    if (!out.is_number_unsigned() || out == 0) return "";
+    Json::json_pointer const frames("/equilibration/frames"),
+        left_out("/equilibration/frames_left_out");
+    if (summary.is_discarded() || !summary.contains(frames) || !summary.contains(left_out))
+        return "";
+    Json const& out = summary[left_out];
+    if (a.first_frame > 0 || summary[frames] != a.frames_in_file || !out.is_number_unsigned() ||
+        out == 0)
+        return "";
     return fmt::format(
         "all frames count here; the run's own means leave out the first {} as equilibration, as "
         "--first {} would",

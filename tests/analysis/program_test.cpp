@@ -76,7 +76,9 @@ TEST_F(Trajectories, FramesThatTheRunLeavesOutAreNamed) {
     EXPECT_FALSE(is_noted(left_out, {"--first", "2"}));
     EXPECT_FALSE(is_noted(left_out, {"--discard", "0.5"}));
     EXPECT_FALSE(is_noted(R"({"equilibration": {"frames": 6, "frames_left_out": 0}})"));
-    EXPECT_FALSE(is_noted(R"({"equilibration": {"frames_left_out": "two"}})"));
+    EXPECT_FALSE(is_noted(R"({"equilibration": {"frames": 9, "frames_left_out": 2}})"));
+    EXPECT_FALSE(is_noted(R"({"equilibration": {"frames": 6, "frames_left_out": "two"}})"));
+    EXPECT_FALSE(is_noted(R"({"equilibration": {"frames": 6}})"));
     EXPECT_FALSE(is_noted("[2]"));
     EXPECT_FALSE(is_noted("{\"equilibration\": {\"frames_left_out\": 2"));
     std::filesystem::remove(folder_ / "run/summary.json");
