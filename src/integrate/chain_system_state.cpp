@@ -181,10 +181,7 @@ ChainSystem::AllBodies ChainSystem::gather_bodies(OwnBodies const& own,
                                                   std::vector<double> rows) const {
     int const width = own.columns.width();
     if (communicator_.rank() == 0) rows.resize(static_cast<std::size_t>(scene_.bodies() * width));
-    SceneWindows(communicator_, groups_)
-        .pass(width, own.rows, [&](std::int64_t first, std::span<double const> values) {
-            std::copy(values.begin(), values.end(), rows.begin() + first * width);
-        });
+    SceneWindows(communicator_, groups_).gather(width, own.rows, rows);
     return {own.columns, std::move(rows)};
 }
 
