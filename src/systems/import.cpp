@@ -95,7 +95,7 @@ std::vector<std::string> note_cycles(std::vector<ImportedChain> const& chains,
         if (first_of[h] < 0 || first_of[l] != first_of[h] || on[h] == low ||
             !(joining.spread(temperature) <= StiffLinks::softest))
             return;
-        if (cycles++ == 0) a = low, b = high;
+        if (cycles++ == 0 || (high == b && low < a)) a = low, b = high;
     };
     joinings.for_each_farther(look);
     for (int p = 1; p < static_cast<int>(first_of.size()); ++p)
