@@ -37,7 +37,7 @@ ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const
         chain.mass.push_back(system.getParticleMass(p));
         if (k > 0 && on < 0)
             joinings.refuse_gap(
-                p, first,
+                p, first, rules.temperature,
                 fmt::format("{}, chain {}, body {}", rules.where, scene::shown(from.name), k + 1));
         Joining const joining = k > 0 ? joinings.between(on, p) : Joining{};
         if (k > 0) links.add(on, p, joining);
@@ -48,14 +48,6 @@ ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const
     return chain;
 }
 
-/// True if the ends of a chain are joined at least half as stiffly as its first link. If that link
-/// is a constraint, the bond between the ends must be stiff enough for a link.
-bool closes(Joining const& ends, Joining const& link, double temperature) {
-    if (std::isinf(link.stiffness))
-        return ends.holds() && ends.spread(temperature) <= StiffLinks::softest;
-    return ends.holds() && ends.stiffness >= 0.5 * link.stiffness;
-}
-
 /// Notes the unbranched chains whose ends are joined, in one sentence.
 std::vector<std::string> note_rings(std::vector<ImportedChain> const& chains,
                                     Joinings const& joinings, double temperature) {
@@ -64,7 +56,7 @@ std::vector<std::string> note_rings(std::vector<ImportedChain> const& chains,
     for (ImportedChain const& chain : chains) {
         int const size = static_cast<int>(chain.mass.size()), last = first + size - 1;
         if (size > 2 && chain.parent.empty() &&
-            closes(joinings.between(first, last), joinings.to_previous(first + 1), temperature) &&
+            joinings.between(first, last).is_like(joinings.to_previous(first + 1), temperature) &&
             rings++ == 0)
             name = scene::shown(chain.name);
         first += size;
@@ -76,6 +68,26 @@ std::vector<std::string> note_rings(std::vector<ImportedChain> const& chains,
                     "link).",
                     rings == 1 ? fmt::format("Chain {} is closed", name)
                                : fmt::format("{} chains are closed", rings))};
+}
+
+/// Notes the branched chains, in one sentence.
+std::vector<std::string> note_branches(std::vector<ImportedChain> const& chains) {
+    int first = 0, branched = 0;
+    std::string name, place;
+    for (ImportedChain const& chain : chains) {
+        for (std::size_t k = 1; k < chain.parent.size() && place.empty(); ++k)
+            if (chain.parent[k] + 1 != static_cast<std::int64_t>(k))
+                place = fmt::format("particle {} hangs on particle {}, from 0",
+                                    first + static_cast<int>(k), first + chain.parent[k]);
+        if (!chain.parent.empty() && branched++ == 0) name = scene::shown(chain.name);
+        first += static_cast<int>(chain.mass.size());
+    }
+    if (branched == 0) return {};
+    return {fmt::format(
+        "{} ({}): branched chains run on one rank and on the host.",
+        branched == 1 ? fmt::format("Chain {} is branched", name)
+                      : fmt::format("{} chains are branched, the first is {}", branched, name),
+        place)};
 }
 
 /// Notes bonds of branched chains that close cycles of links, in one sentence.
@@ -312,10 +324,10 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
             import_chain(chain, first, *system, joinings, links, {spec.temperature, where}));
         first += static_cast<int>(chain.size());
     }
-    for (auto const& notes :
-         {links.notes(), note_rings(imported.chains, joinings, spec.temperature),
-          note_cycles(imported.chains, joinings, spec.temperature),
-          note_joined(chains, joinings, spec.temperature)})
+    for (auto const& notes : {links.notes(), note_branches(imported.chains),
+                              note_rings(imported.chains, joinings, spec.temperature),
+                              note_cycles(imported.chains, joinings, spec.temperature),
+                              note_joined(chains, joinings, spec.temperature)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.largest_spread = links.largest_spread();
     imported.screening = screening_of(*system);

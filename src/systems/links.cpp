@@ -95,27 +95,34 @@ std::string Joinings::custom_name(int p) const {
     return force.getName().empty() ? kind_of(force) : force.getName();
 }
 
-int Joinings::inboard(int p, int first, double temperature) const {
-    Joining const previous = to_previous(p);
-    bool const constrained = std::isinf(previous.stiffness);
-    int stiffest = -1;
+template <class Accept>
+int Joinings::stiffest(int p, int first, double temperature, Accept const& accept) const {
+    int found = -1;
     double least = std::numeric_limits<double>::infinity();
     for (auto const& [other, joining] : to_lower_[static_cast<std::size_t>(p)]) {
         double const spread = joining.spread(temperature);
-        if (other < first || !(spread < least || (spread == least && other > stiffest))) continue;
-        stiffest = other, least = spread;
+        bool const stiffer = spread < least || (spread == least && other > found);
+        if (other >= first && stiffer && accept(other, joining)) found = other, least = spread;
     }
-    // A constraint that is no link cannot stay: no integrator would hold it.
-    bool const outranked = !constrained && least == 0;
-    bool const links = previous.holds() && previous.spread(temperature) <= StiffLinks::softest;
-    if (p > first && (constrained || (links && !outranked))) return p - 1;
-    return stiffest;
+    return found;
+}
+
+int Joinings::inboard(int p, int first, double temperature) const {
+    Joining const previous = to_previous(p), usual = between(first, first + 1);
+    int const other = stiffest(p, first, temperature, [&](int q, Joining const& joining) {
+        return q != p - 1 && joining.spread(temperature) <= StiffLinks::softest &&
+               joining.is_like(usual, temperature);
+    });
+    bool const constrained = std::isinf(previous.stiffness),
+               links = previous.holds() && previous.spread(temperature) <= StiffLinks::softest;
+    // A constraint must become a link: forces do not hold it.
+    bool const outranked = !constrained && other >= 0 && std::isinf(between(other, p).stiffness);
+    if (previous.holds() && (other < 0 || (links && !outranked))) return p - 1;
+    return other;
 }
 
 bool Joinings::goes_on(int p, int first, double temperature) const {
-    if (joins_to_previous(p)) return true;
-    int const on = inboard(p, first, temperature);
-    return on >= 0 && between(on, p).spread(temperature) <= StiffLinks::softest;
+    return joins_to_previous(p) || inboard(p, first, temperature) >= 0;
 }
 
 int Joinings::custom_inboard(int p, int first) const {
@@ -131,7 +138,7 @@ int Joinings::custom_inboard(int p, int first) const {
     return -1;
 }
 
-void Joinings::refuse_gap(int p, int first, std::string const& at) const {
+void Joinings::refuse_gap(int p, int first, double temperature, std::string const& at) const {
     if (int const custom = custom_inboard(p, first); custom >= 0)
         throw InputError(
             fmt::format("particle {} (from 0) is joined to particle {} by a CustomBondForce alone, "
@@ -140,6 +147,14 @@ void Joinings::refuse_gap(int p, int first, std::string const& at) const {
             at,
             "make such bonds links of the length that `links` gives, or end the chain before it "
             "in the topology (TER): the bond then stays a force");
+    if (int const soft = stiffest(p, first, temperature, [](int, Joining const&) { return true; });
+        soft >= 0)
+        throw InputError(
+            fmt::format("particle {0} (from 0) hangs on no earlier one of its chain by a bond like "
+                        "that of particles {1} and {2}: the stiffest, to particle {3}, has {4:.6g} "
+                        "kJ/mol/nm2",
+                        p, first, first + 1, soft, between(soft, p).stiffness),
+            at, "end the chain before it in the topology (TER): its bonds then stay springs");
     // The next particle follows in a row after a gap.
     auto const high =
         std::find_if(to_lower_.begin() + std::min(p + 2, static_cast<int>(to_lower_.size())),

@@ -247,7 +247,9 @@ TEST_F(Import, BranchesHangOnEarlierBeads) {
     bonds->setBondParameters(1, 3, 1, 0.41, stiff);
     bonds->addBond(3, 2, 0.5, 1);  // too soft for a link
     ImportedSystem const imported = import(wound(beads, 1));
-    EXPECT_TRUE(imported.notes.empty());
+    EXPECT_EQ(imported.notes,
+              std::vector<std::string>{"Chain A is branched (particle 3 hangs on particle 1, from "
+                                       "0): branched chains run on one rank and on the host."});
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.chains[0].length, (std::vector<double>{0, 0.38, 0.39, 0.41}));
     EXPECT_TRUE(imported.chains[1].parent.empty());
@@ -258,15 +260,14 @@ TEST_F(Import, BranchesHangOnEarlierBeads) {
 TEST_F(Import, BondsThatCloseCyclesOfBranchesAreNamed) {
     join_glycines();
     bonds->setBondParameters(1, 3, 0, 0.41, stiff);
-    EXPECT_TRUE(import(wound(beads, 1)).notes.empty());
+    EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);  // on the branch alone
     bonds->addBond(3, 1, 0.6, stiff);
     ImportedSystem const imported = import(wound(beads, 1));
     // Both are equally stiff for their lengths but for 0.6 nm, which is the stiffer link.
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
-    EXPECT_EQ(imported.notes,
-              std::vector<std::string>{"1 stiff bond of branched chains closes a cycle of links "
-                                       "(particles 0 and 3 from 0) and stays a force: links form "
-                                       "no cycles."});
+    EXPECT_EQ(imported.notes.at(1),
+              "1 stiff bond of branched chains closes a cycle of links (particles 0 and 3 from 0) "
+              "and stays a force: links form no cycles.");
 }
 
 /// A constraint that is no link could not stay: it outranks the spring to the bead before.
@@ -276,7 +277,7 @@ TEST_F(Import, ConstraintsOutrankSprings) {
     ImportedSystem const imported = import(wound(beads, 1));
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.chains[0].length[3], 0.45);
-    EXPECT_TRUE(imported.notes.at(0).starts_with("1 stiff bond of branched chains closes a cycle"));
+    EXPECT_TRUE(imported.notes.at(1).starts_with("1 stiff bond of branched chains closes a cycle"));
 }
 
 /// Bonds of named forces become links between any beads of a chain.
@@ -297,6 +298,18 @@ TEST_F(Import, NamedBondsMakeBranches) {
     ImportedSystem const imported = import_openmm_system(named, "scene.yaml");
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.chains[0].length[3], 0.97);
+}
+
+/// A spring of a network is no link between two proteins without a TER between them.
+TEST_F(Import, SpringsUnlikeTheLinksMakeNoBranches) {
+    join_glycines();
+    bonds->setBondParameters(1, 3, 1, 0.41, 700);
+    EXPECT_EQ(complaint([&] { import(wound(beads, 1)); }),
+              "particle 3 (from 0) hangs on no earlier one of its chain by a bond like that of "
+              "particles 0 and 1: the stiffest, to particle 1, has 700 kJ/mol/nm2 (scene.yaml: "
+              "forces.openmm.system, chain A, body 4): end the chain before it in the topology "
+              "(TER): its bonds then stay springs");
+    EXPECT_EQ(chains_by_bonds(spec(""), "s.yaml").sizes, (std::vector<std::int64_t>{3, 1, 2, 1}));
 }
 
 /// A star whose centre comes last has no order in which each bead hangs on an earlier one.

@@ -226,6 +226,7 @@ TEST(Rna, OfThePackagesSystemIsABranchedChain) {
                     chain.beads.length[k], 1e-9)
             << k;
     EXPECT_TRUE(has_note(scene, "11 links of fixed length stand for soft bonds"));
+    EXPECT_TRUE(has_note(scene, "Chain A is branched (particle 2 hangs on particle 0, from 0)"));
     auto const found = energies_of(scene);
     auto const expected = package.energies(chain.beads.position);
     ASSERT_EQ(found.size(), 4U);  // without the bonds
