@@ -130,8 +130,8 @@ TEST_F(Rna, RefusesWhatIsNoRna) {
             "RNA from a structure file (s.yaml: chains[0].pdb, line 1): give its `sequence`, and "
             "its beads' places by `positions` (a table x,y,z with backbone and base by turns)");
     refused("sequence: ACG, tip: ring",
-            "a tip that is not free on a branched chain (s.yaml: "
-            "chains[0].tip, line 1): leave it out");
+            "a tip that is not free on a branched chain (s.yaml: chains[0].tip, line 1): leave "
+            "`tip` out: branched chains have neither rings nor links to the ground but at bead 1");
     EXPECT_EQ(refusal("units: si\n" + chain("sequence: ACG")),
               "model calvados_rna in SI units (s.yaml: chains[0], line 2): write `units: md`: its "
               "parameters are in nm, amu and kJ/mol");
