@@ -49,7 +49,7 @@ Residues beads_of(ChainRequest& request) {
     return residues;
 }
 
-/// Bead on which each bead hangs: 0 1 0, 3 2, 5 4, ... counted from 0.
+/// Bead on which each bead hangs, counted from 0: -1, 0, 0, 2, 2, 4, 4, ...
 std::vector<std::int64_t> comb(std::size_t beads) {
     std::vector<std::int64_t> inboard;
     for (std::int64_t k = 0; k < static_cast<std::int64_t>(beads); ++k)
