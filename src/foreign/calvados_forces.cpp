@@ -46,6 +46,7 @@ BondForces bond_forces_of(PackageFile const& config, CalvadosComponents const& c
     BondForces made;
     for (CalvadosComponent const& component : components.all) {
         ++made.harmonic;
+        if (component.is_rna()) ++made.custom;  // stacked bases
         if (component.is_go())
             made.custom += 3;  // contacts, scaled contacts and scaled charges
         else if (component.restrained)
@@ -72,7 +73,9 @@ class BondCheck {
 
     void compare() {
         for (CalvadosComponent const& component : components_.all) {
-            if (ForceText const* const bonds = next("HarmonicBondForce"))
+            if (component.is_rna())
+                compare_rna(component);
+            else if (ForceText const* const bonds = next("HarmonicBondForce"))
                 refuse_stiffness(component, *bonds, "kb", component.kb);
             if (component.is_go()) {
                 if (ForceText const* const contacts = next("CustomBondForce"))
@@ -96,22 +99,63 @@ class BondCheck {
         return nullptr;
     }
 
+    /// Compares bonds, stacked bases and angles of RNA. Restraints change lengths and angles.
+    void compare_rna(CalvadosComponent const& rna) {
+        if (ForceText const* const bonds = next("HarmonicBondForce"))
+            for (BondText const& bond : bonds->bonds) {
+                bool const is_base = bond.second == bond.first + 1;
+                refuse_other(rna, {"bonds", "a stiffness", "kJ/mol/nm2"}, bond.stiffness,
+                             is_base ? "rna_kb2" : "rna_kb1", is_base ? rna.rna_kb2 : rna.rna_kb1);
+            }
+        if (ForceText const* const stacks = next("CustomBondForce")) {
+            auto const cutoff = stacks->globals.find("rc");
+            if (cutoff != stacks->globals.end())
+                refuse_other(rna, {"stacked bases", "a cutoff", "nm"}, cutoff->second,
+                             "rna_nb_cutoff", rna.rna_nb_cutoff);
+            for (BondText const& pair : stacks->bonds) {
+                refuse_other(rna, {"stacked bases", "a factor", ""}, pair.third, "rna_nb_scale",
+                             rna.rna_nb_scale);
+                if (!rna.restrained)
+                    refuse_other(rna, {"stacked bases", "a diameter", "nm"}, pair.length,
+                                 "rna_nb_sigma", rna.rna_nb_sigma);
+            }
+        }
+        if (ForceText const* const angles = next("HarmonicAngleForce"))
+            for (BondText const& angle : angles->bonds) {
+                refuse_other(rna, {"angles", "a stiffness", "kJ/mol/rad2"}, angle.stiffness,
+                             "rna_ka", rna.rna_ka);
+                if (!rna.restrained)
+                    refuse_other(rna, {"angles", "a rest angle", "rad"}, angle.length, "rna_pa",
+                                 rna.rna_pa);
+            }
+    }
+
+    /// What is compared, for messages: "bonds" have "a stiffness" in "kJ/mol/nm2".
+    struct Property {
+        char const *of, *name, *unit;
+    };
+    void refuse_other(CalvadosComponent const& component, Property const& what, double found,
+                      char const* key, double asked) const {
+        if (are_equal(found, asked)) return;
+        throw InputError(
+            fmt::format("{} of {} have {} of {:.6g}{}{}, those of `{}` (`{}`) {:.6g}", what.of,
+                        system_.name(), what.name, found, *what.unit == '\0' ? "" : " ", what.unit,
+                        scene::shown(component.name), key, asked),
+            components_.place(component, key), run_again);
+    }
+
     void refuse_stiffness(CalvadosComponent const& component, ForceText const& force,
                           char const* key, double asked) const {
-        for (auto const& [length, k, i, j] : force.bonds)
-            if (!are_equal(k, asked))
-                throw InputError(
-                    fmt::format("bonds of {} have a stiffness of {:.6g} kJ/mol/nm2, those of `{}` "
-                                "(`{}`) {:.6g}",
-                                system_.name(), k, scene::shown(component.name), key, asked),
-                    components_.place(component, key), run_again);
+        for (BondText const& bond : force.bonds)
+            refuse_other(component, {"bonds", "a stiffness", "kJ/mol/nm2"}, bond.stiffness, key,
+                         asked);
     }
 
     /// Throws InputError for a pair of a network that is farther apart or bound more strongly than
     /// its component allows.
     void refuse_beyond(CalvadosComponent const& component, ForceText const& force,
                        double strongest) const {
-        for (auto const& [length, k, i, j] : force.bonds) {
+        for (auto const& [length, k, i, j, third] : force.bonds) {
             if (length > component.cutoff_restr * with_rounding)
                 throw InputError(fmt::format("the network of `{}` joins pairs up to {:.6g} nm "
                                              "(`cutoff_restr`), and {} has one of {:.6g} nm",
@@ -172,7 +216,7 @@ void compare_bonds(PackageFile const& config, CalvadosComponents const& componen
                    SystemText const& system, std::vector<std::string>& notes) {
     if (!components.comparable())
         return notes.push_back(fmt::format(
-            "{} has molecules other than proteins and crowders (`molecule_type`): whether the "
+            "{} has molecules other than proteins, RNA and crowders (`molecule_type`): whether the "
             "other properties of components are those of {} is not checked.",
             "components.yaml", system.name()));
     BondForces const made = bond_forces_of(config, components), found = bond_forces_of(system);

@@ -20,6 +20,7 @@
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
 #include "structure/calvados2.hpp"
+#include "structure/calvados_rna.hpp"
 #include "structure/fasta.hpp"
 #include "structure/residue_table.hpp"
 
@@ -154,11 +155,20 @@ class TableCheck {
         return is_border || (made_.charges && !made_.charges->joined[p]);
     }
 
+    /// Type of bead k of a chain; nullptr if the table lacks it. The topology has nucleotides under
+    /// the letters of their bases, with the backbone first.
+    static ResidueType const* type_of(CalvadosComponent const& component, ResidueTable const& table,
+                                      PdbChain const& chain, std::size_t k) {
+        std::string const& name = chain.residue[k];
+        if (!component.is_rna()) return table.find(name);
+        return chain.place[k] == 0 ? table.find('p') : table.find(name.front());
+    }
+
     void compare_chain(CalvadosComponent const& component, ResidueTable const& table, std::size_t c,
                        std::size_t first) {
         PdbChain const& chain = made_.chains[c];
         for (std::size_t k = 0; k < chain.size() && first + k < masses_.size(); ++k) {
-            ResidueType const* const type = table.find(chain.residue[k]);
+            ResidueType const* const type = type_of(component, table, chain, k);
             if (type == nullptr)
                 throw InputError(fmt::format("residue `{}` of {} is not in the table",
                                              scene::shown(chain.residue[k]), made_.topology),
@@ -176,9 +186,10 @@ class TableCheck {
             auto const& [sigma, lambda, id] = contacts_->parameters[p];
             refuse_unequal({p, *type, table.name()}, "a diameter", sigma, type->sigma, "nm");
             refuse_unequal({p, *type, table.name()}, "a stickiness", lambda, type->lambda, "");
-            refuse_unequal({p, *type, table.name()}, "an `id`", id, protein ? 1 : -1, "");
+            refuse_unequal({p, *type, table.name()}, "an `id`", id,
+                           protein || component.is_rna() ? 1 : -1, "");
         }
-        if (!component.restrained) compare_bonds_of(table, chain, first);
+        if (!component.restrained) compare_bonds_of(component, table, chain, first);
         if (!component.sequences.empty() && !component.restrained)
             with_file("ffasta", component.sequences, [&](std::string const& file) {
                 compare_sequence(component, table, chain, file);
@@ -209,28 +220,34 @@ class TableCheck {
             particle.table, put_right);
     }
 
-    /// Finds the harmonic bond of each particle to the preceding one.
+    /// Finds the harmonic bonds of each particle to the two particles before it.
     void index_bonds() {
-        to_previous_.assign(masses_.size(), 0);
+        for (std::vector<double>& lengths : to_earlier_) lengths.assign(masses_.size(), 0);
         for (ForceText const& force : made_.text.forces()) {
             if (force.kind != "HarmonicBondForce") continue;
-            for (BondText const& bond : force.bonds)
-                if (bond.second == bond.first + 1 && bond.first >= 0 &&
-                    bond.second < std::ssize(to_previous_))
-                    to_previous_[static_cast<std::size_t>(bond.second)] = bond.length;
+            for (BondText const& bond : force.bonds) {
+                std::int64_t const back = bond.second - bond.first;
+                if ((back == 1 || back == 2) && bond.first >= 0 &&
+                    bond.second < std::ssize(masses_))
+                    to_earlier_[static_cast<std::size_t>(back - 1)]
+                               [static_cast<std::size_t>(bond.second)] = bond.length;
+            }
         }
     }
 
-    /// Compares bonds of a chain without a network with the mean of its residues' bonds.
-    void compare_bonds_of(ResidueTable const& table, PdbChain const& chain,
-                          std::size_t first) const {
-        for (std::size_t k = 1; k < chain.size() && first + k < to_previous_.size(); ++k) {
-            ResidueType const *const here = table.find(chain.residue[k]),
-                                     *const before = table.find(chain.residue[k - 1]);
-            double const made = to_previous_[first + k];
+    /// Compares bonds of a chain without a network with the mean of its residues' bonds, those of
+    /// RNA with the outboard bead's.
+    void compare_bonds_of(CalvadosComponent const& component, ResidueTable const& table,
+                          PdbChain const& chain, std::size_t first) const {
+        bool const rna = component.is_rna();
+        for (std::size_t k = 1; k < chain.size() && first + k < masses_.size(); ++k) {
+            bool const backbone = rna && chain.place[k] == 0;
+            ResidueType const *const here = type_of(component, table, chain, k),
+                                     *const before = type_of(component, table, chain, k - 1);
+            double const made = to_earlier_[backbone ? 1 : 0][first + k];
             if (here == nullptr || before == nullptr || made == 0) continue;
             refuse_unequal({first + k, *here, table.name()}, "a bond to the preceding residue",
-                           made, (here->bond + before->bond) / 2, "nm");
+                           made, rna ? here->bond : (here->bond + before->bond) / 2, "nm");
         }
     }
 
@@ -247,17 +264,22 @@ class TableCheck {
     void compare_sequence(CalvadosComponent const& component, ResidueTable const& table,
                           PdbChain const& chain, std::string const& file) {
         std::string const& sequence = sequence_in(file, component.name);
-        if (sequence.size() != chain.size())
-            throw InputError(fmt::format("`{}` has {} residues, and chain {} of {} has {}",
-                                         scene::shown(component.name), sequence.size(),
-                                         scene::shown(chain.name), made_.topology, chain.size()),
-                             shown(file), put_right);
+        std::size_t const beads = component.is_rna() ? calvados_rna::beads_a_nucleotide : 1;
+        if (sequence.size() * beads != chain.size())
+            throw InputError(
+                fmt::format("`{}` has {} residues, and chain {} of {} has {}",
+                            scene::shown(component.name), sequence.size(), scene::shown(chain.name),
+                            made_.topology, chain.size() / beads),
+                shown(file), put_right);
         for (std::size_t k = 0; k < chain.size(); ++k) {
-            ResidueType const* const type = table.find(sequence[k]);
-            if (type == nullptr || type->name != chain.residue[k])
+            char const letter = sequence[k / beads];
+            ResidueType const* const type = table.find(letter);
+            std::string const& name = chain.residue[k];
+            bool const same = type && (beads == 1 ? type->name == name : name[0] == letter);
+            if (!same)
                 throw InputError(fmt::format("`{}` has {} as residue {}, and {} has {}",
-                                             scene::shown(component.name), sequence[k], k + 1,
-                                             made_.topology, scene::shown(chain.residue[k])),
+                                             scene::shown(component.name), letter, k / beads + 1,
+                                             made_.topology, scene::shown(name)),
                                  shown(file), put_right);
         }
     }
@@ -289,7 +311,8 @@ class TableCheck {
     std::vector<std::string>& notes_;
     ForceText const* contacts_;
     std::vector<double> masses_;
-    std::vector<double> to_previous_;  // lengths of bonds, nm; 0 without one
+    /// Lengths of bonds to the particle before and to the one before that, nm; 0 without one.
+    std::array<std::vector<double>, 2> to_earlier_;
     std::optional<double> ph_;
     std::map<std::string, ResidueTable> tables_;
     std::map<std::pair<std::string, std::string>, std::string> sequences_;

@@ -134,11 +134,6 @@ std::int64_t WrittenSystem::first_particle(std::string const& chain, std::int64_
     return entry == first_.end() ? next : entry->second;
 }
 
-double WrittenSystem::length(std::int64_t particle) const {
-    bool const known = particle >= 0 && particle < std::ssize(links_.to_previous);
-    return known ? links_.to_previous[static_cast<std::size_t>(particle)].length : Joining{}.length;
-}
-
 Joining WrittenSystem::between(std::int64_t a, std::int64_t b) const {
     std::int64_t const low = std::min(a, b), high = std::max(a, b);
     if (low < 0 || high >= std::ssize(links_.to_previous)) return {};
@@ -211,9 +206,11 @@ void WrittenSystem::compare(std::vector<Draft> const& drafts, Scene& scene) cons
     note_lengths(scene, other_length);
 }
 
-bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads) const {
+bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads,
+                          Parents parents) const {
     for (std::int64_t k = 1; k < beads; ++k) {
-        double const one = length(a + k), other = length(b + k);
+        auto const on = static_cast<std::int64_t>(inboard_of(parents, static_cast<std::size_t>(k)));
+        double const one = length(a + on, a + k), other = length(b + on, b + k);
         if (one != other && !(std::isnan(one) && std::isnan(other))) return false;
     }
     return true;

@@ -133,7 +133,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
         what += ": a gap of an alignment", remedy = "give the sequence without gaps";
     if (std::isdigit(static_cast<unsigned char>(letter)))
         what += ": a number", remedy = "leave the numbers of positions out";
-    if (letter == 'U') what += ": selenocysteine, or RNA", remedy = "write C for selenocysteine";
+    if (letter == 'U')
+        what += ": selenocysteine, or RNA",
+            remedy = "write C for selenocysteine, or `model: calvados_rna` for RNA";
+    if (letter == 'T' && table.find('U')) what += ": thymine of DNA", remedy = "write U for RNA";
     fail(source, what, remedy);
 }
 

@@ -341,9 +341,85 @@ TEST_F(WholePackage, CustomRestraintsAreThoseOfTheSystem) {
 }
 
 TEST_F(WholePackage, MoleculesOfOtherKindsAreNotCompared) {
-    component["molecule_type"] = "rna";
-    expect_note("components.yaml has molecules other than proteins and crowders");
-    expect_note("Not compared from components.yaml: rna_ka, rna_kb1, rna_kb2");
+    component["molecule_type"] = "seastar";
+    expect_note("components.yaml has molecules other than proteins, RNA and crowders");
+    expect_note("Not compared from components.yaml: n_ends");
+}
+
+/// A peptide and two strands of RNA, as the package writes them.
+class PackageWithRna : public ::testing::Test {
+  protected:
+    TemporaryFolder here;
+    std::string const folder = package_folder(here, "rna");
+    Keys rna{{"rna_ka", "4.2"},        {"rna_kb1", "1400"},    {"rna_kb2", "2200"},
+             {"rna_nb_cutoff", "2.0"}, {"rna_nb_scale", "15"}, {"rna_nb_sigma", "0.4"},
+             {"rna_pa", "3.14"}};
+    std::string strand = "rrrrr";
+    std::string table = text_in(CATENA_SOURCE_DIR "/inputs/residues_CALVADOS2.csv") +
+                        "p,RBC,194.1,0.00,0.6954,-1,0.59\nr,RNA,126.3,1.18,0.6238,0,0.54\n";
+
+    Ended import() const {
+        std::string text =
+            "defaults:\n  charge_termini: both\n  fresidues: residues.csv\n"
+            "  ffasta: all.fasta\n";
+        for (auto const& [key, value] : rna) text += "  " + key + ": " + value + "\n";
+        write(folder + "/components.yaml",
+              text +
+                  "system:\n  peptide:\n    molecule_type: protein\n  strand:\n    "
+                  "molecule_type: rna\n    nmol: 2\n");
+        write(folder + "/all.fasta", ">peptide\nMRGGDYRKEEGSHG\n>strand\n" + strand + "\n");
+        write(folder + "/residues.csv", table);
+        return catena({"import", "rna", "--overwrite", "--output", "s.yaml"}, here.path());
+    }
+};
+
+TEST_F(PackageWithRna, IsComparedAndRunsAsItIs) {
+    Ended const e = import();
+    expect_good(e);
+    for (char const* const doubt : {"not checked", "as it is", "Not compared", "not compared"})
+        EXPECT_EQ(e.out.find(doubt), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find("2 chains are branched, the first is B (particle 16 hangs on particle 14, "
+                         "from 0): branched chains run on one rank and on the host."),
+              std::string::npos)
+        << e.out;
+    Ended const run = catena({"run", "s.yaml", "--output", "o", "--steps", "20"}, here.path());
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("VALID"), std::string::npos) << run.out;
+}
+
+TEST_F(PackageWithRna, EachPropertyCounts) {
+    for (auto const& [key, value] : Keys{{"rna_ka", "4.3"},
+                                         {"rna_kb1", "1401"},
+                                         {"rna_kb2", "8033"},
+                                         {"rna_nb_cutoff", "0.6"},
+                                         {"rna_nb_scale", "16"},
+                                         {"rna_nb_sigma", "0.41"},
+                                         {"rna_pa", "3.1"}}) {
+        Keys const whole = rna;
+        rna[key] = value;
+        Ended const e = import();
+        expect_refused(e, 2, key);
+        rna = whole;
+    }
+}
+
+TEST_F(PackageWithRna, TablesAndSequencesCount) {
+    auto const refused = [&](std::string const& part, std::string const& by,
+                             std::string const& message) {
+        std::string const whole = table;
+        table.replace(table.find(part), part.size(), by);
+        expect_refused(import(), 2, message);
+        table = whole;
+    };
+    refused("RBC,194.1", "RBC,195", "RBC has a mass of 195 amu, and particle 14");
+    refused("RNA,126.3,1.18", "RNA,126.3,1.1", "RNA has a stickiness of 1.1, and particle 15");
+    refused("-1,0.59", "-1,0.6", "RBC has a bond to the preceding residue of 0.6 nm");
+    refused("0,0.54", "0,0.55", "RNA has a bond to the preceding residue of 0.55 nm");
+    refused("0.6954,-1", "0.6954,0", "RBC has a charge of 0 e, and particle 14");
+    strand = "rrrr";
+    expect_refused(import(), 2, "`strand` has 4 residues, and chain B of top.pdb has 5");
+    strand = "rrrrA";
+    expect_refused(import(), 2, "`strand` has A as residue 5, and top.pdb has r");
 }
 
 /// What of the System a table or the configuration tells.

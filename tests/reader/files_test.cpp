@@ -109,7 +109,7 @@ TEST_F(SceneFiles, bad_fasta_files) {
     refused(
         "GU",
         "`U` at position 2 of the sequence is not a residue of calvados2: selenocysteine, or RNA",
-        "write C for selenocysteine");
+        "write C for selenocysteine, or `model: calvados_rna` for RNA");
     refused("G*S",
             "`*` at position 2 of the sequence is not a residue of calvados2: a stop within the "
             "sequence",
