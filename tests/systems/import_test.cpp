@@ -88,6 +88,66 @@ TEST_F(Import, AScenesBoxAndReplicasThatPeriodicForcesDoNotHave) {
         "`builder: calvados2` and `box: none`");
 }
 
+/// The link that closes a ring is compared with the System as the others are.
+TEST_F(Import, TheClosingLinkOfARing) {
+    auto const notes = [&](double closing, double k) {
+        OpenMM::System ring;
+        auto* springs = new OpenMM::HarmonicBondForce;
+        for (int i = 0; i < 4; ++i) ring.addParticle(100);
+        for (int i = 0; i < 3; ++i) springs->addBond(i, i + 1, 1, stiff);
+        if (k > 0) springs->addBond(3, 0, closing, k);
+        ring.addForce(springs);
+        std::string const file = scratch_file("ring.xml", xml_of(ring));
+        return parse_scene(
+                   "chains:\n  - name: r\n    tip: ring\n    bodies:\n"
+                   "      - {mass: 100, position: [0, 0, 0]}\n"
+                   "      - {mass: 100, position: [1, 0, 0], joint: {type: link}}\n"
+                   "      - {mass: 100, position: [1, 1, 0], joint: {type: link}}\n"
+                   "      - {mass: 100, position: [0, 1, 0], joint: {type: link}}\n"
+                   "forces: {openmm: {map: {r: [0, 3]}, system: " +
+                       file + "}}\n",
+                   "scene.yaml")
+            .notes;
+    };
+    EXPECT_TRUE(notes(1, stiff).empty());
+    ASSERT_EQ(notes(1, 0).size(), 1u);
+    EXPECT_NE(notes(1, 0)[0].find("1 of 4 links joins particles that the System neither bonds nor "
+                                  "constrains, the first beads 1 and 4 of chain `r`"),
+              std::string::npos)
+        << notes(1, 0)[0];
+    ASSERT_EQ(notes(1.1, stiff).size(), 1u);
+    EXPECT_NE(notes(1.1, stiff)[0].find("the first beads 1 and 4 of chain `r`: 1 nm, its bond 1.1"),
+              std::string::npos)
+        << notes(1.1, stiff)[0];
+    EXPECT_NE(complaint([&] { notes(1, 20); }).find("is too soft for a rigid link"),
+              std::string::npos);
+}
+
+/// A link from the first of two beads of a body is compared with the bond of that bead.
+TEST_F(Import, LinksThatBeginAtAnotherBeadOfABody) {
+    auto const notes = [&](int from) {
+        OpenMM::System pair;
+        auto* springs = new OpenMM::HarmonicBondForce;
+        for (int i = 0; i < 3; ++i) pair.addParticle(100);
+        springs->addBond(from, 2, 1, stiff);
+        pair.addForce(springs);
+        return parse_scene(
+                   "chains:\n  - name: b\n    bodies:\n"
+                   "      - {mass: 200, inertia: [100, 100, 100], position: [0.5, 0, 0], beads: "
+                   "[{position: [-0.5, 0, 0]}, {position: [0.5, 0, 0]}]}\n"
+                   "      - {mass: 100, position: [0, 1, 0],\n"
+                   "         joint: {type: link, translation: [-0.5, 0, 0]}}\n"
+                   "forces: {openmm: {map: {b: [0, 2]}, system: " +
+                       scratch_file("pair.xml", xml_of(pair)) + "}}\n",
+                   "scene.yaml")
+            .notes;
+    };
+    EXPECT_TRUE(notes(0).empty()) << notes(0)[0];
+    ASSERT_EQ(notes(1).size(), 1u);
+    EXPECT_NE(notes(1)[0].find("the first beads 1 and 3 of chain `b`"), std::string::npos)
+        << notes(1)[0];
+}
+
 TEST_F(Import, AlphaSynuclein) {
     std::string const reference =
         std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-system-openmm7.xml";
