@@ -28,6 +28,8 @@ struct ForceText {
     /// Defaults of its global parameters.
     std::map<std::string, double> globals;
     double cutoff = 0;  // nm
+    /// False if `usesPeriodic` says that it does not use the box.
+    bool periodic = true;
     std::vector<BondText> bonds;
     /// Particles on which a CustomExternalForce acts.
     std::vector<std::int64_t> pulled;
