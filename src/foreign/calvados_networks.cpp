@@ -129,26 +129,25 @@ class NetworkCheck {
         std::string const form = further == 1 ? "b_idx" : "d[nm]";
         for (int column = 0; column < 3; ++column) names >> line;
         if (line != form) return;  // the columns of another version
-        std::size_t next = 0, number = 1;
-        for (; std::getline(lines, line); ++next) {
-            ++number;
-            std::istringstream words(line);
-            double a = 0, b = 0, skipped = 0, length = 0, stiffness = 0;
-            words >> a >> b;
-            if (further == 1) words >> skipped;
-            words >> length >> stiffness;
-            bool const known = words && next < force.bonds.size();
-            BondText const bond = known ? force.bonds[next] : BondText{};
-            if (known && a == static_cast<double>(bond.first + 1) &&
-                b == static_cast<double>(bond.second + 1) && is_listed(bond.length, length) &&
-                is_listed(bond.stiffness, stiffness))
-                continue;
-            refuse_list(component, force, file, fmt::format(", line {}", number));
-        }
+        std::size_t next = 0;
+        for (; std::getline(lines, line); ++next)
+            if (next >= force.bonds.size() || !is_listed(force.bonds[next], line, further))
+                refuse_list(component, force, file, fmt::format(", line {}", next + 2));
         if (next != force.bonds.size()) refuse_list(component, force, file, "");
     }
-    static bool is_listed(double made, double listed) {
-        return std::abs(made - listed) <= most_listed_difference || are_equal(made, listed);
+    /// True if a line lists the bond.
+    static bool is_listed(BondText const& bond, std::string const& line, int further) {
+        std::istringstream words(line);
+        double a = 0, b = 0, skipped = 0, length = 0, stiffness = 0;
+        words >> a >> b;
+        if (further == 1) words >> skipped;
+        words >> length >> stiffness;
+        auto const alike = [](double made, double listed) {
+            return std::abs(made - listed) <= most_listed_difference || are_equal(made, listed);
+        };
+        return words && a == static_cast<double>(bond.first + 1) &&
+               b == static_cast<double>(bond.second + 1) && alike(bond.length, length) &&
+               alike(bond.stiffness, stiffness);
     }
     [[noreturn]] void refuse_list(CalvadosComponent const& component, ForceText const& force,
                                   fs::path const& file, std::string const& line) const {
