@@ -204,6 +204,11 @@ void WrittenSystem::judge(std::vector<Draft> const& drafts, Scene& scene) const 
         }
     for (std::string const& note : links.notes()) scene.note(note);
     compare(drafts, scene);
+    std::vector<std::int64_t> firsts;
+    for (Draft const& draft : drafts)
+        if (draft.chain.bead_count() > 0) firsts.push_back(draft.particle);
+    std::sort(firsts.begin(), firsts.end());
+    for (std::string const& note : notes_on_boxless(links_.boxless, firsts)) scene.note(note);
     note_box_that_no_force_knows(scene, links_.periodic);
     note_screening(scene, links_.screening);
 }

@@ -13,7 +13,6 @@
 #include "error.hpp"
 #include "scene/force_changes.hpp"
 #include "scene/node.hpp"
-#include "systems/bonded_forces.hpp"
 #include "systems/charges.hpp"
 #include "systems/linked_bonds.hpp"
 #include "systems/links.hpp"
@@ -216,47 +215,6 @@ std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const
     return {};
 }
 
-/// Looks for a term that joins beads of different chains.
-class JoinsChains final : public TermFilter {
-  public:
-    JoinsChains(OpenMmModel const& model, BeadSystem const& beads) : model_(model), beads_(beads) {}
-    bool keep(std::span<int* const> particles) override {
-        for (int const* const p : particles)
-            found_ = found_ || chain_of(*p) != chain_of(*particles[0]);
-        return false;
-    }
-    bool found() const { return found_; }
-
-  private:
-    std::int64_t chain_of(int particle) const {
-        std::vector<std::int64_t> const& offset = beads_.chain_offset;
-        std::int64_t const bead = model_.bead_of_particle[static_cast<std::size_t>(particle)];
-        return std::upper_bound(offset.begin(), offset.end(), bead) - offset.begin();
-    }
-    OpenMmModel const& model_;
-    BeadSystem const& beads_;
-    bool found_ = false;
-};
-
-/// Notes bonded forces between chains of a periodic System that do not use its box. Within a chain,
-/// which stays whole, the box makes no difference.
-std::vector<std::string> note_terms_without_box(OpenMmModel const& model, BeadSystem const& beads) {
-    std::vector<std::string> notes;
-    if (!model.system->usesPeriodicBoundaryConditions()) return notes;
-    for (int i = 0; i < model.system->getNumForces(); ++i) {
-        OpenMM::Force const& force = model.system->getForce(i);
-        if (force.usesPeriodicBoundaryConditions()) continue;
-        JoinsChains joins(model, beads);
-        copy_bonded(force, joins);
-        if (joins.found())
-            notes.push_back(
-                fmt::format("{} joins chains and does not use the box: it acts on "
-                            "coordinates as they are, not on nearest images",
-                            model.terms[static_cast<std::size_t>(i)]));
-    }
-    return notes;
-}
-
 /// Checks the boxes: a periodic System must have the scene's box. Notes a box that no force uses.
 void settle_box(System& system, BeadSystem const& beads, std::vector<std::string>& notes) {
     bool const periodic = system.usesPeriodicBoundaryConditions();
@@ -303,7 +261,6 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     settle_box(*model.system, beads, model.notes);
     model.terms = name_terms(*model.system);
     add(note_charges(model, beads));
-    add(note_terms_without_box(model, beads));
     return model;
 }
 

@@ -362,34 +362,6 @@ TEST_F(Messages, Box) {
               std::string::npos);
 }
 
-/// A spring between chains that acts on coordinates as they are, in a periodic System.
-TEST_F(Messages, TermsBetweenChainsThatIgnoreTheBox) {
-    beads.box = Vec3{{5, 6, 7}};
-    auto const description = [&](int other, bool uses_box) {
-        auto const force = make_openmm_force(
-            with_system([&](auto& s) {
-                s.setDefaultPeriodicBoxVectors({5, 0, 0}, {0, 6, 0}, {0, 0, 7});
-                auto* pairs = new OpenMM::CustomNonbondedForce("1/r");
-                pairs->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffPeriodic);
-                pairs->setCutoffDistance(2);
-                for (int i = 0; i < 6; ++i) pairs->addParticle();
-                s.addForce(pairs);
-                auto* bonds = new OpenMM::HarmonicBondForce;
-                bonds->addBond(0, other, 1, 10);
-                bonds->setUsesPeriodicBoundaryConditions(uses_box);
-                s.addForce(bonds);
-            }),
-            beads, *serial);
-        return fmt::format("{}", fmt::join(force->description(), "\n"));
-    };
-    std::string const note =
-        "HarmonicBondForce joins chains and does not use the box: it acts on coordinates as they "
-        "are, not on nearest images";
-    EXPECT_NE(description(5, false).find(note), std::string::npos) << description(5, false);
-    EXPECT_EQ(description(5, true).find(note), std::string::npos);
-    EXPECT_EQ(description(2, false).find(note), std::string::npos);
-}
-
 TEST_F(Messages, TooManyForces) {
     for (int const count : {33, 10000})  // soon, before each is given a name of its own
         EXPECT_EQ(of_system([&](auto& s) {

@@ -1,6 +1,10 @@
 #include "systems/import.hpp"
 
 #include <OpenMM.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "reader/load_scene.hpp"
 #include "scene/force_changes.hpp"
@@ -86,6 +90,40 @@ TEST_F(Import, AScenesBoxAndReplicasThatPeriodicForcesDoNotHave) {
         "replicas of a System whose forces are periodic (scene.yaml: replicas, line 2): leave "
         "`replicas` out and run the scene with several seeds, or write the chains with "
         "`builder: calvados2` and `box: none`");
+}
+
+/// A spring between chains that acts on coordinates as they are, in a periodic System.
+TEST_F(Import, ABondBetweenChainsThatDoesNotUseTheBoxIsNoted) {
+    join_glycines();
+    system->setDefaultPeriodicBoxVectors({50, 0, 0}, {0, 60, 0}, {0, 0, 70});
+    auto* springs = new OpenMM::HarmonicBondForce;
+    springs->addBond(1, 3, 0.8, 10);
+    springs->setName("Springs");
+    system->addForce(springs);
+    auto const notes = [&](bool within, bool between) {
+        bonds->setUsesPeriodicBoundaryConditions(between);
+        springs->setUsesPeriodicBoundaryConditions(within);
+        return fmt::format("{}", fmt::join(import(wound(beads, 1)).notes, "|"));
+    };
+    std::string const ends =
+        " joins chains and does not use the box: it acts on coordinates as they are, not on "
+        "nearest images.";
+    EXPECT_NE(notes(true, false).find("The System's HarmonicBondForce" + ends), std::string::npos);
+    EXPECT_EQ(notes(false, true).find(ends), std::string::npos);
+    EXPECT_EQ(notes(false, false).find(ends), std::string::npos);  // nothing is periodic
+    springs->setUsesPeriodicBoundaryConditions(true);
+    bonds->setUsesPeriodicBoundaryConditions(false);
+    std::string const written =
+        "chains:\n  - {name: a, sequence: KDEK, model: calvados2, links: as_given}\n"
+        "  - {name: b, sequence: GG, model: calvados2}\n  - {name: c, sequence: W, model: "
+        "calvados2}\n"
+        "box: {periodic: [50, 60, 70]}\nforces: {openmm: {map: {a: [0, 3], b: [4, 5], c: [6, 6]}, "
+        "system: " +
+        spec("none").system + "}}\n";
+    std::vector<std::string> const of_scene = parse_scene(written, "scene.yaml").notes;
+    EXPECT_TRUE(std::any_of(of_scene.begin(), of_scene.end(), [&](std::string const& note) {
+        return note.find(ends) != std::string::npos;
+    }));
 }
 
 /// The link that closes a ring is compared with the System as the others are.
