@@ -149,10 +149,11 @@ void refuse_other_molecules(CalvadosComponents const& components, MadeSystem con
             std::string(write_again) + ", or move it out of the folder if it is of another System");
     // A complex, which only structures give, has several chains once its ends have a TER.
     if (components.all.size() > 1)
-        notes.push_back(
-            fmt::format("{} has {} chains for {} molecules: whether `charge_termini`, "
-                        "`ext_restraint`, `ffasta` and `fresidues` are those of {} is not checked.",
-                        made.topology, chains, molecules, made.name()));
+        notes.push_back(fmt::format(
+            "{} has {} chains for {} molecules: whether `charge_termini`, "
+            "`ext_restraint`, `ffasta` and `fresidues` are those of {}, and whether its "
+            "molecules are alike, is not checked.",
+            made.topology, chains, molecules, made.name()));
 }
 
 /// Positions in the folder's top.pdb; none if it is not there, cannot be read or is not of that

@@ -66,13 +66,14 @@ class NetworkCheck {
           may_be_another_start_(may_be_another_start),
           notes_(notes) {}
 
-    void compare(ComponentForces const& of, Molecules const& molecules) const {
+    /// `molecules` is nullptr if they are not known.
+    void compare(ComponentForces const& of, Molecules const* molecules) const {
         std::vector<ForceText const*> all = of.networks;
         all.push_back(of.bonds);
         for (ForceText const* const force : all) {
             if (force == nullptr) continue;
             note_without_box(*of.component, *force);
-            refuse_unlike_molecules(*of.component, *force, molecules);
+            if (molecules != nullptr) refuse_unlike_molecules(*of.component, *force, *molecules);
         }
         if (of.bonds != nullptr)
             compare_listed(*of.component, *of.bonds, "bonds_" + of.component->name + ".txt", 1);
@@ -214,12 +215,12 @@ void compare_networks(PackageFile const& config, CalvadosComponents const& compo
                       std::string const& folder, MadeSystem const& made,
                       std::vector<std::string>& notes) {
     std::vector<Molecules> const molecules = molecules_of(components, made);
-    if (molecules.empty()) return;
     // A run that starts from a structure does not write top.pdb anew.
     NetworkCheck const check(made, folder, config.text("restart", "checkpoint") != "checkpoint",
                              notes);
     std::vector<ComponentForces> const forces = forces_of(components, made.text);
-    for (std::size_t c = 0; c < forces.size(); ++c) check.compare(forces[c], molecules[c]);
+    for (std::size_t c = 0; c < forces.size(); ++c)
+        check.compare(forces[c], molecules.empty() ? nullptr : &molecules[c]);
 }
 
 }  // namespace catena::foreign
