@@ -15,11 +15,13 @@ namespace catena::foreign {
 struct CalvadosComponent {
     std::string name, type;  // type: protein, crowder, rna, lipid, ...
     std::int64_t molecules = 1;
-    /// Charged ends: both, N, C; any other word means none.
+    /// Charged ends: both, N, C; any other word and an empty one mean none.
     std::string termini;
     /// True if external forces act on its particles.
     bool pulled = true;
     bool restrained = false;
+    /// True if its network was made with nearest images in its structure's own cell.
+    bool periodic = false;
     std::string network;  // harmonic or go
     /// Stiffness of its bonds and of its harmonic network, kJ/mol/nm2; depth of its Go contacts,
     /// kJ/mol; distance up to which a network joins pairs, nm.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <regex>
+#include <utility>
 
 #include "error.hpp"
 #include "scene/fields.hpp"
@@ -18,6 +19,7 @@ namespace {
 constexpr double kilocalorie = 4.184;
 constexpr std::size_t longest_energy = 1000;  // characters of an expression of contacts
 constexpr double with_rounding = 1 + 1e-6;    // factor for limits that are written in full
+constexpr int forces_of_go = 3;               // contacts, scaled contacts and scaled charges
 
 /// Matches the expression of contacts in the package's form.
 bool match_contacts(ForceText const& force, std::smatch& parts) {
@@ -48,7 +50,7 @@ BondForces bond_forces_of(PackageFile const& config, CalvadosComponents const& c
         ++made.harmonic;
         if (component.is_rna()) ++made.custom;  // stacked bases
         if (component.is_go())
-            made.custom += 3;  // contacts, scaled contacts and scaled charges
+            made.custom += forces_of_go;
         else if (component.restrained)
             ++made.harmonic;
     }
@@ -64,50 +66,39 @@ std::string counted(BondForces const& forces) {
                        forces.custom == 1 ? "" : "s");
 }
 
-/// Compares bonds with components. The package writes one component after the other: its bonds,
-/// then its network.
+/// Compares bonds with components.
 class BondCheck {
   public:
     BondCheck(CalvadosComponents const& components, SystemText const& system)
         : components_(components), system_(system) {}
 
-    void compare() {
-        for (CalvadosComponent const& component : components_.all) {
+    void compare() const {
+        for (ComponentForces const& of : forces_of(components_, system_)) {
+            CalvadosComponent const& component = *of.component;
             if (component.is_rna())
-                compare_rna(component);
-            else if (ForceText const* const bonds = next("HarmonicBondForce"))
-                refuse_stiffness(component, *bonds, "kb", component.kb);
+                compare_rna(component, of);
+            else if (of.bonds != nullptr)
+                refuse_stiffness(component, *of.bonds, "kb", component.kb);
+            if (of.networks.empty() || of.networks[0] == nullptr) continue;
             if (component.is_go()) {
-                if (ForceText const* const contacts = next("CustomBondForce"))
-                    refuse_beyond(component, *contacts, component.k_go);
-                next("CustomBondForce"), next("CustomBondForce");
-            } else if (component.restrained) {
-                ForceText const* const network = next("HarmonicBondForce");
-                if (network == nullptr) continue;
-                refuse_stiffness(component, *network, "k_harmonic", component.k_harmonic);
-                refuse_beyond(component, *network, component.k_harmonic);
+                refuse_beyond(component, *of.networks[0], component.k_go);
+            } else {
+                refuse_stiffness(component, *of.networks[0], "k_harmonic", component.k_harmonic);
+                refuse_beyond(component, *of.networks[0], component.k_harmonic);
             }
         }
     }
 
   private:
-    /// Next force of that kind.
-    ForceText const* next(std::string const& kind) {
-        std::vector<ForceText> const& forces = system_.forces();
-        for (std::size_t& at = next_[kind]; at < forces.size();)
-            if (ForceText const& force = forces[at++]; force.kind == kind) return &force;
-        return nullptr;
-    }
-
     /// Compares bonds, stacked bases and angles of RNA. Restraints change lengths and angles.
-    void compare_rna(CalvadosComponent const& rna) {
-        if (ForceText const* const bonds = next("HarmonicBondForce"))
-            for (BondText const& bond : bonds->bonds) {
+    void compare_rna(CalvadosComponent const& rna, ComponentForces const& of) const {
+        if (of.bonds != nullptr)
+            for (BondText const& bond : of.bonds->bonds) {
                 bool const is_base = bond.second == bond.first + 1;
                 refuse_other(rna, {"bonds", "a stiffness", "kJ/mol/nm2"}, bond.stiffness,
                              is_base ? "rna_kb2" : "rna_kb1", is_base ? rna.rna_kb2 : rna.rna_kb1);
             }
-        if (ForceText const* const stacks = next("CustomBondForce")) {
+        if (ForceText const* const stacks = of.stacks) {
             auto const cutoff = stacks->globals.find("rc");
             if (cutoff != stacks->globals.end())
                 refuse_other(rna, {"stacked bases", "a cutoff", "nm"}, cutoff->second,
@@ -120,7 +111,7 @@ class BondCheck {
                                  "rna_nb_sigma", rna.rna_nb_sigma);
             }
         }
-        if (ForceText const* const angles = next("HarmonicAngleForce"))
+        if (ForceText const* const angles = of.angles)
             for (BondText const& angle : angles->bonds) {
                 refuse_other(rna, {"angles", "a stiffness", "kJ/mol/rad2"}, angle.stiffness,
                              "rna_ka", rna.rna_ka);
@@ -173,10 +164,32 @@ class BondCheck {
 
     CalvadosComponents const& components_;
     SystemText const& system_;
-    std::map<std::string, std::size_t> next_;
 };
 
 }  // namespace
+
+std::vector<ComponentForces> forces_of(CalvadosComponents const& components,
+                                       SystemText const& system) {
+    std::map<std::string, std::size_t> after;  // one past the last force of each kind so far
+    auto const next = [&](std::string const& kind) -> ForceText const* {
+        std::vector<ForceText> const& forces = system.forces();
+        for (std::size_t& at = after[kind]; at < forces.size();)
+            if (ForceText const& force = forces[at++]; force.kind == kind) return &force;
+        return nullptr;
+    };
+    std::vector<ComponentForces> found;
+    for (CalvadosComponent const& component : components.all) {
+        ComponentForces of{&component, next("HarmonicBondForce")};
+        if (component.is_rna())
+            of.stacks = next("CustomBondForce"), of.angles = next("HarmonicAngleForce");
+        if (component.is_go())
+            for (int i = 0; i < forces_of_go; ++i) of.networks.push_back(next("CustomBondForce"));
+        else if (component.restrained)
+            of.networks.push_back(next("HarmonicBondForce"));
+        found.push_back(std::move(of));
+    }
+    return found;
+}
 
 ForceText const* contacts_of(SystemText const& system) {
     std::smatch parts;
@@ -213,7 +226,9 @@ void compare_contacts(PackageFile const& config, SystemText const& system,
 }
 
 void compare_bonds(PackageFile const& config, CalvadosComponents const& components,
-                   SystemText const& system, std::vector<std::string>& notes) {
+                   std::string const& folder, MadeSystem const& made_system,
+                   std::vector<std::string>& notes) {
+    SystemText const& system = made_system.text;
     if (!components.comparable())
         return notes.push_back(fmt::format(
             "{} has molecules other than proteins, RNA and crowders (`molecule_type`): whether the "
@@ -232,6 +247,7 @@ void compare_bonds(PackageFile const& config, CalvadosComponents const& componen
             "the others act, too.",
             system.name(), counted(found), counted(made)));
     BondCheck(components, system).compare();
+    compare_networks(config, components, folder, made_system, notes);
 }
 
 }  // namespace catena::foreign

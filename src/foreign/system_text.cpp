@@ -87,6 +87,7 @@ ForceText force_of(std::string const& text, std::size_t at, std::size_t next) {
     force.kind = attribute_text(text, at, "type");
     force.energy = unescaped(attribute_text(text, at, "energy"));
     force.cutoff = attribute_of(text, at, "cutoff").value_or(0);
+    force.periodic = attribute_text(text, at, "usesPeriodic") != "0";
     std::size_t const globals = text.find("<GlobalParameters>", at);
     if (globals < next)
         each_tag(text, "<Parameter ", globals, std::min(next, text.find("</GlobalP", at)),

@@ -28,7 +28,9 @@ struct ForceText {
     std::string energy;  // its expression; empty without one
     /// Defaults of its global parameters.
     std::map<std::string, double> globals;
-    double cutoff = 0;            // nm
+    double cutoff = 0;  // nm
+    /// False if `usesPeriodic` says that it does not use the box.
+    bool periodic = true;
     std::vector<BondText> bonds;  // or angles, with their first two particles
     /// Particles on which a CustomExternalForce acts.
     std::vector<std::int64_t> pulled;

@@ -36,7 +36,8 @@ class WrittenSystem {
     /// lengths.
     bool alike(std::int64_t a, std::int64_t b, std::int64_t beads, Parents parents = {}) const;
     /// Notes soft springs of the System that links of these chains replace; throws InputError for
-    /// the softest. Notes links where the System has no bond, or one of another length.
+    /// the softest. Notes links where the System has no bond, or one of another length, and bonded
+    /// forces between chains that do not use a periodic System's box.
     void judge(std::vector<Draft> const& drafts, Scene&) const;
     /// True if a force of the System is periodic.
     bool is_periodic() const { return links_.periodic; }

@@ -10,6 +10,7 @@
 #include "scene/branches.hpp"
 #include "scene/force_changes.hpp"
 #include "scene/node.hpp"
+#include "systems/bonded_forces.hpp"
 #include "systems/links.hpp"
 #include "systems/model.hpp"
 #include "systems/pdb_topology.hpp"
@@ -223,7 +224,50 @@ std::vector<std::pair<std::int64_t, std::int64_t>> custom_bonds(OpenMM::System c
     return pairs;
 }
 
+/// Collects the particles of terms.
+class Spans final : public TermFilter {
+  public:
+    bool keep(std::span<int* const> particles) override {
+        auto const [low, high] = std::minmax_element(
+            particles.begin(), particles.end(), [](int const* a, int const* b) { return *a < *b; });
+        found.emplace_back(**low, **high);
+        return false;
+    }
+    std::vector<std::pair<std::int64_t, std::int64_t>> found;
+};
+
+/// Bonded forces of a periodic System that do not use its box.
+std::vector<BoxlessForce> boxless_forces(OpenMM::System const& system) {
+    std::vector<BoxlessForce> forces;
+    if (!system.usesPeriodicBoundaryConditions()) return forces;
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        if (system.getForce(i).usesPeriodicBoundaryConditions()) continue;
+        Spans spans;
+        copy_bonded(system.getForce(i), spans);
+        if (!spans.found.empty())
+            forces.push_back({term_names(system, {i}).front(), std::move(spans.found)});
+    }
+    return forces;
+}
+
 }  // namespace
+
+std::vector<std::string> notes_on_boxless(std::vector<BoxlessForce> const& forces,
+                                          std::vector<std::int64_t> const& first) {
+    auto const chain_of = [&](std::int64_t particle) {
+        return std::upper_bound(first.begin(), first.end(), particle) - first.begin();
+    };
+    std::vector<std::string> notes;
+    for (auto const& [name, spans] : forces)
+        if (std::any_of(spans.begin(), spans.end(), [&](auto const& span) {
+                return chain_of(span.first) != chain_of(span.second);
+            }))
+            notes.push_back(
+                fmt::format("The System's {} joins chains and does not use the box: it acts on "
+                            "coordinates as they are, not on nearest images.",
+                            name));
+    return notes;
+}
 
 SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
@@ -240,6 +284,7 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
         links.farther.emplace(std::pair(low, high), joining);
     });
     links.custom = custom_bonds(*system);
+    links.boxless = boxless_forces(*system);
     return links;
 }
 
@@ -324,10 +369,17 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
             import_chain(chain, first, *system, joinings, links, {spec.temperature, where}));
         first += static_cast<int>(chain.size());
     }
+    std::vector<std::int64_t> firsts;  // of the topology's chains
+    std::int64_t next = 0;
+    for (auto const& chain : whole) {
+        firsts.push_back(next);
+        next += static_cast<std::int64_t>(chain.size());
+    }
     for (auto const& notes : {links.notes(), note_branches(imported.chains),
                               note_rings(imported.chains, joinings, spec.temperature),
                               note_cycles(imported.chains, joinings, spec.temperature),
-                              note_joined(chains, joinings, spec.temperature)})
+                              note_joined(chains, joinings, spec.temperature),
+                              notes_on_boxless(boxless_forces(*system), firsts)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.largest_spread = links.largest_spread();
     imported.screening = screening_of(*system);

@@ -56,6 +56,17 @@ struct ImportedSystem {
     std::optional<Screening> screening;
 };
 
+/// A bonded force of a periodic System that does not use its box.
+struct BoxlessForce {
+    std::string name;
+    /// Lowest and highest particle of each term.
+    std::vector<std::pair<std::int64_t, std::int64_t>> spans;
+};
+/// Returns sentences on the forces that join chains. `first`: first particle of each chain, in
+/// ascending order. Within a chain, which stays whole, the box makes no difference.
+std::vector<std::string> notes_on_boxless(std::vector<BoxlessForce> const&,
+                                          std::vector<std::int64_t> const& first);
+
 /// The links of a System, for chains that the scene writes itself.
 struct SystemLinks {
     /// True if at least one force uses the box.
@@ -68,6 +79,7 @@ struct SystemLinks {
     /// Pairs that CustomBondForces and compounds of two particles bond, each with the lower
     /// particle first, in ascending order.
     std::vector<std::pair<std::int64_t, std::int64_t>> custom;
+    std::vector<BoxlessForce> boxless;
     /// Sentences on what was left out.
     std::vector<std::string> notes;
     /// Screening of the System's charges, if that is recognised.

@@ -494,7 +494,7 @@ TEST_F(DamagedPackage, HistidinesAtInnerEndsOfAComplexHaveTheirCharges) {
     for (int p = 1; p < system->getNumParticles(); ++p)
         if (p != 17) bonds->addBond(p - 1, p, 0.38, 8033);
     auto* const network = new OpenMM::HarmonicBondForce;
-    network->addBond(0, 4, 0.76, 700);
+    network->addBond(0, 2, 0.76, 700);
     system->addForce(bonds), system->addForce(network);
     auto const save = [&] {
         std::ofstream out(folder + "/idr.xml");

@@ -1,6 +1,10 @@
 #include "systems/import.hpp"
 
 #include <OpenMM.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "reader/load_scene.hpp"
 #include "scene/force_changes.hpp"
@@ -86,6 +90,100 @@ TEST_F(Import, AScenesBoxAndReplicasThatPeriodicForcesDoNotHave) {
         "replicas of a System whose forces are periodic (scene.yaml: replicas, line 2): leave "
         "`replicas` out and run the scene with several seeds, or write the chains with "
         "`builder: calvados2` and `box: none`");
+}
+
+/// A spring between chains that acts on coordinates as they are, in a periodic System.
+TEST_F(Import, ABondBetweenChainsThatDoesNotUseTheBoxIsNoted) {
+    join_glycines();
+    system->setDefaultPeriodicBoxVectors({50, 0, 0}, {0, 60, 0}, {0, 0, 70});
+    auto* springs = new OpenMM::HarmonicBondForce;
+    springs->addBond(1, 3, 0.8, 10);
+    springs->setName("Springs");
+    system->addForce(springs);
+    auto const notes = [&](bool within, bool between) {
+        bonds->setUsesPeriodicBoundaryConditions(between);
+        springs->setUsesPeriodicBoundaryConditions(within);
+        return fmt::format("{}", fmt::join(import(wound(beads, 1)).notes, "|"));
+    };
+    std::string const ends =
+        " joins chains and does not use the box: it acts on coordinates as they are, not on "
+        "nearest images.";
+    EXPECT_NE(notes(true, false).find("The System's HarmonicBondForce" + ends), std::string::npos);
+    EXPECT_EQ(notes(false, true).find(ends), std::string::npos);
+    EXPECT_EQ(notes(false, false).find(ends), std::string::npos);  // nothing is periodic
+    springs->setUsesPeriodicBoundaryConditions(true);
+    bonds->setUsesPeriodicBoundaryConditions(false);
+    std::string const written =
+        "chains:\n  - {name: a, sequence: KDEK, model: calvados2, links: as_given}\n"
+        "  - {name: b, sequence: GG, model: calvados2}\n  - {name: c, sequence: W, model: "
+        "calvados2}\n"
+        "box: {periodic: [50, 60, 70]}\nforces: {openmm: {map: {a: [0, 3], b: [4, 5], c: [6, 6]}, "
+        "system: " +
+        spec("none").system + "}}\n";
+    std::vector<std::string> const of_scene = parse_scene(written, "scene.yaml").notes;
+    EXPECT_TRUE(std::any_of(of_scene.begin(), of_scene.end(), [&](std::string const& note) {
+        return note.find(ends) != std::string::npos;
+    }));
+}
+
+/// The link that closes a ring is compared with the System as the others are.
+TEST_F(Import, TheClosingLinkOfARing) {
+    auto const notes = [&](double closing, double k) {
+        OpenMM::System ring;
+        auto* springs = new OpenMM::HarmonicBondForce;
+        for (int i = 0; i < 4; ++i) ring.addParticle(100);
+        for (int i = 0; i < 3; ++i) springs->addBond(i, i + 1, 1, stiff);
+        if (k > 0) springs->addBond(3, 0, closing, k);
+        ring.addForce(springs);
+        std::string const file = scratch_file("ring.xml", xml_of(ring));
+        return parse_scene(
+                   "chains:\n  - name: r\n    tip: ring\n    bodies:\n"
+                   "      - {mass: 100, position: [0, 0, 0]}\n"
+                   "      - {mass: 100, position: [1, 0, 0], joint: {type: link}}\n"
+                   "      - {mass: 100, position: [1, 1, 0], joint: {type: link}}\n"
+                   "      - {mass: 100, position: [0, 1, 0], joint: {type: link}}\n"
+                   "forces: {openmm: {map: {r: [0, 3]}, system: " +
+                       file + "}}\n",
+                   "scene.yaml")
+            .notes;
+    };
+    EXPECT_TRUE(notes(1, stiff).empty());
+    ASSERT_EQ(notes(1, 0).size(), 1u);
+    EXPECT_NE(notes(1, 0)[0].find("1 of 4 links joins particles that the System neither bonds nor "
+                                  "constrains, the first beads 1 and 4 of chain `r`"),
+              std::string::npos)
+        << notes(1, 0)[0];
+    ASSERT_EQ(notes(1.1, stiff).size(), 1u);
+    EXPECT_NE(notes(1.1, stiff)[0].find("the first beads 1 and 4 of chain `r`: 1 nm, its bond 1.1"),
+              std::string::npos)
+        << notes(1.1, stiff)[0];
+    EXPECT_NE(complaint([&] { notes(1, 20); }).find("is too soft for a rigid link"),
+              std::string::npos);
+}
+
+/// A link from the first of two beads of a body is compared with the bond of that bead.
+TEST_F(Import, LinksThatBeginAtAnotherBeadOfABody) {
+    auto const notes = [&](int from) {
+        OpenMM::System pair;
+        auto* springs = new OpenMM::HarmonicBondForce;
+        for (int i = 0; i < 3; ++i) pair.addParticle(100);
+        springs->addBond(from, 2, 1, stiff);
+        pair.addForce(springs);
+        return parse_scene(
+                   "chains:\n  - name: b\n    bodies:\n"
+                   "      - {mass: 200, inertia: [100, 100, 100], position: [0.5, 0, 0], beads: "
+                   "[{position: [-0.5, 0, 0]}, {position: [0.5, 0, 0]}]}\n"
+                   "      - {mass: 100, position: [0, 1, 0],\n"
+                   "         joint: {type: link, translation: [-0.5, 0, 0]}}\n"
+                   "forces: {openmm: {map: {b: [0, 2]}, system: " +
+                       scratch_file("pair.xml", xml_of(pair)) + "}}\n",
+                   "scene.yaml")
+            .notes;
+    };
+    EXPECT_TRUE(notes(0).empty()) << notes(0)[0];
+    ASSERT_EQ(notes(1).size(), 1u);
+    EXPECT_NE(notes(1)[0].find("the first beads 1 and 3 of chain `b`"), std::string::npos)
+        << notes(1)[0];
 }
 
 TEST_F(Import, AlphaSynuclein) {
