@@ -172,6 +172,15 @@ std::vector<Vec3> first_start_in(std::string const& folder, std::size_t particle
     return positions.size() == particles ? positions : std::vector<Vec3>();
 }
 
+/// Sentence on restrained molecules. Only those of residues can be rigid bodies of Catena.
+std::string network_note(CalvadosComponents const& components) {
+    std::string const stay = "The package's elastic networks stay forces.";
+    bool const rigid =
+        std::any_of(components.all.begin(), components.all.end(),
+                    [](CalvadosComponent const& c) { return c.restrained && !c.is_rna(); });
+    return rigid ? stay + " To move domains as rigid bodies, write `chains` with `rigid`." : stay;
+}
+
 /// Compares components with the System and the topology.
 void check_components(PackageFile const& config, PackageFile const& file, MadeSystem const& made,
                       Files const& files, std::vector<std::string>& notes) {
@@ -183,10 +192,7 @@ void check_components(PackageFile const& config, PackageFile const& file, MadeSy
         refuse_other_pulled(config, components, made);
     }
     compare_tables(config, &components, files.folder, made, notes);
-    if (components.restrained())
-        notes.push_back(
-            "The package's elastic networks stay forces. To move domains as rigid bodies, write "
-            "`chains` with `rigid`.");
+    if (components.restrained()) notes.push_back(network_note(components));
 }
 
 }  // namespace

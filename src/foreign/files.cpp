@@ -52,6 +52,15 @@ void refuse_other_program(std::vector<std::string> const& all, fs::path const& f
                          shown(folder), other->remedy);
 }
 
+/// Key of a scene's chain that reads a file of that ending; empty if none does.
+std::string key_for(std::string const& ending) {
+    for (char const* const each : {".fasta", ".fa", ".faa", ".fna"})
+        if (ending == each) return "fasta";
+    for (char const* const each : {".pdb", ".ent", ".cif", ".mmcif"})
+        if (ending == each) return "pdb";
+    return {};
+}
+
 /// Throws InputError for a file that is not a System.
 [[noreturn]] void refuse_file(std::string const& source, std::string const& tool) {
     auto const other = other_files({source});
@@ -60,8 +69,13 @@ void refuse_other_program(std::vector<std::string> const& all, fs::path const& f
         throw InputError(
             fmt::format("the file belongs to {}, and is no serialised System", other->what),
             scene::shown_path(source), other->remedy);
+    std::string const key = key_for(fs::path(source).extension().string());
     throw InputError("the file is not a serialised System", scene::shown_path(source),
-                     is_config ? "name its folder" : how_to_write(tool));
+                     is_config      ? "name its folder"
+                     : !key.empty() ? fmt::format("name the System first, or write a scene whose "
+                                                  "`chains` have `{}: {}`",
+                                                  key, fs::path(source).filename().string())
+                                    : how_to_write(tool));
 }
 
 /// Chooses the System: that of the CALVADOS package's configuration, or the only one.

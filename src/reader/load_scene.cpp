@@ -221,6 +221,7 @@ Scene parse_scene(std::string const& text, std::string const& name,
     scene::note_missing_forces(made);
     scene::note_step(made);
     scene::note_water(made);
+    scene::note_long_screening(made);
     made.hash = scene::fingerprint(made);
     return made;
 } catch (std::bad_alloc const&) {

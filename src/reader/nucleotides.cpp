@@ -21,6 +21,9 @@ namespace {
 double constexpr excluded_of_nucleotides = 0.6;
 
 void check_keys(ChainRequest& request) {
+    if (Node const* const rigid = request.fields.find("rigid"))
+        fail(*rigid, "rigid domains in a chain of nucleotides, whose model is of disordered RNA",
+             "leave `rigid` out, or import the CALVADOS package's System of a structured RNA");
     request.allow("a chain of nucleotides, whose ends are as its other nucleotides",
                   {"record", "model", "positions", "links", "anchor", "conformation"});
     if (request.scene.si)

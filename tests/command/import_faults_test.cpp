@@ -580,6 +580,15 @@ TEST_F(DamagedPackage, AFolderAboveTheRunAndItsConfigurationSayWhatToName) {
                    "the file is not a serialised System (idr/config.yaml): name its folder");
 }
 
+TEST_F(DamagedPackage, SequencesAndStructuresBelongIntoAScene) {
+    write(here / "rna.fasta", ">one\nGGCUA\n");
+    std::string const remedy = "): name the System first, or write a scene whose `chains` have `";
+    expect_refused(catena({"import", "rna.fasta"}, here.path()), 2,
+                   "the file is not a serialised System (rna.fasta" + remedy + "fasta: rna.fasta`");
+    expect_refused(catena({"import", "idr/top.pdb"}, here.path()), 2,
+                   "the file is not a serialised System (idr/top.pdb" + remedy + "pdb: top.pdb`");
+}
+
 TEST_F(DamagedPackage, AFrictionOfZeroIsSaid) {
     replace("friction_coeff: 0.02", "friction_coeff: 0");
     expect_note("config.yaml has friction 0: without a thermostat");

@@ -124,8 +124,9 @@ TEST_F(Rna, RefusesWhatIsNoRna) {
             "key `charge_termini` does not apply to a chain of nucleotides, whose ends are as its "
             "other nucleotides (s.yaml: chains[0].charge_termini, line 1): leave it out");
     refused("sequence: ACG, rigid: [[1, 3]]",
-            "key `rigid` does not apply to a chain of nucleotides, whose ends are as its other "
-            "nucleotides (s.yaml: chains[0].rigid, line 1): leave it out");
+            "rigid domains in a chain of nucleotides, whose model is of disordered RNA (s.yaml: "
+            "chains[0].rigid, line 1): leave `rigid` out, or import the CALVADOS package's System "
+            "of a structured RNA");
     refused("pdb: a.pdb",
             "RNA from a structure file (s.yaml: chains[0].pdb, line 1): give its `sequence`, and "
             "its beads' places by `positions` (a table x,y,z with backbone and base by turns)");
@@ -153,6 +154,21 @@ TEST_F(Rna, StandsBesideProteins) {
               "`calvados_rna` is a model of chains, not a builder (s.yaml: "
               "forces.openmm.builder, line 2): write `builder: calvados2`, which has the forces of "
               "RNA, too");
+}
+
+/// The forces of charges end at 4 nm. Without salt they would reach further.
+TEST_F(Rna, IsNotedInWaterWithoutSalt) {
+    auto const at = [&](std::string const& chains, std::string const& salt) {
+        return read(chains + "\nforces: {openmm: {builder: calvados2, ionic_strength: " + salt +
+                    "}}");
+    };
+    std::string const rna = chain("sequence: ACGU"), end = "forces between charges end at 4 nm",
+                      key = "forces.openmm.ionic_strength is ",
+                      neutral = "chains: [{sequence: GSG, model: calvados2, charge_termini: none}]";
+    EXPECT_TRUE(has_note(at(rna, "0"), key + "0 mol/l: nothing screens charges, and " + end));
+    EXPECT_TRUE(has_note(at(rna, "0.005"), key + "0.005 mol/l: the Debye length is 4."));
+    EXPECT_FALSE(has_note(at(rna, "0.01"), end));
+    EXPECT_FALSE(has_note(at(neutral, "0"), end));
 }
 
 /// Other tables must not have other parameters for the same names.

@@ -154,6 +154,12 @@ std::string bond_text(OpenMmSpec const& spec, ForceResidues const& residues,
                          : fmt::format("{:.6g} to {:.6g} nm", least, most);
 }
 
+/// How far charges are screened, e.g. "Debye length 0.79 nm".
+std::string screening_text(calvados2::Yukawa const& y) {
+    return y.kappa > 0 ? fmt::format("Debye length {:.4g} nm", 1 / y.kappa)
+                       : "nothing screens charges";
+}
+
 /// Sentences on parameters, cutoffs and links, for the user.
 std::vector<std::string> notes_on(OpenMmSpec const& spec, ForceResidues const& residues,
                                   BeadSystem const& beads, calvados2::Yukawa const& y,
@@ -162,13 +168,15 @@ std::vector<std::string> notes_on(OpenMmSpec const& spec, ForceResidues const& r
         residues.own() ? fmt::format(", parameters of `{}`", residues.own()->name()) : "";
     std::string const edge =
         spec.switch_width > 0 ? fmt::format("switched off over {} nm", spec.switch_width) : "cut";
-    return {fmt::format("{} at {} K, {} mol/l: Debye length {:.4g} nm, {}{}", model_name(spec),
-                        spec.temperature, spec.ionic_strength, 1 / y.kappa,
-                        histidine_text(spec, residues, beads.residue), own),
-            fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
-                        calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
-            fmt::format("{}{} links replace the model's harmonic bonds of {}", rigid_note(beads),
-                        beads.links.size(), bond_text(spec, residues, beads, has_rna))};
+    return {
+        fmt::format("{} at {} K, {} mol/l: {}, {}{}", model_name(spec), spec.temperature,
+                    spec.ionic_strength, screening_text(y),
+                    histidine_text(spec, residues, beads.residue), own),
+        fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
+                    calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
+        fmt::format("{}{} {} the model's harmonic bonds of {}", rigid_note(beads),
+                    beads.links.size(), beads.links.size() == 1 ? "link replaces" : "links replace",
+                    bond_text(spec, residues, beads, has_rna))};
 }
 
 }  // namespace

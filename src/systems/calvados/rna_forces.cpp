@@ -77,8 +77,8 @@ void add_force(OpenMmModel& model, std::unique_ptr<OpenMM::Force> force) {
 
 std::string note_on(Nucleotides const& rna) {
     return fmt::format(
-        "{} nucleotides of CALVADOS RNA, which does not tell bases apart: {} pairs of bases stack, "
-        "{} angles of backbones; links replace bonds of {} and {} kJ/mol/nm2",
+        "CALVADOS RNA, which does not tell bases apart: nucleotides {}, stacked pairs of bases {}, "
+        "angles of backbones {}; links replace bonds of {} and {} kJ/mol/nm2",
         rna.count, rna.stacks.size(), rna.angles.size(), calvados_rna::backbone_stiffness,
         calvados_rna::base_stiffness);
 }
