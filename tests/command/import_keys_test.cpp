@@ -505,8 +505,11 @@ TEST_F(PackageWithRna, ListsOfBondsCount) {
 }
 
 TEST_F(PackageWithRna, DepthOfStackedBasesCounts) {
+    std::string const config = folder + "/config.yaml";
+    write(config, "eps_lj: 0.2\n" + text_in(config));
+    expect_good(import());
     replace_in(folder + "/rna.xml", "\".8368000000000001\" name=\"eps\"", "\".9\" name=\"eps\"");
-    expect_refused(import(), 2, "eps_lj");
+    expect_refused(import(), 2, "`eps_lj` is 0.2, and rna.xml was written with 0.215");
 }
 
 TEST_F(PackageWithRna, AnglesThatIgnoreTheBoxAreNoted) {
