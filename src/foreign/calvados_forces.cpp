@@ -20,6 +20,7 @@ constexpr double kilocalorie = 4.184;
 constexpr std::size_t longest_energy = 1000;  // characters of an expression of contacts
 constexpr double with_rounding = 1 + 1e-6;    // factor for limits that are written in full
 constexpr int forces_of_go = 3;               // contacts, scaled contacts and scaled charges
+constexpr int scaled_contacts_of_go = 1;
 
 /// Matches the expression of contacts in the package's form.
 bool match_contacts(ForceText const& force, std::smatch& parts) {
@@ -191,6 +192,24 @@ std::vector<ComponentForces> forces_of(CalvadosComponents const& components,
     return found;
 }
 
+namespace {
+
+/// Compares global parameters of stacked bases or scaled contacts with config.yaml. RNA has a
+/// cutoff of its own.
+void compare_globals(PackageFile const& config, ForceText const* force,
+                     std::vector<std::string> const& names, std::string const& system) {
+    if (force == nullptr) return;
+    for (std::string const& name : names) {
+        auto const found = force->globals.find(name);
+        if (found == force->globals.end()) continue;
+        bool const depth = name == "eps";
+        refuse_another(config, depth ? "eps_lj" : "cutoff_lj", found->second,
+                       depth ? kilocalorie : 1, system);
+    }
+}
+
+}  // namespace
+
 ForceText const* contacts_of(SystemText const& system) {
     std::smatch parts;
     for (ForceText const& force : system.forces())
@@ -247,6 +266,12 @@ void compare_bonds(PackageFile const& config, CalvadosComponents const& componen
             "the others act, too.",
             system.name(), counted(found), counted(made)));
     BondCheck(components, system).compare();
+    for (ComponentForces const& of : forces_of(components, system)) {
+        compare_globals(config, of.stacks, {"eps"}, system.name());
+        if (of.networks.size() == forces_of_go)
+            compare_globals(config, of.networks[scaled_contacts_of_go], {"eps", "rc"},
+                            system.name());
+    }
     compare_networks(config, components, folder, made_system, notes);
 }
 

@@ -75,7 +75,8 @@ class NetworkCheck {
             note_without_box(*of.component, *force);
             if (molecules != nullptr) refuse_unlike_molecules(*of.component, *force, *molecules);
         }
-        if (of.bonds != nullptr && !of.component->is_rna())
+        if (of.angles != nullptr) note_without_box(*of.component, *of.angles);
+        if (of.bonds != nullptr)
             compare_listed(*of.component, *of.bonds, "bonds_" + of.component->name + ".txt", 1);
         if (!of.networks.empty() && of.networks[0] != nullptr) {
             compare_listed(*of.component, *of.networks[0], "restr_" + of.component->name + ".txt",

@@ -96,8 +96,9 @@ void FrameWriter::write(std::int64_t n, double constraint_error) {
         if (run_.communicator.rank() > 0 || write_beside(writing)) return;
     }
     Stopwatch const watch(writing);
+    // The next call checks, as on ranks that have returned.
+    if (is_beside_) return write_keeping_failure();
     write(*pending_);
-    if (is_beside_) return;  // the next call checks, as on ranks that have returned
     pending_.reset();
     folder_->check();
 }
@@ -113,17 +114,21 @@ bool FrameWriter::write_beside(double& writing) {
     try {
         frame_ = std::async(std::launch::async, [this, &writing] {
             Stopwatch const watch(writing);
-            try {
-                write(*pending_);
-            } catch (...) {
-                folder_->keep(std::current_exception());
-            }
+            write_keeping_failure();
         });
     } catch (std::system_error const&) {
         return false;
     }
     ++frames_beside_;
     return true;
+}
+
+void FrameWriter::write_keeping_failure() {
+    try {
+        write(*pending_);
+    } catch (...) {
+        folder_->keep(std::current_exception());
+    }
 }
 
 void FrameWriter::poll() {

@@ -91,6 +91,8 @@ class FrameWriter {
     /// Writes the pending frame in a thread of its own and adds its wall time to `writing`. Returns
     /// false if no thread can be created.
     bool write_beside(double& writing);
+    /// Writes the pending frame. The folder stores a failure for the next check.
+    void write_keeping_failure();
     /// Writes a frame. A single rank sends no messages.
     void write(PendingFrame const&);
     /// Computes a frame's row of observables and passes its energies to the verdict. Rank 0 only.

@@ -488,6 +488,41 @@ TEST_F(PackageWithRna, EachPropertyCounts) {
     }
 }
 
+TEST_F(PackageWithRna, ListsOfBondsCount) {
+    std::string list = "i\tj\tb_idx\td[nm]\tk[kJ/mol/nm^2]\n";
+    int index = 0;
+    for (int first : {15, 25})  // of a strand, from 1
+        for (int bead = first; bead < first + 10; bead += 2) {
+            list += fmt::format("{}\t{}\t{}\t0.5400\t2200.0000\n", bead, bead + 1, index++);
+            if (bead + 2 < first + 10)
+                list += fmt::format("{}\t{}\t{}\t0.5900\t1400.0000\n", bead, bead + 2, index++);
+        }
+    std::string const file = folder + "/bonds_strand.txt";
+    write(file, list);
+    expect_good(import());
+    replace_in(file, "15\t17\t1\t0.5900", "15\t17\t1\t0.5800");
+    expect_refused(import(), 2, "of `strand` in rna.xml are not those of the list");
+}
+
+TEST_F(PackageWithRna, DepthOfStackedBasesCounts) {
+    std::string const config = folder + "/config.yaml";
+    write(config, "eps_lj: 0.2\n" + text_in(config));
+    expect_good(import());
+    replace_in(folder + "/rna.xml", "\".8368000000000001\" name=\"eps\"", "\".9\" name=\"eps\"");
+    expect_refused(import(), 2, "`eps_lj` is 0.2, and rna.xml was written with 0.215");
+}
+
+TEST_F(PackageWithRna, AnglesThatIgnoreTheBoxAreNoted) {
+    std::string const angles =
+        "name=\"HarmonicAngleForce\" type=\"HarmonicAngleForce\" usesPeriodic=";
+    replace_in(folder + "/rna.xml", angles + "\"1\"", angles + "\"0\"");
+    Ended const e = import();
+    expect_good(e);
+    EXPECT_NE(e.out.find("A HarmonicAngleForce of `strand` in rna.xml does not use the box"),
+              std::string::npos)
+        << e.out;
+}
+
 TEST_F(PackageWithRna, TablesAndSequencesCount) {
     auto const refused = [&](std::string const& part, std::string const& by,
                              std::string const& message) {

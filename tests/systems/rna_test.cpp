@@ -280,5 +280,34 @@ TEST(Rna, OfWrittenBeadsMustBeNucleotides) {
               "(rna.yaml): hang one base on each bead RBC, and let one follow it");
 }
 
+/// One-letter codes of amino acids are names of bases, too: A, C and G. They must not become bases.
+TEST(Rna, BeadsOfTheBuiltInTableMustBeOfNucleotides) {
+    auto const scene = [](std::vector<std::string> const& residues) {
+        std::string bodies = "chains:\n  - bodies:\n";
+        for (std::size_t k = 0; k < residues.size(); ++k)
+            bodies += fmt::format("      - {{mass: 100, position: [{}, 0, 0], residue: {}{}}}\n",
+                                  0.6 * static_cast<double>(k), residues[k],
+                                  k == 0 ? "" : ", joint: {type: link}");
+        return parse_scene(bodies + forces_text(), "rna.yaml");
+    };
+    auto const refused = [&](std::vector<std::string> const& residues) {
+        return complaint([&] { energies_of(scene(residues)); });
+    };
+    std::string const remedy =
+        " (rna.yaml): give amino acids their three letters (ALA), and RNA as `sequence` with "
+        "`model: calvados_rna`";
+    EXPECT_EQ(refused({"A", "ALA"}),
+              "bead 1 has residue A of RNA and links to no backbone of RNA" + remedy);
+    EXPECT_EQ(refused({"ALA", "RNA"}),
+              "bead 2 has residue RNA of RNA and links to no backbone of RNA" + remedy);
+    EXPECT_EQ(refused({"RBC", "RBC"}),
+              "bead 1 has residue RBC of RNA and links to no base of RNA" + remedy);
+    EXPECT_EQ(refused({"RBC", "U", "RBC"}),
+              "bead 2 has residue U of RNA and links to several backbones of RNA" + remedy);
+    for (std::vector<std::string> const& good :
+         {std::vector<std::string>{"RBC", "U"}, {"C", "RBC"}, {"ALA", "CYS", "GLY"}})
+        EXPECT_NO_THROW(energies_of(scene(good))) << good[0];
+}
+
 }  // namespace
 }  // namespace catena::testing

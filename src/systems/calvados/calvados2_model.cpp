@@ -209,7 +209,7 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::array const pairs{contact.get(), charges.get()};
     model.system->addForce(contact.release());
     model.system->addForce(charges.release());
-    Nucleotides const rna = nucleotides_of(beads);
+    Nucleotides const rna = nucleotides_of(beads, residues);
     model.notes = notes_on(spec, residues, beads, y, rna.count > 0);
     add_rna_forces(model, rna, residues, beads, pairs);
     model.notes.push_back(charge_text(charge_of, beads));

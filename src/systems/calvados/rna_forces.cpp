@@ -56,6 +56,37 @@ std::vector<Nucleotide> linked(BeadSystem const& beads) {
     return found;
 }
 
+/// True if the bead has the parameters of the model's own table, and not those of the chains'.
+bool is_of_model(BeadSystem const& beads, ForceResidues const& residues, std::int64_t bead) {
+    std::string_view const name = beads.residue[static_cast<std::size_t>(bead)];
+    return built_in_table(calvados_rna::model)->find(name) != nullptr &&
+           (residues.own() == nullptr || residues.own()->find(name) == nullptr);
+}
+
+/// Throws InputError for beads of the model's table that are no part of a nucleotide: one-letter
+/// codes of amino acids are names of bases, too.
+void refuse_lone(BeadSystem const& beads, ForceResidues const& residues) {
+    std::vector<int> partners(static_cast<std::size_t>(beads.size()), 0);
+    for (auto const& [inboard, outboard, length] : beads.links)
+        if (is_backbone(beads, inboard) != is_backbone(beads, outboard))
+            ++partners[static_cast<std::size_t>(inboard)],
+                ++partners[static_cast<std::size_t>(outboard)];
+    for (std::int64_t bead = 0; bead < beads.size(); ++bead) {
+        int const links = partners[static_cast<std::size_t>(bead)];
+        bool const backbone = is_backbone(beads, bead);
+        if (links == 1 || (links > 1 && backbone) || !is_of_model(beads, residues, bead)) continue;
+        throw InputError(
+            fmt::format("bead {} has residue {} of RNA and links to {} of RNA",
+                        beads.name(bead) + 1, beads.residue[static_cast<std::size_t>(bead)],
+                        backbone     ? "no base"
+                        : links == 0 ? "no backbone"
+                                     : "several backbones"),
+            beads.scene_file,
+            "give amino acids their three letters (ALA), and RNA as `sequence` with `model: "
+            "calvados_rna`");
+    }
+}
+
 /// Stacking potential. Its parameters are diameter, stickiness and depth of a pair.
 std::unique_ptr<OpenMM::CustomBondForce> stacking(bool periodic) {
     auto force = std::make_unique<OpenMM::CustomBondForce>(
@@ -85,8 +116,9 @@ std::string note_on(Nucleotides const& rna) {
 
 }  // namespace
 
-Nucleotides nucleotides_of(BeadSystem const& beads) {
+Nucleotides nucleotides_of(BeadSystem const& beads, ForceResidues const& residues) {
     Nucleotides rna;
+    refuse_lone(beads, residues);
     if (std::find(beads.residue.begin(), beads.residue.end(), calvados_rna::backbone) ==
         beads.residue.end())
         return rna;

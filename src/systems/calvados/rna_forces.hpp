@@ -25,8 +25,9 @@ struct Nucleotides {
 };
 
 /// Finds the nucleotides: beads of the backbone by their residue, and the bases that hang on them.
-/// Throws InputError for a backbone with several bases, or one that branches.
-Nucleotides nucleotides_of(BeadSystem const&);
+/// Throws InputError for a backbone with several bases, or one that branches, and for beads of RNA
+/// by the built-in table that are no part of a nucleotide.
+Nucleotides nucleotides_of(BeadSystem const&, ForceResidues const&);
 
 /// Adds the forces of nucleotides to the model, each in the next group: stacking of bases and
 /// angles of the backbone. The pairs that these bind are excluded from the `pairs` of contacts and
