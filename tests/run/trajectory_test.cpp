@@ -95,7 +95,7 @@ TEST_P(FramesOfRanks, ThatCannotBeWrittenEndAllRanks) {
     if (std::getenv("CATENA_HDF5") != nullptr) GTEST_SKIP() << "all ranks write";
     Communicator const& world = catena::testing::world();
     Scene const scene = parse_scene(GetParam().text, "scene.yaml");
-    RunOptions options = options_of("limited", 4000, "");
+    RunOptions options = options_of("limited", 40000, "");
     options.bodies_beside = 1;
     // Without threads rank 0 writes the frames itself, which the other ranks do not know.
     std::optional<NoMoreThreads> none;
@@ -104,7 +104,7 @@ TEST_P(FramesOfRanks, ThatCannotBeWrittenEndAllRanks) {
     if (world.rank() == 0) {
         ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
         rlimit small = before;
-        small.rlim_cur = 100'000;
+        small.rlim_cur = 2'000'000;
         signal(SIGXFSZ, SIG_IGN);
         ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
     }
