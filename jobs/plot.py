@@ -118,12 +118,18 @@ def chosen_columns(names, records):
     return sorted(columns[name] for name in wanted[:MOST_PANELS])
 
 
+def mean_text(of):
+    """Mean and standard error as the terminal shows them: an error that may still grow is a lower limit."""
+    least = "" if of.get("converged", True) else "at least "
+    return f"{of['mean']:.4g} \u00b1 {least}{of['standard_error']:.2g}"
+
+
 def read_means(folder):
     """(mean, text of mean and standard error) of each observable, as far as the run's summary has them."""
     try:
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
             found = json.load(file).get("observables", {})
-        return {name: (of["mean"], f"{of['mean']:.4g} \u00b1 {of['standard_error']:.2g}") for name, of in found.items() if of["mean"] is not None and of["standard_error"]}
+        return {name: (of["mean"], mean_text(of)) for name, of in found.items() if of["mean"] is not None and of["standard_error"]}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}  # of a run that has not ended, or of an earlier version
 

@@ -141,19 +141,56 @@ std::vector<std::vector<double>> SceneWindows::hand_out(
     return own;
 }
 
-/// Returns this rank's parts; parts that are also consecutive in their group are joined.
-std::vector<SceneWindows::Part> SceneWindows::own_parts() const {
-    std::vector<Part> own;
+/// Returns all parts; parts of one rank that are also consecutive in their group are joined.
+std::vector<SceneWindows::Part> SceneWindows::joined_parts() const {
+    std::vector<Part> joined;
     for (Part const& part : parts_) {
-        if (part.rank != communicator_.rank()) continue;
-        if (!own.empty() && own.back().group == part.group &&
-            own.back().first + own.back().count == part.first &&
-            own.back().local + own.back().count == part.local)
-            own.back().count += part.count;
+        if (!joined.empty() && joined.back().rank == part.rank &&
+            joined.back().group == part.group &&
+            joined.back().first + joined.back().count == part.first &&
+            joined.back().local + joined.back().count == part.local)
+            joined.back().count += part.count;
         else
-            own.push_back(part);
+            joined.push_back(part);
     }
+    return joined;
+}
+
+std::vector<SceneWindows::Part> SceneWindows::own_parts() const {
+    std::vector<Part> own = joined_parts();
+    std::erase_if(own, [&](Part const& part) { return part.rank != communicator_.rank(); });
     return own;
+}
+
+void SceneWindows::gather(int width, std::vector<std::vector<double>> const& own,
+                          std::span<double> in_scene_order) const {
+    std::vector<Part> const parts = joined_parts();
+    std::int64_t const bytes = width * static_cast<std::int64_t>(sizeof(double)),
+                       length = std::max(bytes_ / bytes, std::int64_t{1});
+    if (bodies_ * bytes < std::ssize(parts) * shortest_part_alone)
+        return pass(width, own, [&](std::int64_t first, std::span<double const> values) {
+            std::copy(values.begin(), values.end(), in_scene_order.begin() + first * width);
+        });
+    for (Part const& part : parts)
+        for (std::int64_t at = 0; at < part.count; at += length) {
+            auto const numbers =
+                static_cast<std::size_t>(std::min(length, part.count - at) * width);
+            auto const from = [&] {
+                return std::span(own[part.group].data() + (part.local + at) * width, numbers);
+            };
+            auto const to = [&] {
+                return in_scene_order.subspan(static_cast<std::size_t>((part.first + at) * width),
+                                              numbers);
+            };
+            if (communicator_.rank() > 0) {
+                if (part.rank == communicator_.rank())
+                    communicator_.exchange(std::as_bytes(from()), 0, {}, -1);
+            } else if (part.rank > 0) {
+                communicator_.exchange({}, -1, std::as_writable_bytes(to()), part.rank);
+            } else {
+                std::ranges::copy(from(), to().begin());
+            }
+        }
 }
 
 std::vector<SceneWindows::Run> SceneWindows::own_runs() const {

@@ -29,6 +29,10 @@ class SceneWindows {
     /// of this rank's bodies of group g. An exception from `take` leaves the other ranks waiting,
     /// so it must end the program. Collective.
     void pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const;
+    /// Gathers all data on rank 0, as pass() does, into the place of each body. Other ranks pass an
+    /// empty span. Collective.
+    void gather(int width, std::vector<std::vector<double>> const& own,
+                std::span<double> in_scene_order) const;
     /// Distributes rank 0's data of all bodies to the ranks that own them, in the layout of `own`
     /// in pass(). Other ranks pass an empty span. Collective.
     std::vector<std::vector<double>> hand_out(int width,
@@ -53,6 +57,8 @@ class SceneWindows {
 
   private:
     static constexpr std::size_t most_runs = 256;  // largest number of runs in a round
+    /// Mean size in bytes from which parts are sent one by one instead of together in windows.
+    static constexpr std::int64_t shortest_part_alone = 1 << 16;
     /// Bodies that are consecutive in the scene, in their group and on their rank.
     struct Part {
         std::int64_t first, count;  // indices in the scene
@@ -70,6 +76,7 @@ class SceneWindows {
     void for_each_window(int width, Action const& action) const;
     template <class Action>
     void for_each_part_in(Window const&, Action const& action) const;
+    std::vector<Part> joined_parts() const;
     std::vector<Part> own_parts() const;
     void send(Window const&, int width, std::vector<std::vector<double>> const& own) const;
     std::vector<double> receive(Window const&, int width,

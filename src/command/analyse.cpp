@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "command/commands.hpp"
 #include "console/picture.hpp"
@@ -117,6 +118,24 @@ Json json_of(Analysis const& a) {
             {"notes", a.notes}};
 }
 
+/// Returns a note if the run's own means leave out frames at the start that this analysis counts.
+std::string equilibration_note(Analysis const& a) {
+    std::ifstream file(std::filesystem::path(a.trajectory).replace_filename("summary.json"));
+    Json const summary = Json::parse(file, nullptr, false);
+    Json::json_pointer const frames("/equilibration/frames"),
+        left_out("/equilibration/frames_left_out");
+    if (summary.is_discarded() || !summary.contains(frames) || !summary.contains(left_out))
+        return "";
+    Json const& out = summary[left_out];
+    if (a.first_frame > 0 || summary[frames] != a.frames_in_file || !out.is_number_unsigned() ||
+        out == 0)
+        return "";
+    return fmt::format(
+        "all frames count here; the run's own means leave out the first {} as equilibration, as "
+        "--first {} would",
+        out.get<std::size_t>(), out.get<std::size_t>());
+}
+
 }  // namespace
 
 Outcome analyse_run(Communicator const& communicator, AnalyseRequest const& request) {
@@ -124,7 +143,9 @@ Outcome analyse_run(Communicator const& communicator, AnalyseRequest const& requ
     on_first_rank(communicator, [&] {
         TrajectoryFile const trajectory(request.folder,
                                         request.members ? SiteOrder::members : SiteOrder::stored);
-        Analysis const found = analysis::analyse(trajectory, request.options);
+        Analysis found = analysis::analyse(trajectory, request.options);
+        if (std::string note = equilibration_note(found); !note.empty())
+            found.notes.push_back(std::move(note));
         std::string const folder = output_folder(request);
         make_output_folder(folder);
         std::vector<std::string> const files = analysis::write_tables(found, folder);

@@ -44,6 +44,19 @@ std::vector<Chosen> keys_named(std::string const& name) {
     return chosen;
 }
 
+/// Returns what `name` names: maps, before them keys that take another value in place of such a
+/// map, as `model` does; or else keys.
+std::vector<Chosen> declarations(std::string const& name) {
+    std::vector<Chosen> const maps = maps_named(name), keys = keys_named(name);
+    if (maps.empty()) return keys;
+    std::vector<Chosen> chosen;
+    for (Chosen const& each : keys)
+        if (each.keys.front().type.find("or a map") != std::string_view::npos)
+            chosen.push_back(each);
+    for (Chosen const& each : maps) chosen.push_back(each);
+    return chosen;
+}
+
 /// Throws InputError that suggests the nearest name of a map or key.
 [[noreturn]] void refuse_name(std::string const& name) {
     std::vector<std::string_view> known;
@@ -115,8 +128,7 @@ class KeysCommand final : public Command {
 std::unique_ptr<Command> keys_command() { return std::make_unique<KeysCommand>(); }
 
 Outcome declared_keys(KeysRequest const& request) {
-    std::vector<Chosen> chosen = maps_named(request.name);
-    if (chosen.empty()) chosen = keys_named(request.name);
+    std::vector<Chosen> const chosen = declarations(request.name);
     if (chosen.empty()) refuse_name(request.name);
     Outcome outcome;
     outcome.text = text_of(chosen).str();

@@ -82,6 +82,14 @@ struct StateArray {
     std::vector<double> values;  // Values of this rank's bodies, body after body.
 };
 
+/// Motion of this rank's bodies, W. The views are valid until the state changes. Point beads have
+/// no `orientation` and `omega` (B).
+struct ObservedMotion {
+    ConstView<3> position, velocity;
+    ConstView<4> orientation = {};
+    ConstView<3> omega = {};
+};
+
 /// State and equations of motion of a group of chains in absolute coordinates. An integrator builds
 /// a step from its operations; observers read results.
 class AbsoluteDynamics : public BeadHost {
@@ -98,7 +106,7 @@ class AbsoluteDynamics : public BeadHost {
     /// Kick with constraint projection: v <- P (v + h M^-1 f). P projects on the velocities that
     /// the joints permit at the current configuration. Collective.
     virtual void kick(double h) = 0;
-    /// Computes the velocities that kick(h) would produce, into a copy (observed_state()).
+    /// Computes the velocities that kick(h) would produce, into a copy (observed()).
     /// Collective.
     virtual void observe(double h) = 0;
     /// Drift: moves positions by h along the velocities. `sweeps` quasi-Newton sweeps add impulses
@@ -128,9 +136,8 @@ class AbsoluteDynamics : public BeadHost {
     virtual std::vector<StateArray> state() const = 0;
     /// Restores a state from state(); arrays are found by name.
     virtual void set_state(std::vector<StateArray> const&) = 0;
-    /// Arrays `position` and `velocity` (W), for bodies also `orientation` and `omega` (B).
-    /// Velocities are those of the last observe().
-    virtual std::vector<StateArray> observed_state() const = 0;
+    /// Returns what observers see: positions, and the velocities of the last observe(). Waits.
+    virtual ObservedMotion observed() = 0;
     /// Computes accelerations and joint forces by one bias sweep. It uses the current
     /// configuration, matrices and forces and the last observed velocities. Collective.
     virtual void evaluate() = 0;
@@ -150,6 +157,8 @@ class AbsoluteDynamics : public BeadHost {
     virtual double residual() = 0;
     /// Potential energy at the current positions. Collective.
     virtual PotentialEnergy potential() = 0;
+    /// Takes the forces out of OpenMM's arrays, which its computation of energies overwrites.
+    virtual void settle_forces() {}
 
     /// The solver, for its report and its checks.
     virtual ChainSolver& solver() const = 0;

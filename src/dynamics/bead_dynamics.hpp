@@ -235,10 +235,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             from_array<3>(array_named(arrays, "velocity"), view, space_.on_host());
         });
     }
-    std::vector<StateArray> observed_state() const override {
+    ObservedMotion observed() override {
         check();
-        return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
-                to_array<3>("velocity", space_.read(observed_).view(), space_.on_host())};
+        return {.position = space_.pull(position_, observed_position_mirror_),
+                .velocity = space_.pull(observed_, observed_mirror_)};
     }
 
     void evaluate() override {
@@ -327,8 +327,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     };
 
     /// Sums the pending forces into the force array; every reader of that array calls it first.
-    /// Public because of nvcc.
-    void settle_forces() {
+    void settle_forces() override {
         if (std::exchange(forces_are_ahead_, false))
             space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) {
                 c.take_forces(k, f);
@@ -461,7 +460,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     Field3 position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     RingEnds<Space> ring_ends_;
-    typename Space::template Mirror<3> position_mirror_, force_mirror_;
+    typename Space::template Mirror<3> position_mirror_, force_mirror_, observed_position_mirror_,
+        observed_mirror_;
     /// Forces that are not yet in force_, if forces_are_ahead_.
     BeadForces forces_;
     DeferredError trouble_;

@@ -246,12 +246,12 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
                 from_array<3>(array_named(arrays, "rotor"), view, space_.on_host());
             });
     }
-    std::vector<StateArray> observed_state() const override {
+    ObservedMotion observed() override {
         check();
-        return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
-                to_array<3>("velocity", space_.read(observed_velocity_).view(), space_.on_host()),
-                to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
-                to_array<3>("omega", space_.read(observed_omega_).view(), space_.on_host())};
+        return {space_.pull(position_, position_mirror_),
+                space_.pull(observed_velocity_, velocity_mirror_),
+                space_.pull(orientation_, orientation_mirror_),
+                space_.pull(observed_omega_, omega_mirror_)};
     }
 
     void evaluate() override {
@@ -527,6 +527,8 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
     List<HeldTip> tips_;
     List<LocalRing> rings_;
     RingEnds<Space> ring_ends_;
+    typename Space::template Mirror<3> position_mirror_, velocity_mirror_, omega_mirror_;
+    typename Space::template Mirror<4> orientation_mirror_;
     DeferredError trouble_;
 };
 

@@ -34,7 +34,7 @@ void refuse_water(PackageFile const& config, std::string const& system, Screenin
                   std::vector<std::string>& notes) {
     Node const *const temp = config.find("temp"), *const ionic = config.find("ionic");
     if (temp == nullptr) return;
-    double const temperature = scene::number(*temp), salt = config.non_negative("ionic", 0);
+    double const temperature = number_of(*temp), salt = config.non_negative("ionic", 0);
     if (!(temperature > 0 && temperature <= hottest)) return;  // settings_of() refuses these
     if (temperature > calvados2::warmest_water)
         return notes.push_back(fmt::format(
@@ -60,7 +60,7 @@ void refuse_water(PackageFile const& config, std::string const& system, Screenin
 void refuse_cutoff(PackageFile const& config, std::string const& system, Screening const& made) {
     Node const* const cutoff = config.find("cutoff_yu");
     if (cutoff == nullptr) return;
-    double const asked = scene::number(*cutoff);
+    double const asked = number_of(*cutoff);
     if (!(std::abs(asked - made.cutoff) <= most_cutoff_difference))
         scene::fail(*cutoff,
                     fmt::format("charges are cut at {:.6g} nm, those of {} at {:.6g} nm", asked,
@@ -97,7 +97,7 @@ bool is_inner(std::vector<bool> const& joined, std::size_t p) {
 
 /// Throws InputError for histidines with the charge of another pH.
 void refuse_ph(Node const& ph, MadeSystem const& made) {
-    double const asked = calvados2::histidine_charge(scene::number(ph));
+    double const asked = calvados2::histidine_charge(number_of(ph));
     std::vector<double> const& charges = made.charges->screening.charges;
     std::size_t p = 0;
     for (PdbChain const& chain : made.chains)
@@ -152,8 +152,7 @@ class InnerCharges {
                 ->first;
         ResidueType const* const known = find_calvados2(residue);
         if (known == nullptr || (known->letter == 'H' && ph == nullptr)) return std::nullopt;
-        return known->letter == 'H' ? calvados2::histidine_charge(scene::number(*ph))
-                                    : known->charge;
+        return known->letter == 'H' ? calvados2::histidine_charge(number_of(*ph)) : known->charge;
     }
 
   private:
@@ -174,12 +173,14 @@ void refuse_end(ChainEnd const& end, CalvadosComponent const& component, double 
                          (c ? calvados2::last_bead_charge : 0),
                  found = made.charges->screening.charges[end.particle];
     if (std::abs(found - asked) <= most_charge_difference) return;
-    throw InputError(
-        fmt::format("with `charge_termini` {} the {} end of `{}` has {:.3g} e, and particle {} "
-                    "(from 0) of {} has {:.3g} e",
-                    scene::shown(component.termini), end.n ? "N" : "C",
-                    scene::shown(component.name), asked, end.particle, made.name(), found),
-        components.place(component, "charge_termini"), run_again);
+    throw InputError(fmt::format("with {} the {} end of `{}` has {:.3g} e, and particle {} "
+                                 "(from 0) of {} has {:.3g} e",
+                                 component.termini.empty()
+                                     ? "an empty `charge_termini`"
+                                     : "`charge_termini` " + scene::shown(component.termini),
+                                 end.n ? "N" : "C", scene::shown(component.name), asked,
+                                 end.particle, made.name(), found),
+                     components.place(component, "charge_termini"), run_again);
 }
 
 }  // namespace

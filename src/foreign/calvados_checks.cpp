@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "error.hpp"
@@ -14,7 +15,6 @@
 #include "foreign/calvados_components.hpp"
 #include "foreign/calvados_forces.hpp"
 #include "foreign/calvados_keys.hpp"
-#include "foreign/calvados_pull.hpp"
 #include "foreign/calvados_tables.hpp"
 #include "foreign/contents.hpp"
 #include "foreign/made_system.hpp"
@@ -38,7 +38,10 @@ void refuse_another_size(PackageFile const& config, SystemText const& system) {
     Node const* const node = config.find("box");
     std::optional<Vec3> const made = system.box();
     if (node == nullptr || !made) return;
-    Vec3 const asked = scene::vector3(*node);
+    if (node->kind != Node::Kind::list || node->items.size() != 3)
+        scene::fail(*node, "`box` has other than three edges", "write three numbers in nm");
+    Vec3 asked;
+    for (int k = 0; k < 3; ++k) asked[k] = number_of(node->items[static_cast<std::size_t>(k)]);
     for (int k = 0; k < 3; ++k)
         if (std::abs(asked[k] - (*made)[k]) > most_box_difference)
             scene::fail(*node,
@@ -146,10 +149,36 @@ void refuse_other_molecules(CalvadosComponents const& components, MadeSystem con
             std::string(write_again) + ", or move it out of the folder if it is of another System");
     // A complex, which only structures give, has several chains once its ends have a TER.
     if (components.all.size() > 1)
-        notes.push_back(
-            fmt::format("{} has {} chains for {} molecules: whether `charge_termini`, "
-                        "`ext_restraint`, `ffasta` and `fresidues` are those of {} is not checked.",
-                        made.topology, chains, molecules, made.name()));
+        notes.push_back(fmt::format(
+            "{} has {} chains for {} molecules: whether `charge_termini`, "
+            "`ext_restraint`, `ffasta` and `fresidues` are those of {}, and whether its "
+            "molecules are alike, is not checked.",
+            made.topology, chains, molecules, made.name()));
+}
+
+/// Positions in the folder's top.pdb; none if it is not there, cannot be read or is not of that
+/// many particles.
+std::vector<Vec3> first_start_in(std::string const& folder, std::size_t particles) {
+    std::string const file = (std::filesystem::path(folder) / "top.pdb").string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return {};
+    std::vector<Vec3> positions;
+    try {
+        for (PdbChain const& chain : read_pdb_topology(file, file))
+            positions.insert(positions.end(), chain.position.begin(), chain.position.end());
+    } catch (InputError const&) {
+        return {};
+    }
+    return positions.size() == particles ? positions : std::vector<Vec3>();
+}
+
+/// Sentence on restrained molecules. Only those of residues can be rigid bodies of Catena.
+std::string network_note(CalvadosComponents const& components) {
+    std::string const stay = "The package's elastic networks stay forces.";
+    bool const rigid =
+        std::any_of(components.all.begin(), components.all.end(),
+                    [](CalvadosComponent const& c) { return c.restrained && !c.is_rna(); });
+    return rigid ? stay + " To move domains as rigid bodies, write `chains` with `rigid`." : stay;
 }
 
 /// Compares components with the System and the topology.
@@ -157,26 +186,35 @@ void check_components(PackageFile const& config, PackageFile const& file, MadeSy
                       Files const& files, std::vector<std::string>& notes) {
     CalvadosComponents const components = read_components(file);
     refuse_other_molecules(components, made, notes);
-    compare_bonds(config, components, made.text, notes);
+    compare_bonds(config, components, files.folder, made, notes);
     if (components.comparable()) {
         refuse_other_termini(config, components, made);
         refuse_other_pulled(config, components, made);
     }
     compare_tables(config, &components, files.folder, made, notes);
-    if (components.restrained())
-        notes.push_back(
-            "The package's elastic networks stay forces. To move domains as rigid bodies, write "
-            "`chains` with `rigid`.");
+    if (components.restrained()) notes.push_back(network_note(components));
 }
 
 }  // namespace
+
+std::optional<double> MadeSystem::distance(std::int64_t a, std::int64_t b) const {
+    if (std::min(a, b) < 0 || std::max(a, b) >= std::ssize(first_start)) return std::nullopt;
+    Vec3 apart =
+        first_start[static_cast<std::size_t>(b)] - first_start[static_cast<std::size_t>(a)];
+    if (std::optional<Vec3> const edges = text.box())
+        for (int i = 0; i < 3; ++i)
+            if ((*edges)[i] > 0) apart[i] -= (*edges)[i] * std::round(apart[i] / (*edges)[i]);
+    return norm(apart);
+}
 
 MadeSystem read_made_system(Files const& files) {
     MadeSystem made{SystemText(files.system),
                     read_screened_chains(files.system, scene::shown_path(files.system)),
                     {},
-                    bare_names({files.topology})};
+                    bare_names({files.topology}),
+                    {}};
     if (!files.topology.empty()) made.chains = read_pdb_topology(files.topology, files.topology);
+    made.first_start = first_start_in(files.folder, made.text.particles());
     return made;
 }
 

@@ -21,32 +21,47 @@ CalvadosComponent component_of(Node const& node, Node const* defaults, std::stri
         throw InputError(fmt::format("component `{}` has no properties", scene::shown(node.key)),
                          file, write_again_or_move);
     CalvadosComponent made;
+    // A property that is null overrides the defaults, too.
     auto const property = [&](char const* key) -> Node const* {
         Node const* const own = node.find(key);
-        Node const* const found =
-            valued(own != nullptr || defaults == nullptr ? own : defaults->find(key));
+        Node const* const found = own != nullptr || defaults == nullptr ? own : defaults->find(key);
         if (found != nullptr) made.places[key] = scene::shown_path(found->where());
         return found;
     };
     auto const word = [&](char const* key, char const* otherwise) {
         Node const* const found = property(key);
-        return found == nullptr ? std::string(otherwise) : scene::text(*found);
+        if (found == nullptr) return std::string(otherwise);
+        bool const written = valued(found) != nullptr && !found->text.empty();
+        return written ? scene::text(*found) : std::string();
     };
     auto const number = [&](char const* key, double& value) {
-        if (Node const* const found = property(key)) value = scene::number(*found);
+        Node const* const found = property(key);
+        if (found == nullptr) return;
+        if (valued(found) == nullptr)
+            scene::fail(*found, fmt::format("`{}` has no value, with which the package stops", key),
+                        "give a number, or leave the key out");
+        value = number_of(*found);
     };
     auto const truth = [&](char const* key, bool& value) {
-        if (Node const* const found = property(key)) value = scene::truth(*found);
+        if (Node const* const found = property(key))
+            value = valued(found) != nullptr && truth_of(*found);
     };
     made.name = node.key;
     made.type = word("molecule_type", "protein");
-    if (Node const* const copies = property("nmol")) made.molecules = whole_of(*copies, 0);
+    if (double copies = 1; property("nmol") != nullptr) {
+        number("nmol", copies);
+        made.molecules = whole_of(*property("nmol"), 0);
+    }
     made.termini = word("charge_termini", "both");
     truth("ext_restraint", made.pulled);
-    truth("restraint", made.restrained);
+    truth("restraint", made.restrained), truth("periodic", made.periodic);
     made.network = word("restraint_type", "harmonic");
     number("kb", made.kb), number("k_harmonic", made.k_harmonic);
     number("k_go", made.k_go), number("cutoff_restr", made.cutoff_restr);
+    number("rna_kb1", made.rna_kb1), number("rna_kb2", made.rna_kb2);
+    number("rna_pa", made.rna_pa), number("rna_ka", made.rna_ka);
+    number("rna_nb_sigma", made.rna_nb_sigma), number("rna_nb_scale", made.rna_nb_scale);
+    number("rna_nb_cutoff", made.rna_nb_cutoff);
     made.residues = word("fresidues", ""), made.sequences = word("ffasta", "");
     return made;
 }
@@ -66,7 +81,7 @@ bool CalvadosComponents::restrained() const {
 
 bool CalvadosComponents::comparable() const {
     return std::all_of(all.begin(), all.end(), [](CalvadosComponent const& c) {
-        return c.is_protein() || c.type == "crowder";
+        return c.is_protein() || c.is_rna() || c.type == "crowder";
     });
 }
 

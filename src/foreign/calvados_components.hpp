@@ -15,21 +15,28 @@ namespace catena::foreign {
 struct CalvadosComponent {
     std::string name, type;  // type: protein, crowder, rna, lipid, ...
     std::int64_t molecules = 1;
-    /// Charged ends: both, N, C; any other word means none.
+    /// Charged ends: both, N, C; any other word and an empty one mean none.
     std::string termini;
     /// True if external forces act on its particles.
     bool pulled = true;
     bool restrained = false;
+    /// True if its network was made with nearest images in its structure's own cell.
+    bool periodic = false;
     std::string network;  // harmonic or go
     /// Stiffness of its bonds and of its harmonic network, kJ/mol/nm2; depth of its Go contacts,
     /// kJ/mol; distance up to which a network joins pairs, nm.
     double kb = 8033, k_harmonic = 700, k_go = 15, cutoff_restr = 0.9;
+    /// Parameters of RNA: stiffness of bonds along the backbone and to bases, kJ/mol/nm2; angle,
+    /// rad, and its stiffness, kJ/mol/rad2; diameter, nm, factor and cutoff, nm, of stacked bases.
+    double rna_kb1 = 8033, rna_kb2 = 8033, rna_pa = 3.14, rna_ka = 7.24, rna_nb_sigma = 0.4,
+           rna_nb_scale = 15, rna_nb_cutoff = 0.6;
     /// Files of residues and sequences as they are written; empty without one.
     std::string residues, sequences;
     /// Places of its properties in messages: "FILE: system.A.kb, line 3".
     std::map<std::string, std::string> places;
 
     bool is_protein() const { return type == "protein"; }
+    bool is_rna() const { return type == "rna"; }
     bool is_go() const { return restrained && network == "go"; }
     /// True for a charged terminus at the first (N) or the last (C) bead.
     bool charges(char end) const { return termini == "both" || termini == std::string(1, end); }
@@ -45,7 +52,7 @@ struct CalvadosComponents {
     std::int64_t molecules() const;
     /// True if a component has restraints within its domains.
     bool restrained() const;
-    /// True if all are proteins or crowders: other kinds are not compared with the System.
+    /// True if all are proteins, RNA or crowders: other kinds are not compared with the System.
     bool comparable() const;
     /// Returns the component of each of `chains` chains of the topology. Empty if these are no
     /// molecules and several components share them.

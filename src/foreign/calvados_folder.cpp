@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 #include "error.hpp"
 #include "foreign/calvados_checks.hpp"
+#include "foreign/contents.hpp"
 #include "foreign/package_file.hpp"
 #include "foreign/system_text.hpp"
 #include "io/output_file.hpp"
@@ -19,6 +22,8 @@ namespace catena::foreign {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::int64_t lowest_seed = std::numeric_limits<std::int32_t>::min();
 
 bool is_file(fs::path const& file) {
     std::error_code ignored;
@@ -39,6 +44,15 @@ double friction_of(PackageFile const& config, Settings& settings) {
             "config.yaml has friction 0: without a thermostat its temperature is that of the start "
             "only.");
     return friction;
+}
+
+/// Reads the seed. OpenMM's may be negative, those of scenes are not.
+std::uint64_t seed_of(PackageFile const& config, Settings& settings) {
+    std::int64_t const seed = config.whole("random_number_seed", 1, lowest_seed);
+    if (seed < 0)
+        settings.notes.push_back(
+            fmt::format("config.yaml has random_number_seed {}; the scene has {}.", seed, -seed));
+    return static_cast<std::uint64_t>(std::abs(seed));
 }
 
 /// True if the start is a frame after the package's equilibration.
@@ -96,6 +110,20 @@ std::optional<PackageFile> read_if_packages(std::string const& file, bool certai
     }
 }
 
+/// Throws InputError for a start that is no structure by its name, such as OpenMM's checkpoint.
+void refuse_no_structure(PackageFile const& config, fs::path const& start,
+                         std::string const& restart) {
+    if (is_topology(start)) return;
+    std::string const name = scene::shown_path(start.filename().string());
+    throw InputError(
+        fmt::format(
+            "`restart` is {}, and {} ({}) is no PDB or mmCIF file", scene::shown(restart), name,
+            config.find("frestart") != nullptr ? "`frestart`" : "the default of `frestart`"),
+        config.place(config.find("frestart") != nullptr ? "frestart" : "restart"),
+        "write the structure's name in `frestart`, or `restart: checkpoint` to start from "
+        "checkpoint.pdb or top.pdb");
+}
+
 /// Notes the keys whose defaults count because the file lacks them.
 void note_absent(PackageFile const& config, Settings& settings) {
     auto const note = [&](char const* key, double value) {
@@ -145,6 +173,7 @@ bool take_calvados_start(Files& files) {
         throw InputError(fmt::format("`restart` is `{}`", scene::shown(restart)),
                          config.place("restart"), "write checkpoint, pdb, cif or null");
     bool const named = restart != "checkpoint", lost = named && !is_file(given);
+    if (named && !lost) refuse_no_structure(config, given, restart);
     if (named) starts.push_back(given);
     for (char const* const name : {"checkpoint.pdb", "equilibration_final.pdb", "top.pdb"})
         starts.push_back(folder / name);
@@ -178,7 +207,7 @@ Settings calvados_settings(Files const& files) {
     settings.friction = friction_of(config, settings);
     settings.steps = config.whole("steps", 100000000, 0);
     settings.every = config.whole("wfreq", 100000, 1);
-    settings.seed = static_cast<std::uint64_t>(config.whole("random_number_seed", 1, 0));
+    settings.seed = seed_of(config, settings);
     settings.origins = {
         {"dynamics.temperature", config.place("temp")},
         {"dynamics.friction",

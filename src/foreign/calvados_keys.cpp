@@ -86,15 +86,25 @@ constexpr std::array of_components = {
     PackageKey{"ptm_name", KeyUse::origin, "ptm_protein"},
     PackageKey{"restraint", KeyUse::compared},
     PackageKey{"restraint_type", KeyUse::compared},
-    PackageKey{"rna_ka", KeyUse::origin, "rna"},
-    PackageKey{"rna_kb1", KeyUse::origin, "rna"},
-    PackageKey{"rna_kb2", KeyUse::origin, "rna"},
-    PackageKey{"rna_nb_cutoff", KeyUse::origin, "rna"},
-    PackageKey{"rna_nb_scale", KeyUse::origin, "rna"},
-    PackageKey{"rna_nb_sigma", KeyUse::origin, "rna"},
-    PackageKey{"rna_pa", KeyUse::origin, "rna"},
+    PackageKey{"rna_ka", KeyUse::compared, "rna"},
+    PackageKey{"rna_kb1", KeyUse::compared, "rna"},
+    PackageKey{"rna_kb2", KeyUse::compared, "rna"},
+    PackageKey{"rna_nb_cutoff", KeyUse::compared, "rna"},
+    PackageKey{"rna_nb_scale", KeyUse::compared, "rna"},
+    PackageKey{"rna_nb_sigma", KeyUse::compared, "rna"},
+    PackageKey{"rna_pa", KeyUse::compared, "rna"},
     PackageKey{"use_com", KeyUse::origin, "restraint"},
 };
+
+/// Keys of names and expressions, which may look like numbers: a structure 1e10.
+constexpr std::array<std::string_view, 16> of_texts = {"charge_termini", "custom_restraint_type",
+                                                       "ext_force_expr", "fcustom_restraints",
+                                                       "fdomains",       "ffasta",
+                                                       "fresidues",      "frestart",
+                                                       "molecule_type",  "pdb_folder",
+                                                       "platform",       "ptm_name",
+                                                       "restart",        "restraint_type",
+                                                       "sysname",        "topol"};
 
 PackageKey const* key_of(std::span<PackageKey const> keys, std::string_view name) {
     auto const found = std::find_if(keys.begin(), keys.end(),
@@ -114,6 +124,20 @@ void note_unknown(Node const& map, std::span<PackageKey const> keys, char const*
             "{} has `{}`, which is not among the package's keys: it is not taken over{}.", file,
             scene::shown(item.key),
             meant ? fmt::format(" (is `{}` meant?)", *meant) : std::string()));
+    }
+}
+
+/// Notes numbers that the package takes for texts.
+void note_texts(Node const& map, std::span<PackageKey const> keys, char const* file,
+                std::vector<std::string>& notes) {
+    for (Node const& item : map.items) {
+        bool const is_text =
+            std::find(of_texts.begin(), of_texts.end(), item.key) != of_texts.end();
+        if (is_text || key_of(keys, item.key) == nullptr || !is_text_of_package(item)) continue;
+        notes.push_back(
+            fmt::format("{} has {} `{}`, which PyYAML takes for a text, so that the package stops; "
+                        "here it is a number (write 1.0e+8 for 1e8).",
+                        file, item.key, scene::shown(item.text)));
     }
 }
 
@@ -153,7 +177,7 @@ bool counts(PackageKey const& key, Node const& component, Node const* defaults) 
         return found != nullptr && found->text.ends_with(word);
     };
     Node const* const restraint = property("restraint");
-    bool const restrained = restraint != nullptr && scene::truth(*restraint);
+    bool const restrained = restraint != nullptr && truth_of(*restraint);
     if (key.only_for == "restraint") return restrained;
     if (key.only_for == "go") return restrained && is("restraint_type", "go");
     return is("molecule_type", key.only_for);
@@ -163,10 +187,14 @@ void note_components(PackageFile const& file, std::string const& system,
                      std::vector<std::string>& notes) {
     Node const *const defaults = file.find("defaults"), *const components = file.find("system");
     std::set<std::string> said, origins;
-    if (defaults != nullptr) note_unknown(*defaults, of_components, "components.yaml", said, notes);
+    if (defaults != nullptr) {
+        note_unknown(*defaults, of_components, "components.yaml", said, notes);
+        note_texts(*defaults, of_components, "components.yaml", notes);
+    }
     if (components == nullptr) return;
     for (Node const& component : components->items) {
         note_unknown(component, of_components, "components.yaml", said, notes);
+        note_texts(component, of_components, "components.yaml", notes);
         for (PackageKey const& key : of_components) {
             bool const has = component.find(key.name) != nullptr ||
                              (defaults != nullptr && defaults->find(key.name) != nullptr);
@@ -190,6 +218,7 @@ void note_keys(PackageFile const& config, PackageFile const* components, std::st
                std::vector<std::string>& notes) {
     std::set<std::string> said;
     note_unknown(config.root(), of_config, "config.yaml", said, notes);
+    note_texts(config.root(), of_config, "config.yaml", notes);
     note_configuration(config, notes);
     if (components != nullptr) note_components(*components, system, notes);
 }

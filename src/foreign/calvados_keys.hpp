@@ -33,7 +33,8 @@ std::span<PackageKey const> config_keys();
 /// Properties of components, in alphabetical order.
 std::span<PackageKey const> component_keys();
 
-/// Notes keys that the package does not know, and those that are neither compared nor taken over.
+/// Notes keys that the package does not know, those that are neither compared nor taken over, and
+/// numbers that the package takes for texts.
 /// `components` is nullptr without a components.yaml. `system` is the System's name.
 void note_keys(PackageFile const& config, PackageFile const* components, std::string const& system,
                std::vector<std::string>& notes);

@@ -1,7 +1,5 @@
 // Implements the comparison of external forces. The package (version 1.0, init_slab_restraints of
 // calvados/interactions.py) pulls towards the middle of the box along the axes of `slab_eq_axis`.
-#include "foreign/calvados_pull.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "foreign/calvados_forces.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::foreign {
@@ -63,7 +62,7 @@ Axes asked_axes(Node const* node) {
         scene::fail(*node, "`slab_eq_axis` has other than three entries",
                     "write three of true and false, such as [false, false, true]");
     Axes axes{};
-    for (std::size_t a = 0; a < 3; ++a) axes[a] = scene::truth(node->items[a]);
+    for (std::size_t a = 0; a < 3; ++a) axes[a] = truth_of(node->items[a]);
     return axes;
 }
 

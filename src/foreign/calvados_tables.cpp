@@ -13,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "error.hpp"
@@ -20,6 +21,7 @@
 #include "io/output_file.hpp"
 #include "scene/fields.hpp"
 #include "structure/calvados2.hpp"
+#include "structure/calvados_rna.hpp"
 #include "structure/fasta.hpp"
 #include "structure/residue_table.hpp"
 
@@ -40,6 +42,103 @@ Node named(std::string const& text) {
     node.kind = Node::Kind::scalar;
     node.text = text;
     return node;
+}
+
+/// How restraints count particles: not at all, by the molecules' names, or as version 0.8 of the
+/// package does, where a component begins after the molecules of the preceding one alone.
+enum class Numbering { none, of_names, of_package };
+
+/// Lines such as "A 1 72 | A 1 157 | 0.559 700.0": two beads, each with molecule and bead from 1,
+/// then length in nm and stiffness.
+class RestraintFile {
+  public:
+    /// Reads lengths and stiffnesses. Throws InputError for lines without them.
+    explicit RestraintFile(std::string const& file) : file_(file) { read(); }
+    /// Reads the beads, too. Throws InputError for beads that the components do not have.
+    RestraintFile(std::string const& file, CalvadosComponents const& components,
+                  std::vector<Molecules> const& molecules)
+        : file_(file), components_(&components), molecules_(&molecules) {
+        read();
+    }
+    std::vector<BondText> const& bonds(Numbering numbering) const {
+        return bonds_[static_cast<std::size_t>(numbering)];
+    }
+
+  private:
+    void read() {
+        std::istringstream lines(read_text_file(file_));
+        for (std::string line; std::getline(lines, line);) {
+            ++number_;
+            if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+            BondText bond = numbers_of(line);
+            bonds_[0].push_back(bond);
+            if (components_ == nullptr) continue;
+            std::size_t const middle = std::min(line.find('|'), line.rfind('|'));
+            auto const one = bead_of(line.substr(0, middle), line),
+                       other = bead_of(line.substr(middle + 1), line);
+            for (std::size_t way : {1, 2}) {
+                bond.first = one[way - 1], bond.second = other[way - 1];
+                bonds_[way].push_back(bond);
+            }
+        }
+    }
+    BondText numbers_of(std::string const& line) const {
+        std::istringstream words(line.substr(line.rfind('|') + 1));
+        std::array<std::string, 2> text;
+        std::array<double, 2> value{};
+        words >> text[0] >> text[1];
+        for (std::size_t i = 0; i < 2; ++i)
+            if (scene::parse_number(text[i], value[i]) != scene::NumberFault::none)
+                refuse("the line holds no length and stiffness", line);
+        return {value[0], value[1], 0, 0};
+    }
+    /// Particle of a bead: by the names, and as the package counts.
+    std::array<std::int64_t, 2> bead_of(std::string const& words, std::string const& line) const {
+        std::istringstream in(words);
+        std::string name;
+        std::int64_t molecule = 0, bead = 0;
+        in >> name >> molecule >> bead;
+        for (std::size_t c = 0; c < components_->all.size(); ++c) {
+            auto const [first, beads, count] = (*molecules_)[c];
+            if (!in || components_->all[c].name != name || molecule < 1 || bead < 1 ||
+                molecule > static_cast<std::int64_t>(count) ||
+                bead > static_cast<std::int64_t>(beads))
+                continue;
+            auto const within = (molecule - 1) * static_cast<std::int64_t>(beads) + bead - 1;
+            std::size_t const counted =
+                c == 0 ? 0 : (*molecules_)[c - 1].beads * (*molecules_)[c - 1].count;
+            return {static_cast<std::int64_t>(first) + within,
+                    static_cast<std::int64_t>(counted) + within};
+        }
+        refuse("the components have no such molecule or bead", line);
+    }
+    [[noreturn]] void refuse(char const* what, std::string const& line) const {
+        throw InputError(fmt::format("{}: `{}`", what, scene::shown(line)),
+                         fmt::format("{}: line {}", scene::shown_path(file_), number_), put_right);
+    }
+
+    std::string const& file_;
+    CalvadosComponents const* components_ = nullptr;
+    std::vector<Molecules> const* molecules_ = nullptr;
+    std::size_t number_ = 0;
+    std::array<std::vector<BondText>, 3> bonds_;  // by Numbering
+};
+
+/// True if both lists hold the same bonds in any order.
+bool are_alike(std::vector<BondText> a, std::vector<BondText> b) {
+    for (std::vector<BondText>* const list : {&a, &b}) {
+        for (BondText& bond : *list)
+            if (bond.first > bond.second) std::swap(bond.first, bond.second);
+        std::sort(list->begin(), list->end(), [](BondText const& one, BondText const& other) {
+            return std::tie(one.first, one.second, one.length, one.stiffness) <
+                   std::tie(other.first, other.second, other.length, other.stiffness);
+        });
+    }
+    return std::equal(
+        a.begin(), a.end(), b.begin(), b.end(), [](BondText const& one, BondText const& other) {
+            return one.first == other.first && one.second == other.second &&
+                   are_equal(one.length, other.length) && are_equal(one.stiffness, other.stiffness);
+        });
 }
 
 /// Compares tables one after the other.
@@ -70,27 +169,29 @@ class TableCheck {
         }
     }
 
-    /// Compares lengths and stiffnesses of the last bonds with a file of custom restraints.
-    void compare_restraints(std::string const& written, bool go) {
+    /// Compares the last force of bonds with a file of custom restraints. `molecules` are those of
+    /// the components; without them particles are not compared.
+    void compare_restraints(std::string const& written, bool go,
+                            CalvadosComponents const* components,
+                            std::vector<Molecules> const& molecules) {
         with_file("fcustom_restraints", written, [&](std::string const& file) {
-            Pairs asked = restraints_in(file), found;
+            ForceText const* last = nullptr;
             for (ForceText const& force : made_.text.forces())
-                if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce")) {
-                    found.clear();
-                    for (BondText const& bond : force.bonds)
-                        found.push_back({bond.length, bond.stiffness});
-                }
-            std::sort(asked.begin(), asked.end()), std::sort(found.begin(), found.end());
-            bool const same = std::equal(asked.begin(), asked.end(), found.begin(), found.end(),
-                                         [](auto const& a, auto const& b) {
-                                             return are_equal(a[0], b[0]) && are_equal(a[1], b[1]);
-                                         });
-            if (!same)
-                throw InputError(
-                    fmt::format("the {} custom restraints are not the {} bonds of the last force "
-                                "of bonds of {}",
-                                asked.size(), found.size(), made_.name()),
-                    shown(file), put_right);
+                if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce")) last = &force;
+            std::vector<BondText> const found =
+                last == nullptr ? std::vector<BondText>() : last->bonds;
+            bool const numbered = components != nullptr && !molecules.empty();
+            if (numbered) {
+                RestraintFile const lines(file, *components, molecules);
+                if (are_alike(lines.bonds(Numbering::of_names), found)) return;
+                if (are_alike(lines.bonds(Numbering::of_package), found))
+                    return note_shifted_restraints(shown(file));
+                refuse_restraints(file, lines.bonds(Numbering::of_names), found);
+            }
+            std::vector<BondText> const asked = RestraintFile(file).bonds(Numbering::none);
+            std::vector<BondText> without = found;
+            for (BondText& bond : without) bond.first = bond.second = 0;
+            if (!are_alike(asked, without)) refuse_restraints(file, asked, found);
         });
     }
 
@@ -106,8 +207,6 @@ class TableCheck {
     }
 
   private:
-    using Pairs = std::vector<std::array<double, 2>>;
-
     static std::string shown(fs::path const& path) { return scene::shown_path(path.string()); }
 
     /// Calls `compare` with the file of that name: a copy in the folder, or where it is written. A
@@ -154,11 +253,20 @@ class TableCheck {
         return is_border || (made_.charges && !made_.charges->joined[p]);
     }
 
+    /// Type of bead k of a chain; nullptr if the table lacks it. The topology has nucleotides under
+    /// the letters of their bases, with the backbone first.
+    static ResidueType const* type_of(CalvadosComponent const& component, ResidueTable const& table,
+                                      PdbChain const& chain, std::size_t k) {
+        std::string const& name = chain.residue[k];
+        if (!component.is_rna()) return table.find(name);
+        return chain.place[k] == 0 ? table.find('p') : table.find(name.front());
+    }
+
     void compare_chain(CalvadosComponent const& component, ResidueTable const& table, std::size_t c,
                        std::size_t first) {
         PdbChain const& chain = made_.chains[c];
         for (std::size_t k = 0; k < chain.size() && first + k < masses_.size(); ++k) {
-            ResidueType const* const type = table.find(chain.residue[k]);
+            ResidueType const* const type = type_of(component, table, chain, k);
             if (type == nullptr)
                 throw InputError(fmt::format("residue `{}` of {} is not in the table",
                                              scene::shown(chain.residue[k]), made_.topology),
@@ -176,9 +284,10 @@ class TableCheck {
             auto const& [sigma, lambda, id] = contacts_->parameters[p];
             refuse_unequal({p, *type, table.name()}, "a diameter", sigma, type->sigma, "nm");
             refuse_unequal({p, *type, table.name()}, "a stickiness", lambda, type->lambda, "");
-            refuse_unequal({p, *type, table.name()}, "an `id`", id, protein ? 1 : -1, "");
+            refuse_unequal({p, *type, table.name()}, "an `id`", id,
+                           protein || component.is_rna() ? 1 : -1, "");
         }
-        if (!component.restrained) compare_bonds_of(table, chain, first);
+        compare_bonds_of(component, table, chain, first);
         if (!component.sequences.empty() && !component.restrained)
             with_file("ffasta", component.sequences, [&](std::string const& file) {
                 compare_sequence(component, table, chain, file);
@@ -209,29 +318,58 @@ class TableCheck {
             particle.table, put_right);
     }
 
-    /// Finds the harmonic bond of each particle to the preceding one.
+    /// Finds the first harmonic bonds of each particle to the two particles before it; restraints
+    /// come later.
     void index_bonds() {
-        to_previous_.assign(masses_.size(), 0);
+        for (std::vector<double>& lengths : to_earlier_) lengths.assign(masses_.size(), 0);
         for (ForceText const& force : made_.text.forces()) {
             if (force.kind != "HarmonicBondForce") continue;
-            for (BondText const& bond : force.bonds)
-                if (bond.second == bond.first + 1 && bond.first >= 0 &&
-                    bond.second < std::ssize(to_previous_))
-                    to_previous_[static_cast<std::size_t>(bond.second)] = bond.length;
+            for (BondText const& bond : force.bonds) {
+                std::int64_t const back = bond.second - bond.first;
+                if ((back != 1 && back != 2) || bond.first < 0 ||
+                    bond.second >= std::ssize(masses_))
+                    continue;
+                double& length = to_earlier_[static_cast<std::size_t>(back - 1)]
+                                            [static_cast<std::size_t>(bond.second)];
+                if (length == 0) length = bond.length;
+            }
         }
     }
 
-    /// Compares bonds of a chain without a network with the mean of its residues' bonds.
-    void compare_bonds_of(ResidueTable const& table, PdbChain const& chain,
-                          std::size_t first) const {
-        for (std::size_t k = 1; k < chain.size() && first + k < to_previous_.size(); ++k) {
-            ResidueType const *const here = table.find(chain.residue[k]),
-                                     *const before = table.find(chain.residue[k - 1]);
-            double const made = to_previous_[first + k];
+    /// Compares bonds of a chain with the mean of its residues' bonds, those of RNA with the
+    /// outboard bead's. In a network's domains they have the structure's length, or one between
+    /// both with Go contacts.
+    void compare_bonds_of(CalvadosComponent const& component, ResidueTable const& table,
+                          PdbChain const& chain, std::size_t first) const {
+        bool const rna = component.is_rna();
+        if (rna && component.restrained) return;
+        for (std::size_t k = 1; k < chain.size() && first + k < masses_.size(); ++k) {
+            bool const backbone = rna && chain.place[k] == 0;
+            ResidueType const *const here = type_of(component, table, chain, k),
+                                     *const before = type_of(component, table, chain, k - 1);
+            double const made = to_earlier_[backbone ? 1 : 0][first + k];
             if (here == nullptr || before == nullptr || made == 0) continue;
-            refuse_unequal({first + k, *here, table.name()}, "a bond to the preceding residue",
-                           made, (here->bond + before->bond) / 2, "nm");
+            double const asked = rna ? here->bond : (here->bond + before->bond) / 2;
+            if (component.restrained && is_of_structure(component, first + k, made, asked))
+                continue;
+            refuse_unequal({first + k, *here, table.name()},
+                           component.restrained
+                               ? "a bond to the preceding residue (outside of domains)"
+                               : "a bond to the preceding residue",
+                           made, asked, "nm");
         }
+    }
+
+    /// True if the bond of particle p to the preceding one may be the structure's, or if there is
+    /// no structure to compare with.
+    bool is_of_structure(CalvadosComponent const& component, std::size_t p, double made,
+                         double of_table) const {
+        auto const here = static_cast<std::int64_t>(p);
+        auto const apart = made_.distance(here - 1, here);
+        if (!apart || component.periodic) return true;
+        if (std::abs(made - *apart) <= most_pdb_difference) return true;
+        auto const [low, high] = std::minmax(*apart, of_table);
+        return component.is_go() && made > low && made < high;
     }
 
     std::string const& sequence_in(std::string const& file, std::string const& record) {
@@ -247,41 +385,42 @@ class TableCheck {
     void compare_sequence(CalvadosComponent const& component, ResidueTable const& table,
                           PdbChain const& chain, std::string const& file) {
         std::string const& sequence = sequence_in(file, component.name);
-        if (sequence.size() != chain.size())
-            throw InputError(fmt::format("`{}` has {} residues, and chain {} of {} has {}",
-                                         scene::shown(component.name), sequence.size(),
-                                         scene::shown(chain.name), made_.topology, chain.size()),
-                             shown(file), put_right);
+        std::size_t const beads = component.is_rna() ? calvados_rna::beads_a_nucleotide : 1;
+        if (sequence.size() * beads != chain.size())
+            throw InputError(
+                fmt::format("`{}` has {} residues, and chain {} of {} has {}",
+                            scene::shown(component.name), sequence.size(), scene::shown(chain.name),
+                            made_.topology, chain.size() / beads),
+                shown(file), put_right);
         for (std::size_t k = 0; k < chain.size(); ++k) {
-            ResidueType const* const type = table.find(sequence[k]);
-            if (type == nullptr || type->name != chain.residue[k])
+            char const letter = sequence[k / beads];
+            ResidueType const* const type = table.find(letter);
+            std::string const& name = chain.residue[k];
+            bool const same = type && (beads == 1 ? type->name == name : name[0] == letter);
+            if (!same)
                 throw InputError(fmt::format("`{}` has {} as residue {}, and {} has {}",
-                                             scene::shown(component.name), sequence[k], k + 1,
-                                             made_.topology, scene::shown(chain.residue[k])),
+                                             scene::shown(component.name), letter, k / beads + 1,
+                                             made_.topology, scene::shown(name)),
                                  shown(file), put_right);
         }
     }
 
-    /// Reads lines such as "A 1 72 | A 1 157 | 0.559 700.0": length in nm and stiffness last.
-    static Pairs restraints_in(std::string const& file) {
-        Pairs pairs;
-        std::istringstream lines(read_text_file(file));
-        std::size_t number = 0;
-        for (std::string line; std::getline(lines, line);) {
-            ++number;
-            if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-            std::istringstream words(line.substr(line.rfind('|') + 1));
-            std::array<std::string, 2> text;
-            std::array<double, 2> value{};
-            words >> text[0] >> text[1];
-            for (std::size_t i = 0; i < 2; ++i)
-                if (scene::parse_number(text[i], value[i]) != scene::NumberFault::none)
-                    throw InputError(fmt::format("the line holds no length and stiffness: `{}`",
-                                                 scene::shown(line)),
-                                     fmt::format("{}: line {}", shown(file), number), put_right);
-            pairs.push_back(value);
-        }
-        return pairs;
+    [[noreturn]] void refuse_restraints(std::string const& file, std::vector<BondText> const& asked,
+                                        std::vector<BondText> const& found) const {
+        throw InputError(fmt::format("the {} custom restraints are not the {} bonds of the last "
+                                     "force of bonds of {}",
+                                     asked.size(), found.size(), made_.name()),
+                         shown(file), put_right);
+    }
+
+    void note_shifted_restraints(std::string const& file) const {
+        notes_.push_back(
+            fmt::format("The custom restraints of {} join other molecules than {} names: for the "
+                        "third component "
+                        "and later ones the package counts the molecules of the preceding one "
+                        "alone. The System "
+                        "is simulated as it is.",
+                        made_.name(), file));
     }
 
     std::string folder_;
@@ -289,7 +428,8 @@ class TableCheck {
     std::vector<std::string>& notes_;
     ForceText const* contacts_;
     std::vector<double> masses_;
-    std::vector<double> to_previous_;  // lengths of bonds, nm; 0 without one
+    /// Lengths of bonds to the particle before and to the one before that, nm; 0 without one.
+    std::array<std::vector<double>, 2> to_earlier_;
     std::optional<double> ph_;
     std::map<std::string, ResidueTable> tables_;
     std::map<std::pair<std::string, std::string>, std::string> sequences_;
@@ -305,8 +445,10 @@ void compare_tables(PackageFile const& config, CalvadosComponents const* compone
     TableCheck check(config, folder, made, notes);
     if (components != nullptr && components->comparable()) check.compare_chains(*components);
     if (config.truth("custom_restraints"))
-        check.compare_restraints(config.text("fcustom_restraints", "custom_restraints.txt"),
-                                 config.text("custom_restraint_type", "harmonic") == "go");
+        check.compare_restraints(
+            config.text("fcustom_restraints", "custom_restraints.txt"),
+            config.text("custom_restraint_type", "harmonic") == "go", components,
+            components == nullptr ? std::vector<Molecules>() : molecules_of(*components, made));
     check.note_missing();
 }
 

@@ -18,12 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True for the endings of PDB and mmCIF files, compressed or not.
-bool is_topology(fs::path const& file) {
-    std::string const ending = scene::ending_of(file.string(), true);
-    return ending == ".pdb" || ending == ".cif" || ending == ".mmcif" || ending == ".ent";
-}
-
 /// True for a file named KIND.xml, or with that word in its name, if its root element is none of
 /// OpenMM's objects. `kind` is in lower case.
 bool is_promised(fs::path const& file, std::string const& kind, std::string const& root) {
@@ -55,6 +49,11 @@ void add_xml(fs::path const& file, Contents& contents) {
 }
 
 }  // namespace
+
+bool is_topology(fs::path const& file) {
+    std::string const ending = scene::ending_of(file.string(), true);
+    return ending == ".pdb" || ending == ".cif" || ending == ".mmcif" || ending == ".ent";
+}
 
 std::string root_of(fs::path const& file) {
     std::ifstream in(file, std::ios::binary);

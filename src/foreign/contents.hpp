@@ -18,6 +18,9 @@ struct Contents {
 /// folder that cannot be read.
 Contents contents_of(std::filesystem::path const& folder);
 
+/// True for the endings of PDB and mmCIF files, compressed or not.
+bool is_topology(std::filesystem::path const& file);
+
 /// Name of the root element of an XML file; empty if its first 64 kB hold none.
 std::string root_of(std::filesystem::path const& file);
 

@@ -44,6 +44,40 @@ std::string folder_with_system(fs::path const& folder) {
     return {};
 }
 
+/// Throws InputError if files are those of Catena or of a program whose input is not read.
+void refuse_other_program(std::vector<std::string> const& all, fs::path const& folder) {
+    if (auto const other = other_files(all))
+        throw InputError(fmt::format("the folder holds {} ({}), and no serialised System",
+                                     other->what, shown(other->name)),
+                         shown(folder), other->remedy);
+}
+
+/// Key of a scene's chain that reads a file of that ending; empty if none does.
+std::string key_for(std::string const& ending) {
+    for (char const* const each : {".fasta", ".fa", ".faa", ".fna"})
+        if (ending == each) return "fasta";
+    for (char const* const each : {".pdb", ".ent", ".cif", ".mmcif"})
+        if (ending == each) return "pdb";
+    return {};
+}
+
+/// Throws InputError for a file that is not a System.
+[[noreturn]] void refuse_file(std::string const& source, std::string const& tool) {
+    auto const other = other_files({source});
+    bool const is_config = fs::path(source).filename() == "config.yaml";
+    if (other && !is_config)
+        throw InputError(
+            fmt::format("the file belongs to {}, and is no serialised System", other->what),
+            scene::shown_path(source), other->remedy);
+    std::string const key = key_for(fs::path(source).extension().string());
+    throw InputError("the file is not a serialised System", scene::shown_path(source),
+                     is_config      ? "name its folder"
+                     : !key.empty() ? fmt::format("name the System first, or write a scene whose "
+                                                  "`chains` have `{}: {}`",
+                                                  key, fs::path(source).filename().string())
+                                    : how_to_write(tool));
+}
+
 /// Chooses the System: that of the CALVADOS package's configuration, or the only one.
 std::string system_in(Files const& files, Contents const& contents) {
     if (!files.config.empty()) {
@@ -64,6 +98,7 @@ std::string system_in(Files const& files, Contents const& contents) {
                          how_to_write(files.tool));
     if (contents.systems.empty()) {
         std::string const below = folder_with_system(files.folder);
+        if (below.empty() && files.tool.empty()) refuse_other_program(contents.all, files.folder);
         throw InputError("the folder holds no serialised System", shown(files.folder),
                          below.empty()
                              ? how_to_write(files.tool)
@@ -128,10 +163,7 @@ Files find_files(std::string const& source, std::string const& topology) {
     Contents const contents = contents_of(files.folder);
     find_calvados_files(files);
     if (files.config.empty()) find_known_tool(contents.all, files);
-    if (!is_folder && root_of(source) != "System")
-        throw InputError("the file is not a serialised System", scene::shown_path(source),
-                         fs::path(source).filename() == "config.yaml" ? "name its folder"
-                                                                      : how_to_write(files.tool));
+    if (!is_folder && root_of(source) != "System") refuse_file(source, files.tool);
     files.system = is_folder ? system_in(files, contents) : source;
     note_other_name(files);
     take_integrator(contents, files);

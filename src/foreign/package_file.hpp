@@ -14,6 +14,10 @@ namespace catena::foreign {
 inline constexpr char const* run_again =
     "start the package's run.py again, which writes the System, or correct the value";
 
+/// Advice for a System that is not what the package writes.
+inline constexpr char const* write_system_again =
+    "start the package's run.py again, which writes the System";
+
 /// Advice for a file that was cut or changed.
 inline constexpr char const* write_again = "write it again with the package's prepare.py";
 inline constexpr char const* write_again_or_move =
@@ -32,7 +36,7 @@ class PackageFile {
     double number(std::string_view key, double otherwise) const;
     /// Returns the same for a number of 0 or more.
     double non_negative(std::string_view key, double otherwise) const;
-    /// Returns the whole number of that key, which may be written as 1e8 or 100000000.0.
+    /// Returns the whole number of that key, as whole_of() does.
     std::int64_t whole(std::string_view key, double otherwise, std::int64_t least) const;
     /// Returns the truth of that key, false without one.
     bool truth(std::string_view key) const;
@@ -56,6 +60,15 @@ bool are_equal(double a, double b);
 /// Returns the value of an entry unless it is empty or null, else nullptr.
 scene::Node const* valued(scene::Node const* entry);
 
+/// Reads a finite number as the package's PyYAML does (YAML 1.1): 1_000_000, 0x10, 010 (octal) and
+/// 1:30 (base 60) are numbers, too. Also reads 1e8, which is_text_of_package() tells. Throws
+/// InputError for others.
+double number_of(scene::Node const& node);
+/// True for an unquoted number that PyYAML takes for a text, with which the package stops: 1e8.
+bool is_text_of_package(scene::Node const& node);
+/// Reads a truth as PyYAML and Python do: yes, off and False are words of it, 0 is false. Throws
+/// InputError for texts, which Python takes for true.
+bool truth_of(scene::Node const& node);
 /// Reads a whole number of `least` or more, which may be written as 1e8 or 100000000.0.
 std::int64_t whole_of(scene::Node const& node, std::int64_t least);
 

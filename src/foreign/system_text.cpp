@@ -49,15 +49,22 @@ void each_tag(std::string const& text, char const* name, std::size_t at, std::si
     for (at = text.find(name, at); at < end; at = text.find(name, at + 1)) visit(at);
 }
 
-/// Reads the bonds in [at, end), whose length and stiffness have these attributes.
+/// Tag of a bond or angle, and the attributes of its length or angle and of its stiffness.
+struct BondTag {
+    char const *tag, *length, *stiffness;
+};
+
+/// Reads the bonds in [at, end).
 std::vector<BondText> bonds_of(std::string const& text, std::size_t at, std::size_t end,
-                               char const* length, char const* stiffness) {
+                               BondTag const& form) {
     std::vector<BondText> bonds;
-    each_tag(text, "<Bond ", at, end, [&](std::size_t tag) {
-        auto const d = attribute_of(text, tag, length), k = attribute_of(text, tag, stiffness),
-                   i = attribute_of(text, tag, "p1"), j = attribute_of(text, tag, "p2");
+    each_tag(text, form.tag, at, end, [&](std::size_t tag) {
+        auto const d = attribute_of(text, tag, form.length),
+                   k = attribute_of(text, tag, form.stiffness), i = attribute_of(text, tag, "p1"),
+                   j = attribute_of(text, tag, "p2");
         if (d && k && i && j)
-            bonds.push_back({*d, *k, static_cast<std::int64_t>(*i), static_cast<std::int64_t>(*j)});
+            bonds.push_back({*d, *k, static_cast<std::int64_t>(*i), static_cast<std::int64_t>(*j),
+                             attribute_of(text, tag, "param3").value_or(0)});
     });
     return bonds;
 }
@@ -80,6 +87,7 @@ ForceText force_of(std::string const& text, std::size_t at, std::size_t next) {
     force.kind = attribute_text(text, at, "type");
     force.energy = unescaped(attribute_text(text, at, "energy"));
     force.cutoff = attribute_of(text, at, "cutoff").value_or(0);
+    force.periodic = attribute_text(text, at, "usesPeriodic") != "0";
     std::size_t const globals = text.find("<GlobalParameters>", at);
     if (globals < next)
         each_tag(text, "<Parameter ", globals, std::min(next, text.find("</GlobalP", at)),
@@ -87,8 +95,12 @@ ForceText force_of(std::string const& text, std::size_t at, std::size_t next) {
                      if (auto const value = attribute_of(text, tag, "default"))
                          force.globals[attribute_text(text, tag, "name")] = *value;
                  });
-    if (force.kind == "HarmonicBondForce") force.bonds = bonds_of(text, at, next, "d", "k");
-    if (force.kind == "CustomBondForce") force.bonds = bonds_of(text, at, next, "param1", "param2");
+    if (force.kind == "HarmonicBondForce")
+        force.bonds = bonds_of(text, at, next, {"<Bond ", "d", "k"});
+    if (force.kind == "HarmonicAngleForce")
+        force.bonds = bonds_of(text, at, next, {"<Angle ", "a", "k"});
+    if (force.kind == "CustomBondForce")
+        force.bonds = bonds_of(text, at, next, {"<Bond ", "param1", "param2"});
     if (force.kind == "CustomNonbondedForce") force.parameters = parameters_of(text, at, next);
     if (force.kind == "CustomExternalForce")
         each_tag(text, "<Particle ", at, next, [&](std::size_t tag) {

@@ -13,12 +13,13 @@
 
 namespace catena::foreign {
 
-/// A bond in the text of a System.
+/// A bond or angle in the text of a System.
 struct BondText {
-    /// Length in nm and stiffness in kJ/mol/nm2 of a harmonic bond, or the first two parameters of
-    /// a custom one.
+    /// Length in nm and stiffness in kJ/mol/nm2 of a harmonic bond, rad and kJ/mol/rad2 of a
+    /// harmonic angle, or the first two parameters of a custom bond.
     double length, stiffness;
     std::int64_t first, second;  // particles
+    double third = 0;            // third parameter of a custom bond; 0 without one
 };
 
 /// One force in the text of a System.
@@ -28,7 +29,9 @@ struct ForceText {
     /// Defaults of its global parameters.
     std::map<std::string, double> globals;
     double cutoff = 0;  // nm
-    std::vector<BondText> bonds;
+    /// False if `usesPeriodic` says that it does not use the box.
+    bool periodic = true;
+    std::vector<BondText> bonds;  // or angles, with their first two particles
     /// Particles on which a CustomExternalForce acts.
     std::vector<std::int64_t> pulled;
     /// First three parameters of the particles of a CustomNonbondedForce; 0 for those that it does

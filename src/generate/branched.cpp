@@ -215,22 +215,21 @@ std::vector<std::int64_t> inboard_beads(BranchedShape const& shape, std::uint64_
     return std::visit([&](auto const& of) { return inboard_for(of, seed); }, shape);
 }
 
-BeadArrays grown_tree(Walk const& walk, std::vector<std::int64_t> const& inboard, double excluded,
-                      Overlaps& left) {
-    BeadArrays beads = drawn_sizes(walk);
-    Inboard const parent = unit_parents(inboard, walk.base);
-    std::ptrdiff_t const anchors = walk.base == Base::fixed ? 1 : 0;
+Overlaps grow_tree(BeadArrays& beads, TreeRoot const& root, Inboard const& inboard,
+                   double excluded) {
+    Inboard const parent = unit_parents(inboard, root.base);
+    std::ptrdiff_t const anchors = root.base == Base::fixed ? 1 : 0;
     std::vector<double> length(static_cast<std::size_t>(anchors), 0.0);
     length.insert(length.end(), beads.length.begin(), beads.length.end());
     bool const full = has_full_bead(parent, length, excluded);
-    TreeGrowth growth(parent, length, excluded, full, walk.seed);
-    std::vector<Vec3> points = growth.run(walk.anchor);
-    left = growth.overlaps();
-    if (left.count > 0 && left.count <= walk.beads / most_crowded)
+    TreeGrowth growth(parent, length, excluded, full, root.seed);
+    std::vector<Vec3> points = growth.run(root.anchor);
+    Overlaps left = growth.overlaps();
+    if (left.count > 0 && left.count <= std::ssize(beads.mass) / most_crowded)
         left = relaxed(points, parent, std::move(length), excluded,
                        full ? most_relaxed_of_full : most_relaxed);
     beads.position.assign(points.begin() + anchors, points.end());
-    return beads;
+    return left;
 }
 
 }  // namespace catena::scene

@@ -42,12 +42,19 @@ struct Overlaps {
     double nearest = 0;
 };
 
-/// Random start of the beads of `walk`, each at its link's length from the bead that `inboard`
-/// names. Beads that no link joins keep the distance `excluded` (0: any). The tree grows bead by
-/// bead and steps back where no place is free. After as many steps back as it has beads, it takes
-/// the places with the least overlap. Such overlaps are relaxed if at most a quarter of the beads
-/// has one; `left` receives the others. The result depends on the arguments alone.
-BeadArrays grown_tree(Walk const& walk, std::vector<std::int64_t> const& inboard, double excluded,
-                      Overlaps& left);
+/// Where a tree grows from.
+struct TreeRoot {
+    Base base = Base::free;
+    Vec3 anchor = Vec3::zero();
+    std::uint64_t seed = 0;
+};
+
+/// Gives the beads a random start, each at its link's length from the bead that `inboard` names.
+/// Beads that no link joins keep the distance `excluded` (0: any). The tree grows bead by bead and
+/// steps back where no place is free. After as many steps back as it has beads, it takes the places
+/// with the least overlap. Such overlaps are relaxed if at most a quarter of the beads has one.
+/// Returns those that are left. The result depends on the arguments alone.
+Overlaps grow_tree(BeadArrays& beads, TreeRoot const& root,
+                   std::vector<std::int64_t> const& inboard, double excluded);
 
 }  // namespace catena::scene

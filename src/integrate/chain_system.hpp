@@ -97,22 +97,37 @@ class ChainSystem {
     void pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take) {
         pass_bodies(own_bodies(joint_forces), take);
     }
-    /// Motion of this rank's bodies at the time of own_bodies().
-    struct OwnBodies {
-        /// Columns of a row besides position and velocity: orientation and angular velocity, joint
-        /// force, joint coordinates and rates.
+    /// Columns of a row besides position and velocity: orientation and angular velocity, joint
+    /// force, joint coordinates and rates.
+    struct BodyColumns {
         bool turning = false, joint_forces = false, joint_states = false;
-        /// Rows of each group, width() numbers per body.
-        std::vector<std::vector<double>> rows;
-        /// Number of columns of a row.
+        /// Number of columns.
         int width() const {
             return (turning ? 13 : 6) + (joint_forces ? 6 : 0) + (joint_states ? 7 : 0);
         }
     };
-    /// Copies the motion of this rank's bodies. Collective if `joint_forces`.
-    OwnBodies own_bodies(bool joint_forces, bool joint_states = false);
+    /// Motion of this rank's bodies at the time of own_bodies().
+    struct OwnBodies {
+        BodyColumns columns;
+        /// Rows of each group, one per body.
+        std::vector<std::vector<double>> rows;
+    };
+    /// Motion of all bodies in scene order. Ranks other than 0 have no rows.
+    struct AllBodies {
+        BodyColumns columns;
+        std::vector<double> rows;
+    };
+    /// Copies the motion of this rank's bodies. `rows` is memory of an earlier copy that is used
+    /// again. Collective if `joint_forces`.
+    OwnBodies own_bodies(bool joint_forces, bool joint_states = false,
+                         std::vector<std::vector<double>> rows = {});
     /// Passes bodies as pass_bodies() above does, from a copy. Collective.
     void pass_bodies(OwnBodies const&, std::function<void(Bodies const&)> const& take) const;
+    /// Passes bodies as pass_bodies() above does, from the copy of rank 0. Rank 0 only.
+    void pass_bodies(AllBodies const&, std::function<void(Bodies const&)> const& take) const;
+    /// Gathers all ranks' bodies. `rows` is memory of an earlier copy that is used again.
+    /// Collective.
+    AllBodies gather_bodies(OwnBodies const&, std::vector<double> rows) const;
     /// Passes this rank's bodies to `take`, in scene order, without exchange between ranks. Each
     /// round is of bounded size and consists of runs of consecutive bodies. All ranks have the same
     /// number of rounds. Collective.

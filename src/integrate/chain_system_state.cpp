@@ -58,19 +58,21 @@ std::size_t ChainSystem::index_of(ChainGroup const& group) const {
 
 /// Each row belongs to a body. It holds position and velocity; orientation and angular velocity if
 /// bodies can rotate; then joint force, joint coordinates and joint rates if asked for.
-ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_states) {
+ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_states,
+                                               std::vector<std::vector<double>> rows) {
     bool const turning = std::any_of(groups_.begin(), groups_.end(),
                                      [](auto const& group) { return !group->beads; });
-    OwnBodies own{turning, joint_forces, joint_states,
-                  std::vector<std::vector<double>>(groups_.size())};
+    OwnBodies own{{turning, joint_forces, joint_states}, std::move(rows)};
+    int const width = own.columns.width();
+    own.rows.resize(groups_.size());
     std::vector<BodyResults> const found = joint_forces ? results() : std::vector<BodyResults>();
     std::size_t result = 0;
     auto const add = [&](ChainGroup const& group, auto const& row,
                          JointState const* joints = nullptr) {
-        std::vector<double>& rows = own.rows[index_of(group)];
-        rows.resize(static_cast<std::size_t>(group.size * own.width()));
+        std::vector<double>& of_group = own.rows[index_of(group)];
+        of_group.resize(static_cast<std::size_t>(group.size * width));
         executor_->for_each(group.size, [&](std::int64_t k) {
-            double* to = rows.data() + k * own.width();
+            double* to = of_group.data() + k * width;
             auto const put = [&to](double const* numbers, int count) {
                 to = std::copy_n(numbers, count, to);
             };
@@ -83,19 +85,15 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_sta
         ++result;
     };
     for (auto const& group : absolute_) {
-        bool const beads = group->group().beads;
-        std::vector<StateArray> const observed = group->observed_state();
-        auto const of = [&](char const* name) { return array_named(observed, name).values.data(); };
-        double const *x = of("position"), *v = of("velocity"),
-                     *q = beads ? nullptr : of("orientation"), *w = beads ? nullptr : of("omega");
+        ObservedMotion const observed = group->observed();
         add(group->group(), [&](std::int64_t k, auto const& put) {
             static constexpr double at_rest[] = {1, 0, 0, 0, 0, 0, 0};
-            put(x + 3 * k, 3);
-            put(v + 3 * k, 3);
+            put(observed.position.load(k).data, 3);
+            put(observed.velocity.load(k).data, 3);
             if (!turning) return;
-            if (beads) return put(at_rest, 7);
-            put(q + 4 * k, 4);
-            put(w + 3 * k, 3);
+            if (group->group().beads) return put(at_rest, 7);
+            put(observed.orientation.load(k).data, 4);
+            put(observed.omega.load(k).data, 3);
         });
     }
     for (auto const& dynamics : joint_) {
@@ -121,35 +119,35 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_sta
 namespace {
 
 /// Converts rows of own_bodies() into motions; the first row is body `first` of the scene.
-ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first,
+ChainSystem::Bodies bodies_of(ChainSystem::BodyColumns const& columns, std::int64_t first,
                               std::span<double const> values, Executor const& executor) {
     ChainSystem::Bodies bodies;
     bodies.first = first;
     ChainSystem::Snapshot& motion = bodies.motion;
-    std::size_t const count = values.size() / static_cast<std::size_t>(own.width());
+    std::size_t const count = values.size() / static_cast<std::size_t>(columns.width());
     motion.position.resize(count);
     motion.velocity.resize(count);
     motion.orientation.resize(count, Quat::identity());
     motion.omega.resize(count, Vec3::zero());
-    if (own.joint_forces) bodies.joint_force.resize(count);
-    if (own.joint_states) {
+    if (columns.joint_forces) bodies.joint_force.resize(count);
+    if (columns.joint_states) {
         bodies.joint_position.resize(count);
         bodies.joint_rate.resize(count);
     }
     executor.for_each(static_cast<std::int64_t>(count), [&](std::int64_t body) {
         auto const k = static_cast<std::size_t>(body);
-        double const* row = values.data() + body * own.width();
+        double const* row = values.data() + body * columns.width();
         auto const next = [&] { return *row++; };
         auto const three = [&] { return Vec3{{next(), next(), next()}}; };
         motion.position[k] = three();
         motion.velocity[k] = three();
-        if (own.turning) {
+        if (columns.turning) {
             motion.orientation[k] = Quat{next(), next(), next(), next()};
             motion.omega[k] = three();
         }
-        if (own.joint_forces)
+        if (columns.joint_forces)
             bodies.joint_force[k] = {{next(), next(), next(), next(), next(), next()}};
-        if (!own.joint_states) return;
+        if (!columns.joint_states) return;
         bodies.joint_position[k] = {next(), next(), next(), next()};
         bodies.joint_rate[k] = three();
     });
@@ -161,21 +159,43 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
 void ChainSystem::pass_bodies(OwnBodies const& own,
                               std::function<void(Bodies const&)> const& take) const {
     SceneWindows(communicator_, groups_)
-        .pass(own.width(), own.rows, [&](std::int64_t first, std::span<double const> values) {
-            take(bodies_of(own, first, values, *executor_));
-        });
+        .pass(own.columns.width(), own.rows,
+              [&](std::int64_t first, std::span<double const> values) {
+                  take(bodies_of(own.columns, first, values, *executor_));
+              });
+}
+
+void ChainSystem::pass_bodies(AllBodies const& all,
+                              std::function<void(Bodies const&)> const& take) const {
+    auto const width = static_cast<std::size_t>(all.columns.width());
+    std::size_t const length = std::max<std::size_t>(
+                          SceneWindows::usual_bytes / (width * sizeof(double)), 1),
+                      bodies = all.rows.size() / width;
+    for (std::size_t first = 0; first < bodies; first += length) {
+        std::size_t const count = std::min(length, bodies - first);
+        take(bodies_of(all.columns, static_cast<std::int64_t>(first),
+                       std::span(all.rows).subspan(first * width, count * width), *executor_));
+    }
+}
+
+ChainSystem::AllBodies ChainSystem::gather_bodies(OwnBodies const& own,
+                                                  std::vector<double> rows) const {
+    int const width = own.columns.width();
+    if (communicator_.rank() == 0) rows.resize(static_cast<std::size_t>(scene_.bodies() * width));
+    SceneWindows(communicator_, groups_).gather(width, own.rows, rows);
+    return {own.columns, std::move(rows)};
 }
 
 void ChainSystem::pass_own_bodies(
     OwnBodies const& own, std::function<void(std::vector<Bodies> const&)> const& take) const {
     SceneWindows(communicator_, groups_)
-        .pass_own(own.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
+        .pass_own(own.columns.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
             std::vector<Bodies> bodies(round.size());
-            executor_->for_each_of_many_or_few(
-                std::ssize(round), [&](std::int64_t i, Executor const& within) {
-                    auto const& [first, values] = round[static_cast<std::size_t>(i)];
-                    bodies[static_cast<std::size_t>(i)] = bodies_of(own, first, values, within);
-                });
+            executor_->for_each_of_many_or_few(std::ssize(round), [&](std::int64_t i,
+                                                                      Executor const& within) {
+                auto const& [first, values] = round[static_cast<std::size_t>(i)];
+                bodies[static_cast<std::size_t>(i)] = bodies_of(own.columns, first, values, within);
+            });
             take(bodies);
         });
 }
@@ -212,9 +232,9 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
     };
     std::vector<EnergyTerm> terms;
     for (terms::EnergyColumn const& column : columns) terms.push_back({column.name, 0.0});
-    // Path `device`: potential() also waits for the forces, whose arrays OpenMM's energies
-    // overwrite.
-    if (on_device() || !is_free_of_potentials()) {
+    if (is_free_of_potentials()) {
+        for (auto const& group : absolute_) group->settle_forces();
+    } else {
         for (auto const& group : absolute_) add(group->group(), group->potential());
         for (auto const& group : joint_) add(group->group(), group->potential());
         SceneWindows(communicator_, groups_)

@@ -3,21 +3,16 @@
 
 #include <algorithm>
 
+#include "scene/bead_links.hpp"
 #include "scene/pose.hpp"
 
 namespace catena {
 namespace {
 
-/// Returns the carried bead at a point of body k (relative to its centre of mass, body axes); -1 if
-/// there is none.
-std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& point) {
-    // Relative rounding of positions that a file holds as decimals, rotated into body axes.
-    double constexpr rounding = 1e-9;
-    for (std::int64_t i = linked.carried.offset[k]; i < linked.carried.offset[k + 1]; ++i) {
-        Vec3 const at = linked.carried.position[static_cast<std::size_t>(i)];
-        if (norm(at - point) <= rounding * (norm(at) + norm(point))) return i;
-    }
-    return -1;
+/// Adds the links of a chain whose first bead has that number.
+void add_links(BeadSystem& system, ChainSpec const& chain, std::int64_t first) {
+    for (auto const& [inboard, outboard, length] : scene::bead_links(chain))
+        system.links.push_back({first + inboard, first + outboard, length});
 }
 
 /// Adds the beads and links of a bead chain.
@@ -26,13 +21,7 @@ void add_beads(BeadSystem& system, ChainSpec const& chain) {
     system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
     system.residue.insert(system.residue.end(), chain.beads.residue.begin(),
                           chain.beads.residue.end());
-    auto const beads = static_cast<std::int64_t>(chain.size());
-    for (std::int64_t k = 1; k < beads; ++k) {
-        auto const at = static_cast<std::size_t>(k);
-        std::int64_t const inboard = chain.is_branched() ? chain.parent[at] : k - 1;
-        system.links.push_back({first + inboard, first + k, chain.beads.length[at]});
-    }
-    if (chain.is_ring()) system.links.push_back({first, first + beads - 1, chain.tip_joint.length});
+    add_links(system, chain, first);
 }
 
 /// Adds the beads that a chain's bodies carry, and the links or neighbours between them.
@@ -44,19 +33,11 @@ void add_carried(BeadSystem& system, ChainSpec const& chain) {
     for (std::size_t k = 0; k < chain.size(); ++k) {
         std::int64_t const begin = carried.offset[k], end = carried.offset[k + 1];
         if (end - begin > 1) system.rigid.emplace_back(first + begin, first + end);
-        if (k == 0 && !(chain.is_linked() && chain.is_ring())) continue;
-        if (chain.is_linked()) {
-            std::size_t const before = k == 0 ? chain.size() - 1 : k - 1;
-            std::int64_t const from = bead_at(chain.linked, before, chain.linked.outboard[before]);
-            std::int64_t const to = bead_at(chain.linked, k, chain.linked.inboard[k]);
-            double const length = k == 0 ? chain.tip_joint.length : chain.linked.length[k];
-            if (from >= 0 && to >= 0)
-                system.links.push_back(
-                    {first + std::min(from, to), first + std::max(from, to), length});
-        } else if (end > begin && begin > carried.offset[k - 1]) {
+        if (k == 0 || chain.is_linked()) continue;
+        if (end > begin && begin > carried.offset[k - 1])
             system.neighbours.emplace_back(first + begin - 1, first + begin);
-        }
     }
+    if (chain.is_linked()) add_links(system, chain, first);
     // A ring of two bodies has its neighbours already.
     bool const both_ends =
         carried.offset[1] > 0 && carried.offset[chain.size()] > carried.offset[chain.size() - 1];

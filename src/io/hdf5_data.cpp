@@ -200,42 +200,38 @@ Space Series::grown(Place const& place, hsize_t frames) {
     return Space(check(H5Dget_space(data_.get()), place.file, place.doing));
 }
 
-void Series::write(Place const& place, Space const& in_file, void const* values, hid_t transfer) {
-    hsize_t const count =
-        static_cast<hsize_t>(check(H5Sget_select_npoints(in_file.get()), place.file, place.doing));
-    Space const in_memory = simple(place, std::span(&count, 1));
-    check(H5Dwrite(data_.get(), type_, in_memory.get(), in_file.get(), transfer, values),
-          place.file, place.doing);
-}
-
 void Series::put(Place const& place, hsize_t frame, void const* values) {
-    Space const in_file = grown(place, frame + 1);
-    if (values == nullptr) return;
-    std::vector<hsize_t> start{frame}, count{1};
-    start.resize(row_.size() + 1, 0);
-    count.insert(count.end(), row_.begin(), row_.end());
-    check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
-                              nullptr),
-          place.file, place.doing);
-    write(place, in_file, values, H5P_DEFAULT);
+    if (values == nullptr) return cut(place, frame + 1);
+    Part const whole{0, row_.empty() ? 1 : row_[0]};
+    put(place, frame, std::span(&whole, 1), values, H5P_DEFAULT);
 }
 
 void Series::put(Place const& place, hsize_t frame, std::span<Part const> parts, void const* values,
                  hid_t transfer) {
     Space const in_file = grown(place, frame + 1);
     check(H5Sselect_none(in_file.get()), place.file, place.doing);
-    std::vector<hsize_t> start{frame, 0}, count{1};
+    std::vector<hsize_t> start{frame}, count{1};
     start.resize(row_.size() + 1, 0);
     count.insert(count.end(), row_.begin(), row_.end());
+    int blocks = 0;
     for (Part const& part : parts) {
         if (part.count == 0) continue;
-        start[1] = part.first;
-        count[1] = part.count;
+        if (!row_.empty()) {
+            start[1] = part.first;
+            count[1] = part.count;
+        }
         check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_OR, start.data(), nullptr, count.data(),
                                   nullptr),
               place.file, place.doing);
+        ++blocks;
     }
-    write(place, in_file, values, transfer);
+    // HDF5 copies a single block as a whole if memory has its shape, and value by value otherwise.
+    if (blocks != 1)
+        count = {static_cast<hsize_t>(
+            check(H5Sget_select_npoints(in_file.get()), place.file, place.doing))};
+    Space const in_memory = simple(place, count);
+    check(H5Dwrite(data_.get(), type_, in_memory.get(), in_file.get(), transfer, values),
+          place.file, place.doing);
 }
 
 Properties Series::creation(Place const& place) const {

@@ -88,7 +88,6 @@ class Series {
     /// Resizes the dataset to `frames` rows and returns its dataspace.
     Space grown(Place const&, hsize_t frames);
     Properties creation(Place const&) const;
-    void write(Place const&, Space const& in_file, void const* values, hid_t transfer);
 
     Dataset data_;
     hid_t type_ = H5I_INVALID_HID;  // a native type of the library, not owned

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,11 +61,21 @@ hid_t create_anew(std::string const& file, hid_t creation, hid_t access) {
     return H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation, access);
 }
 
+namespace {
+/// True if the process may not write so many bytes to a file. fallocate() does not ask for a length
+/// that the file need not get.
+bool is_beyond_limit(std::int64_t bytes) {
+    rlimit limit{};
+    return getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+           static_cast<rlim_t>(bytes) > limit.rlim_cur;
+}
+}  // namespace
+
 void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes,
                       std::string const& file, std::string const& doing) {
-    int error = 0;
-    do error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;
-    while (error == EINTR);
+    int error = is_beyond_limit(from + bytes) ? EFBIG : EINTR;
+    while (error == EINTR)
+        error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;
     if (error == ENOSPC || error == EDQUOT || error == EFBIG)
         throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(error));
 }

@@ -17,11 +17,6 @@
 namespace catena {
 namespace {
 
-/// Smallest write in bytes that all ranks share: what ranks send to the root in one piece
-/// (chain/scene_windows.hpp). Collective writing of smaller frames takes 0.15 ms longer, and tens
-/// of ms if ranks share cores.
-constexpr std::int64_t worth_it = 4 << 20;
-
 /// Inode and size of a file, which are the same on every host that sees the same file.
 using Marks = std::array<std::int64_t, 2>;
 
@@ -72,11 +67,11 @@ ParallelIoMode by_the_root(std::string const& why) { return {false, "by the root
 
 ParallelIoMode choose_file_way(Communicator const& communicator, RequestedIoMode wish,
                                std::string const& file, std::int64_t bytes,
-                               std::string const& what) {
+                               SmallWrites const& small) {
     if (communicator.size() == 1) return {};
     if (wish == RequestedIoMode::root) return by_the_root("CATENA_HDF5 says so");
     broadcast(communicator, bytes);
-    if (wish == RequestedIoMode::best && bytes < worth_it) return by_the_root(what + " are small");
+    if (wish == RequestedIoMode::best && bytes < small.below) return by_the_root(small.why);
     std::string const why = why_by_the_root(communicator, file);
     return why.empty() ? ParallelIoMode{true, "collective, " + std::to_string(communicator.size()) +
                                                   " ranks"}

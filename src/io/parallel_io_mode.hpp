@@ -28,10 +28,15 @@ struct ParallelIoMode {
 };
 /// Mode of writing by the root, for the reason `why`.
 ParallelIoMode by_the_root(std::string const& why);
-/// Chooses the mode for `file`, which the root has created. `bytes`: size of one write of `what`,
-/// which the root knows. Small writes are faster by one rank. Collective.
+/// Size in bytes below which the root writes, and why.
+struct SmallWrites {
+    std::int64_t below;
+    std::string why;
+};
+/// Chooses the mode for `file`, which the root has created. `bytes`: size of one write, which the
+/// root knows. Collective.
 ParallelIoMode choose_file_way(Communicator const&, RequestedIoMode, std::string const& file,
-                               std::int64_t bytes, std::string const& what);
+                               std::int64_t bytes, SmallWrites const&);
 /// Runs `steps` on every rank, a step only after the preceding one has succeeded on all ranks.
 /// Returns an empty text, or the reason why some rank failed. Collective.
 std::string why_not_together(Communicator const&,

@@ -20,6 +20,9 @@ using namespace hdf5;
 
 std::string const writing = "write the trajectory";
 constexpr double seconds_between_flushes = 10;
+/// Size in bytes from which all ranks write frames together. Smaller ones are gathered and written
+/// by a thread of rank 0, while steps go on (run/frame_writer.hpp).
+constexpr std::int64_t largest_frame_beside = std::int64_t{512} << 20;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double),
               "frames are handed to HDF5 as they lie");
@@ -376,7 +379,8 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
         bytes = writer->standing().contents.bytes_of_frame();
     });
     RequestedIoMode const wish = requested_io_mode_of_run(communicator);
-    ParallelIoMode way = choose_file_way(communicator, wish, file, bytes, "frames");
+    ParallelIoMode way = choose_file_way(communicator, wish, file, bytes,
+                                         {largest_frame_beside, "frames are small"});
     if (way.collective && communicator.sum(fits ? 1 : 0) == 0)
         way = by_the_root("an earlier version began the file");
     require_wished(wish, way, file);

@@ -102,7 +102,7 @@ constexpr std::string_view forces_later[] = {"springs", "torques"};
 constexpr Key openmm_keys[] = {
     {"builder", "`calvados2`, `calvados3`", "none", "",
      "Catena builds this force field: Ashbaugh-Hatch up to 2 nm and Yukawa up to 4 nm, with links "
-     "in the place of bonds.",
+     "in the place of bonds; RNA has further terms.",
      "builder: calvados2"},
     {"system", "path", "none", "", "The forces are those of this serialised OpenMM System (XML).",
      "system: system.xml"},
@@ -161,7 +161,7 @@ constexpr Key openmm_keys[] = {
     {"links", "map of lengths", "none", "length",
      "Bonds of a CustomBondForce, by its name or kind, become rigid links of this length where "
      "they "
-     "join neighbours.",
+     "join beads of a chain.",
      "links: {FENE: 0.97}"},
     {"extra", "list of paths", "none", "",
      "These serialised forces of OpenMM (XML) act in addition: restraints, pulling, umbrella "

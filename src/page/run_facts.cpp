@@ -91,6 +91,9 @@ std::string simulated_text(Json const& summary, Json const& run) {
 /// Decimal place of a number's first digit: 0 for 1 to 9.99, -1 for 0.1 to 0.99.
 int first_place(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
 
+/// Relative error below which a mean has six digits alone.
+constexpr double negligible = 1e-6;
+
 std::string check_text(Json const& check) {
     return fmt::format("{} {:.2g} of {:.2g}", text(check, "name"), number(check, "value"),
                        number(check, "limit"));
@@ -174,6 +177,8 @@ std::pair<std::string, std::string> rounded_alike(double mean, double standard_e
     if (!std::isfinite(mean)) return {"-", "-"};
     if (!std::isfinite(standard_error)) return {readable_number(mean), "-"};
     if (standard_error <= 0) return {readable_number(mean), "0"};
+    if (standard_error < negligible * std::abs(mean))
+        return {readable_number(mean), fmt::format("{:.1e}", standard_error)};
     int const place = first_place(standard_error) - 1;  // of the error's second digit
     double const size = std::max(std::abs(mean), standard_error);
     if (size >= 1e-4 && size < 1e7) {

@@ -37,7 +37,8 @@ std::vector<Fact> speed_facts(nlohmann::ordered_json const& summary);
 std::string verdict_reason(nlohmann::ordered_json const& summary);
 
 /// Returns the texts of a mean and of its standard error, which has two digits. Both end at the
-/// same decimal place. An error that is zero or not finite leaves six digits of the mean.
+/// same decimal place. An error that is zero, not finite or below 1e-6 of the mean leaves six
+/// digits of the mean.
 std::pair<std::string, std::string> rounded_alike(double mean, double standard_error);
 
 }  // namespace catena

@@ -71,7 +71,7 @@ std::optional<Vec3> read_fill(Node const& box) {
 }
 
 std::string fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill,
-                        Node const& node, std::uint64_t seed) {
+                        Node const& node, std::uint64_t seed, double least) {
     for (Draft const& draft : drafts)
         if (!draft.movable || !draft.chain.is_beads() || draft.chain.base == Base::fixed ||
             draft.chain.tip != Tip::free)
@@ -82,7 +82,7 @@ std::string fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const&
                     shown(draft.chain.name)),
                 "leave `fill` out, or leave the placement of every chain to the scene");
     // The region is packed as a periodic box of its own, then its chains are moved into the middle.
-    std::string note = give_places(drafts, fill, seed, "the region to fill");
+    std::string note = give_places(drafts, fill, seed, least, "the region to fill");
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);
     refuse_meeting(drafts, box, node);
     return note;

@@ -16,9 +16,10 @@ std::optional<Vec3> read_fill(Node const& box);
 
 /// Places the chains in the region as give_places() does in a periodic box of the same size. The
 /// centre of each chain lies within the region; parts of chains may extend beyond its sides.
-/// Returns the sentence of give_places(). Throws InputError, at `node`, for chains that have a
-/// place or are not free chains of beads, and for such parts that meet across the box.
+/// `least` and the sentence that is returned are those of give_places(). Throws InputError, at
+/// `node`, for chains that have a place or are not free chains of beads, and for such parts that
+/// meet across the box.
 [[nodiscard]] std::string fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill,
-                                      Node const& node, std::uint64_t seed);
+                                      Node const& node, std::uint64_t seed, double least);
 
 }  // namespace catena::scene

@@ -46,11 +46,10 @@ double longest_link(ChainSpec const& chain, Outline const& outline) {
     return *std::max_element(chain.linked.length.begin(), chain.linked.length.end());
 }
 
-Shape shape_of(Draft const& draft, std::size_t number) {
+Shape shape_of(Draft const& draft, std::size_t number, double least) {
     Outline const outline = outline_of(draft.chain);
     Shape shape{number, outline.points, Vec3::zero(),
-                std::max(excluded_distance, longest_link(draft.chain, outline)),
-                is_rotatable(draft.chain)};
+                std::max(least, longest_link(draft.chain, outline)), is_rotatable(draft.chain)};
     for (Vec3 const& point : shape.points)
         shape.centre =
             plus_scaled(shape.centre, 1 / static_cast<double>(shape.points.size()), point);
@@ -66,7 +65,7 @@ class Insertion {
         : shapes_(shapes),
           box_(box),
           seed_(seed),
-          occupied_(box, width_of(shapes), placed.size() + points_of(shapes)) {
+          occupied_(box, width_of(shapes, box), placed.size() + points_of(shapes)) {
         for (Vec3 const& point : placed) occupied_.put(next_++, point);
     }
 
@@ -91,10 +90,11 @@ class Insertion {
     }
 
   private:
-    static double width_of(std::vector<Shape> const& shapes) {
+    /// Width of a cell: the largest clearance. Single beads without any may stand anywhere.
+    static double width_of(std::vector<Shape> const& shapes, Vec3 const& box) {
         double width = 0;
         for (Shape const& shape : shapes) width = std::max(width, shape.clearance);
-        return width;
+        return width > 0 ? width : std::min({box[0], box[1], box[2]});
     }
     static std::size_t points_of(std::vector<Shape> const& shapes) {
         return std::accumulate(
@@ -142,7 +142,7 @@ struct Task {
     std::uint64_t seed;
 };
 
-Task task_of(std::vector<Draft> const& drafts, Vec3 const& box, std::uint64_t seed) {
+Task task_of(std::vector<Draft> const& drafts, Vec3 const& box, std::uint64_t seed, double least) {
     /// Stream of the insertion, distinct from the streams of single chains and of the packing.
     std::uint64_t constexpr insertion = std::uint64_t{3} << 62;
     Task task{{}, {}, box, seed_of_stream(seed, insertion)};
@@ -151,7 +151,7 @@ Task task_of(std::vector<Draft> const& drafts, Vec3 const& box, std::uint64_t se
             std::vector<Vec3> const points = outline_of(drafts[d].chain).points;
             task.placed.insert(task.placed.end(), points.begin(), points.end());
         } else if (drafts[d].regrown != Regrowth::yes) {
-            task.shapes.push_back(shape_of(drafts[d], d));
+            task.shapes.push_back(shape_of(drafts[d], d, least));
         }
     }
     std::stable_sort(task.shapes.begin(), task.shapes.end(), [](Shape const& a, Shape const& b) {
@@ -213,7 +213,7 @@ void move_to(std::vector<Draft>& drafts, Task const& task, std::vector<Motion> c
 }  // namespace
 
 void insert_shapes(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed) {
-    Task const task = task_of(drafts, box, seed);
+    Task const task = task_of(drafts, box, seed, excluded_distance);
     if (task.shapes.empty()) return;
     std::vector<Motion> const motions =
         insert_all(task, [&](std::size_t draft) -> Region const& { return *drafts[draft].region; });
@@ -221,8 +221,9 @@ void insert_shapes(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t se
     move_to(drafts, task, motions);
 }
 
-std::size_t insert_if_all_fit(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed) {
-    Task const task = task_of(drafts, box, seed);
+std::size_t insert_if_all_fit(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed,
+                              double least) {
+    Task const task = task_of(drafts, box, seed, least);
     Region const whole = whole_box(box);
     std::vector<Motion> const motions =
         insert_all(task, [&](std::size_t) -> Region const& { return whole; });

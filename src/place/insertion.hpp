@@ -17,7 +17,8 @@ namespace catena::scene {
 void insert_shapes(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed);
 
 /// Does the same in the whole box, whatever the regions, and returns the number of drafts that
-/// found a place. If not all of them did, it moves none.
-std::size_t insert_if_all_fit(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed);
+/// found a place. If not all of them did, it moves none. `least`: distance in place of 0.56 nm.
+std::size_t insert_if_all_fit(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed,
+                              double least);
 
 }  // namespace catena::scene

@@ -63,6 +63,8 @@ Sphere sphere_of(Draft const& draft) {
 struct Room {
     /// Edges of the box; none for unlimited space.
     std::optional<Vec3> const& edges;
+    /// Smallest distance of chains at random places.
+    double least;
     /// Name in messages.
     char const* name;
 };
@@ -94,6 +96,17 @@ struct Lattice {
                          "`fasta` without `positions` are packed more densely"));
 }
 
+/// Width of the cells for single beads, which have no size: 1 nm, or what gives each a cell of a
+/// room in SI units.
+double width_for_points(std::size_t moving, std::size_t placed, Room const& room) {
+    if (room.least > 0 || !room.edges) return 1;
+    Vec3 const& edges = *room.edges;
+    std::size_t constexpr around = 27;  // cells that a point with a place may take
+    auto const cells = static_cast<double>(moving + around * placed);
+    double constexpr rounding = 1 - 1e-9;  // must not cost a layer
+    return rounding * std::min({edges[0], edges[1], edges[2]}) / std::ceil(std::cbrt(cells));
+}
+
 /// Places the chains `moving` next to each other, clear of `placed`. Moves nothing if the room has
 /// fewer places than chains.
 Lattice place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed,
@@ -104,7 +117,7 @@ Lattice place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere
         spheres.push_back(sphere_of(*draft));
         width = std::max(width, 2 * spheres.back().radius + spheres.back().gap);
     }
-    if (width == 0) width = 1;  // single beads: any distance is enough
+    if (width == 0) width = width_for_points(moving.size(), placed.size(), box);
     std::vector<Vec3> const cells = PlaceGrid(placed, width, box.edges).find(moving.size());
     for (std::size_t i = 0; i < moving.size() && cells.size() >= moving.size(); ++i) {
         refuse_far(*moving[i], {cells[i], spheres[i].radius, 0});
@@ -132,7 +145,7 @@ std::string place_shapes(std::vector<Draft>& drafts, std::vector<Draft*> const& 
     Lattice const lattice = place_side_by_side(moving, placed, room);
     if (lattice.places >= moving.size()) return {};
     if (!may_insert(moving)) refuse(moving, room, lattice, std::nullopt);
-    std::size_t const inserted = insert_if_all_fit(drafts, *room.edges, seed);
+    std::size_t const inserted = insert_if_all_fit(drafts, *room.edges, seed, room.least);
     if (inserted < moving.size()) refuse(moving, room, lattice, inserted);
     return fmt::format(
         "{} chains that keep their shape do not fit side by side into {}: they start at random "
@@ -143,8 +156,8 @@ std::string place_shapes(std::vector<Draft>& drafts, std::vector<Draft*> const& 
 }  // namespace
 
 std::string give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box,
-                        std::uint64_t seed, char const* name) {
-    Room const room{box, name};
+                        std::uint64_t seed, double least, char const* name) {
+    Room const room{box, least, name};
     std::vector<Draft*> moving;
     std::vector<Sphere> placed;
     for (Draft& draft : drafts) {

@@ -107,7 +107,8 @@ void BranchedEntry::make(ChainSpec& chain, std::uint64_t seed) const {
                                          static_cast<double>(links);
     double const excluded = excluded_.value_or(mean);
     if (!positions && links > 1) refuse_beyond_reach(length, excluded);
-    if (!positions) chain.beads = grown_tree(walk, inboard, excluded, left);
+    if (!positions)
+        left = grow_tree(chain.beads, {walk.base, walk.anchor, walk.seed}, inboard, excluded);
     chain.beads.residue.assign(chain.beads.size(), residue_);
     chain.parent = as_parents(std::move(inboard));
     if (positions)

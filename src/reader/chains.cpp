@@ -217,8 +217,9 @@ class ChainReader {
             prepare(copy_name, next + copy * beads);
             say_ends(copy_name);
             bool const differs =
-                is_random() || (request_.system &&
-                                !request_.system->alike(first_particle, request_.particle, beads));
+                is_random() ||
+                (request_.system && !request_.system->alike(first_particle, request_.particle,
+                                                            beads, drafts[at].chain.parent));
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
             drafts.back().chain.name = copy_name;
@@ -275,6 +276,9 @@ class ChainReader {
         if (generator_) {
             generator_->make(chain, copy);
             velocities = generator_->gives_velocities();
+        } else if (source_.key != "bodies" && source_.key != "pdb" && is_rna(request_)) {
+            read_nucleotides(request_, copy, chain);
+            velocities = false;
         } else if (source_.key != "bodies") {
             chain.beads = read_sequence(request_, copy);
             if (request_.part != nullptr) chain.members = request_.part->names;
@@ -360,7 +364,9 @@ class ChainReader {
     }
     /// Permission to regrow the chain, see Regrowth.
     Regrowth regrown(ChainSpec const& chain) const {
-        if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta"))
+        // Packing grows each bead beside the one before.
+        if (!is_free(chain) || chain.is_branched() ||
+            (source_.key != "sequence" && source_.key != "fasta"))
             return Regrowth::no;
         Node const* const conformation = request_.fields.find("conformation");
         bool const any_shape =

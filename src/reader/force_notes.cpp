@@ -218,6 +218,21 @@ void note_water(Scene& scene) {
                         cold ? coldest_water : hottest_water));
 }
 
+void note_long_screening(Scene& scene) {
+    if (!scene.forces.openmm || scene.forces.openmm->builder.empty()) return;
+    OpenMmSpec const& spec = *scene.forces.openmm;
+    if (!(spec.temperature > 0 && spec.temperature <= calvados2::warmest_water)) return;
+    double const kappa = calvados2::yukawa(spec.temperature, spec.ionic_strength).kappa;
+    if (kappa * calvados2::yukawa_cutoff >= 1 || !has_charges(scene)) return;
+    scene.note(fmt::format(
+        "forces.openmm.ionic_strength is {:.6g} mol/l: {}, and forces between charges end at "
+        "{:.6g} nm. Give more salt, unless this is meant.",
+        spec.ionic_strength,
+        kappa > 0 ? fmt::format("the Debye length is {:.4g} nm", 1 / kappa)
+                  : std::string("nothing screens charges"),
+        calvados2::yukawa_cutoff));
+}
+
 void note_missing_forces(Scene& scene) {
     if (scene.si || !scene.dynamics.given || scene.forces.openmm) return;
     auto const found = std::find_if(scene.chains.begin(), scene.chains.end(), has_residues);

@@ -24,6 +24,9 @@ void note_step(Scene&);
 /// Notes charges of a System that act as in water of another temperature than the run's, and water
 /// that is frozen or boils. Precondition: all sections except the chains have been read.
 void note_screening(Scene&, std::optional<Screening> const&);
+/// Notes charges of a builder that reach further than its cutoff, for want of salt. Precondition:
+/// the chains have been read.
+void note_long_screening(Scene&);
 /// Notes residues between which no forces act, if the scene is to be run: they would move as an
 /// ideal chain. Precondition: all sections have been read.
 void note_missing_forces(Scene&);

@@ -26,6 +26,8 @@ constexpr double least_distance = 0.25;
 constexpr double largest_distance = 0.46;
 /// Largest distance of residues whose numbers skip, nm.
 constexpr double largest_where_numbers_skip = 0.42;
+/// Distance, nm, from which on neighbours may stand at opposite sides of a box.
+constexpr double least_jump = 1;
 /// Largest length of a peptide bond (carbonyl carbon to the next nitrogen), nm; its usual length is
 /// 0.133 nm.
 constexpr double largest_peptide_bond = 0.2;
@@ -72,7 +74,7 @@ class Neighbours {
         bool const gap = apart >= least_distance && !is_wrapped(a, b);
         if (rule_ != GapRule::refuse && gap) return true;
         if (rule_ != GapRule::refuse || !request_.links_as_given())
-            refuse(a, b, apart, near && !bonded ? peptide : 0);
+            refuse(a, b, apart, near && !bonded ? peptide : 0, skips);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
         return false;
     }
@@ -140,9 +142,10 @@ class Neighbours {
              "per file");
     }
     /// Throws InputError with the most likely reason: too close, wrapped into the file's cell, or a
-    /// gap. `peptide` is the length of a broken peptide bond, nm, or 0.
-    [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart,
-                             double peptide) const {
+    /// gap. `peptide` is the length of a broken peptide bond, nm, or 0; `skips` says that the
+    /// residue numbers do not follow each other.
+    [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart, double peptide,
+                             bool skips) const {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label,
                                              b.residue, b.label, from_.file);
         if (apart < least_distance)
@@ -159,11 +162,13 @@ class Neighbours {
                  fmt::format(
                      "write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`, or make the chain whole",
                      (*from_.cell)[0], (*from_.cell)[1], (*from_.cell)[2]));
-        fail(
-            at_,
-            fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
-            "write `gaps: split` for two chains, `gaps: model` to grow what is missing, or `links: "
-            "as_given` to keep the distance");
+        bool const may_be_wrapped = !skips && !request_.scene.box && apart > least_jump;
+        fail(at_,
+             fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
+             std::string(
+                 "write `gaps: split` for two chains, `gaps: model` to grow what is missing, "
+                 "or `links: as_given` to keep the distance") +
+                 (may_be_wrapped ? " (if the chain is wrapped into a box, give `box`)" : ""));
     }
 
     PdbSites const& from_;

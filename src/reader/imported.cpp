@@ -38,12 +38,14 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
     beads.velocity.assign(beads.mass.size(), Vec3::zero());
     beads.length = std::move(from.length);
     beads.residue = std::move(from.residue);
-    StartFit::Chain const chain{draft.chain.name, beads};
+    std::vector<std::int64_t> const& parent = draft.chain.parent = std::move(from.parent);
+    StartFit::Chain const chain{draft.chain.name, beads, Base::free, {}, nullptr, parent};
     fit.make_whole(chain, false);
-    if (std::int64_t const k = coincident_bead(beads, Base::free); k >= 0)
+    if (std::int64_t const k = coincident_bead(beads, Base::free, parent); k >= 0)
         fail_at(openmm, "bead", k + 1,
                 fmt::format("bead {} of chain `{}` coincides with bead {}", k + 1,
-                            shown(draft.chain.name), k),
+                            shown(draft.chain.name),
+                            inboard_of(parent, static_cast<std::size_t>(k)) + 1),
                 "move one of them in the topology");
     fit.fit(chain);
     return draft;

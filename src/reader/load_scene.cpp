@@ -146,13 +146,14 @@ void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene&
     auto const note = [&](std::string text) {
         if (!text.empty()) frame.note(std::move(text));
     };
+    double const least = frame.si ? 0 : scene::excluded_distance;
+    std::uint64_t const seed = frame.dynamics.seed;
     if (place)
-        scene::place_in_regions(drafts, frame.box, frame.dynamics.seed);
+        scene::place_in_regions(drafts, frame.box, seed);
     else if (fill)
-        note(
-            scene::fill_region(drafts, *frame.box, *fill, *box->find("fill"), frame.dynamics.seed));
+        note(scene::fill_region(drafts, *frame.box, *fill, *box->find("fill"), seed, least));
     else
-        note(scene::give_places(drafts, frame.box, frame.dynamics.seed));
+        note(scene::give_places(drafts, frame.box, seed, least));
 }
 
 /// Reads and places the chains of one replica.
@@ -220,6 +221,7 @@ Scene parse_scene(std::string const& text, std::string const& name,
     scene::note_missing_forces(made);
     scene::note_step(made);
     scene::note_water(made);
+    scene::note_long_screening(made);
     made.hash = scene::fingerprint(made);
     return made;
 } catch (std::bad_alloc const&) {

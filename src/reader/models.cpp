@@ -14,6 +14,7 @@
 #include "keys/maps.hpp"
 #include "reader/structure_entry.hpp"
 #include "scene/files.hpp"
+#include "structure/calvados_rna.hpp"
 #include "structure/residue_names.hpp"
 
 namespace catena::scene {
@@ -44,7 +45,9 @@ ResidueTable read_model(Node const& model, std::string const& scene_file) {
         fail(model, fmt::format("`{}` is not a model", shown(model.text)),
              "name a table as `model: {residues: FILE.csv}`");
     return *built_in_table(
-        choice<std::string_view>(model, {{"calvados2", "calvados2"}, {"calvados3", "calvados3"}}));
+        choice<std::string_view>(model, {{"calvados2", "calvados2"},
+                                         {"calvados3", "calvados3"},
+                                         {calvados_rna::model, calvados_rna::model}}));
 }
 
 /// True if forces do not tell the two types apart.
@@ -64,6 +67,15 @@ void note_phosphate(ChainRequest const& request, ResidueType const& type, double
             "`{}` gives {} the charge {:.3f} e, at `ph` {:.6g} it has {:.3f} e (pKa {}): correct "
             "the table unless its charge is meant",
             request.table->name(), type.name, type.charge, ph, charge, known->pka));
+}
+
+/// Notes RNA beside proteins for which it was not fitted.
+void note_other_proteins(ChainRequest const& request, OpenMmSpec const& openmm) {
+    if (openmm.builder != "calvados2")
+        request.scene.note(
+            fmt::format("RNA was fitted beside CALVADOS 2, the forces have builder {}: write "
+                        "`builder: calvados2` unless proteins of that model are meant",
+                        openmm.builder));
 }
 
 /// Names the ends of a chain that are not amino acids, with a verb. Returns an empty text if there
@@ -100,6 +112,7 @@ void hand_to_forces(ChainRequest const& request, Residues const& residues) {
     if (!openmm || openmm->builder.empty()) return;
     Node const& model = *request.fields.find("model");
     bool const own = model.kind == Node::Kind::map;
+    if (!own && model.text == calvados_rna::model) return note_other_proteins(request, *openmm);
     if (!own && model.text != openmm->builder)
         fail(model,
              fmt::format("the chain has model {}, the forces have builder {}", model.text,

@@ -10,6 +10,7 @@
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/force_changes.hpp"
+#include "structure/calvados_rna.hpp"
 #include "terms/force_terms.hpp"
 
 namespace catena::scene {
@@ -79,6 +80,9 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
         fail(fields.node(), "neither `builder` nor `system`",
              "add `builder: calvados2`, or `system: system.xml`");
     if (builder) {
+        if (builder->kind == Node::Kind::scalar && builder->text == calvados_rna::model)
+            fail(*builder, fmt::format("`{}` is a model of chains, not a builder", builder->text),
+                 "write `builder: calvados2`, which has the forces of RNA, too");
         choice<int>(*builder, {{"calvados2", 2}, {"calvados3", 3}});
         spec.builder = builder->text;
         for (Node const* const extra : {topology, map, fields.find("force_groups"),

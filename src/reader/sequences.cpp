@@ -14,6 +14,7 @@
 #include "reader/structure_entry.hpp"
 #include "scene/files.hpp"
 #include "structure/calvados2.hpp"
+#include "structure/calvados_rna.hpp"
 #include "structure/fasta.hpp"
 #include "structure/pdb_sites.hpp"
 #include "structure/residue_names.hpp"
@@ -93,47 +94,39 @@ void set_residues(BeadArrays& beads, Residues const& residues, ChainRequest cons
 /// Returns beads at their start positions; mass and residue of each bead are set later.
 BeadArrays at_start(ChainRequest const& request, std::vector<double> const& lengths,
                     std::int64_t copy) {
-    Node const* const positions = request.fields.find("positions");
-    Node const* const conformation = request.fields.find("conformation");
-    if (positions && conformation)
-        fail(*conformation, "the chain has both `positions` and `conformation`",
-             "keep one of them");
-    bool const file = conformation && conformation->kind == Node::Kind::map;
-    bool const self_avoiding =
-        conformation && !file &&
-        choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}});
+    WrittenStart const from = written_start(request);
     double const length = *std::max_element(lengths.begin(), lengths.end()),
                  excluded = std::min(excluded_distance, widest_exclusion * length);
     // A fixed base needs one more point: the anchor.
     std::int64_t const points = std::ssize(lengths) + (request.base == Base::fixed ? 1 : 0);
     std::vector<Vec3> const start =
-        self_avoiding ? self_avoiding_conformation(points, length, excluded, request.seed(copy))
-                      : extended_conformation(points, length);
+        from.self_avoiding
+            ? self_avoiding_conformation(points, length, excluded, request.seed(copy))
+            : extended_conformation(points, length);
     BeadArrays made = beads_at(start, length, 1, request.base, request.anchor());
     request.set_lengths(made, lengths);
-    Node const* const from =
-        file ? &Fields(*conformation, keys::conformation).need("pdb", "pdb: start.pdb") : positions;
-    if (from) request.place(made, request.positions_from(*from, made.size()), *from);
+    if (from.file) request.place(made, request.positions_from(*from.file, made.size()), *from.file);
     return made;
 }
 
 /// Reads the residues from `fasta` or `sequence`, or names those of the structure.
 Residues read_residues(ChainRequest& request) {
-    Fields const& fields = request.fields;
-    Node const* const fasta = fields.find("fasta");
-    Node const* const record = fields.find("record");
-    if (record && !fasta)
-        fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
     if (request.part != nullptr)
-        return residues_named(request.part->from, *fields.find("pdb"), table_of(request),
+        return residues_named(request.part->from, *request.fields.find("pdb"), table_of(request),
                               request.scene);
-    if (fasta) {
-        std::string const path = resolved(text(*fasta), request.scene.file);
-        return residues_of(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta,
-                           request);
-    }
-    Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
-    return residues_of(text(sequence), sequence, request);
+    WrittenSequence const written = written_sequence(request);
+    return residues_of(written.text, written.source, request);
+}
+
+/// Notes nucleotides of a residue table, which would have one bead each.
+void note_single_beads(ChainRequest const& request, Residues const& residues) {
+    if (std::any_of(residues.begin(), residues.end(), [](ResidueType const* residue) {
+            return residue->name == calvados_rna::backbone || residue->name == "RNA";
+        }))
+        request.scene.note(fmt::format(
+            "chain `{}` has a bead for each letter in a row, also for RNA of `{}`: nucleotides of "
+            "CALVADOS are a backbone with bases beside it, write `model: {}`",
+            shown(request.name()), request.table->name(), calvados_rna::model));
 }
 
 /// Reads `rigid`, which requires positions. Those of a structure are read with it.
@@ -157,8 +150,38 @@ void read_rigid(ChainRequest& request, std::size_t residues) {
 
 }  // namespace
 
+WrittenSequence written_sequence(ChainRequest const& request) {
+    Fields const& fields = request.fields;
+    Node const* const fasta = fields.find("fasta");
+    Node const* const record = fields.find("record");
+    if (record && !fasta)
+        fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
+    if (!fasta) {
+        Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
+        return {text(sequence), sequence};
+    }
+    std::string const path = resolved(text(*fasta), request.scene.file);
+    return {read_fasta(path, *fasta, {record, fields.find("name")}), *fasta};
+}
+
+WrittenStart written_start(ChainRequest const& request) {
+    Node const* const positions = request.fields.find("positions");
+    Node const* const conformation = request.fields.find("conformation");
+    if (positions && conformation)
+        fail(*conformation, "the chain has both `positions` and `conformation`",
+             "keep one of them");
+    if (!conformation) return {positions, false};
+    if (conformation->kind == Node::Kind::map)
+        return {&Fields(*conformation, keys::conformation).need("pdb", "pdb: start.pdb"), false};
+    return {nullptr, choice<bool>(*conformation, {{"extended", false}, {"self_avoiding", true}})};
+}
+
 void check_residue_keys(ChainRequest& request) {
     bool const pdb = request.fields.find("pdb");
+    if (pdb && is_rna(request))
+        fail(*request.fields.find("pdb"), "RNA from a structure file",
+             "give its `sequence`, and its beads' places by `positions` (a table x,y,z with "
+             "backbone and base by turns)");
     request.allow(pdb ? "a chain from a PDB file" : "a sequence",
                   pdb ? Names{"record", "model", "links", "anchor", "rigid", "charge_termini",
                               "chain", "conformer", "gaps", "sites"}
@@ -178,6 +201,7 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     request.residues.clear();
     for (ResidueType const* const residue : residues) request.residues.push_back(residue->name);
     hand_to_forces(request, residues);
+    note_single_beads(request, residues);
     find_ends(request, residues);
     BeadArrays beads = at_start(request, link_lengths(residues), copy);
     set_residues(beads, residues, request);

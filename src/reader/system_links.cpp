@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "reader/force_notes.hpp"
+#include "scene/bead_links.hpp"
 #include "scene/force_changes.hpp"
 
 namespace catena::scene {
@@ -17,37 +18,14 @@ namespace {
 
 /// Difference of lengths, relative to that of the bond, that is noted.
 double constexpr noted_difference = 0.02;
-/// Largest distance, nm, from the end of a link to the bead at which it ends.
-double constexpr same_place = 1e-6;
-
-/// Beads of a chain (from 0) at both ends of a link.
-struct LinkedBeads {
-    std::int64_t inboard, outboard;
-    /// Length of the link, nm.
-    double length;
-    /// True if the link ends at these beads, not elsewhere in the bodies that carry them.
-    bool ends_there = true;
-};
-
-/// Links of a chain between beads.
-std::vector<LinkedBeads> linked_beads(ChainSpec const& chain) {
-    std::vector<LinkedBeads> links;
-    if (chain.is_beads())
-        for (std::size_t k = 1; k < chain.size(); ++k)
-            links.push_back({static_cast<std::int64_t>(inboard_of(chain.parent, k)),
-                             static_cast<std::int64_t>(k), chain.beads.length[k]});
-    LinkedArrays const& bodies = chain.linked;
-    std::vector<std::int64_t> const& offset = bodies.carried.offset;
-    std::vector<Vec3> const& position = bodies.carried.position;
-    if (!chain.is_linked() || offset.size() != chain.size() + 1) return links;
-    for (std::size_t k = 1; k < chain.size(); ++k) {
-        std::int64_t const first = offset[k];
-        if (first <= offset[k - 1] || first >= offset[k + 1]) continue;
-        auto const bead = static_cast<std::size_t>(first);
-        bool const there = norm(position[bead - 1] - bodies.outboard[k - 1]) <= same_place &&
-                           norm(position[bead] - bodies.inboard[k]) <= same_place;
-        links.push_back({first - 1, first, bodies.length[k], there});
-    }
+/// Links of a draft between beads. A ring's closing link may still lack the length, which is then
+/// the distance at the start.
+std::vector<BeadLink> links_of(ChainSpec const& chain) {
+    std::vector<BeadLink> links = bead_links(chain);
+    for (BeadLink& link : links)
+        if (link.length == 0 && chain.is_beads())
+            link.length = norm(chain.beads.position[static_cast<std::size_t>(link.outboard)] -
+                               chain.beads.position[static_cast<std::size_t>(link.inboard)]);
     return links;
 }
 
@@ -65,7 +43,7 @@ struct DoubtfulLinks {
     std::int64_t inboard = 0, outboard = 0;
     double length = 0, bond = 0;  // nm
 
-    void add(ChainSpec const& of, LinkedBeads const& link, double bond_length = 0) {
+    void add(ChainSpec const& of, BeadLink const& link, double bond_length = 0) {
         if (count++ > 0) return;
         chain = of.name, inboard = link.inboard, outboard = link.outboard;
         length = link.length, bond = bond_length;
@@ -85,12 +63,10 @@ struct DoubtfulLinks {
 
 /// Number of bonds between particles of a draft that no link joins. Those within a rigid body do
 /// not count.
-std::int64_t off_links(Draft const& draft, std::vector<LinkedBeads> const& links,
+std::int64_t off_links(Draft const& draft, std::vector<BeadLink> const& links,
                        std::set<std::pair<std::int64_t, std::int64_t>> const& bonds) {
     std::set<std::pair<std::int64_t, std::int64_t>> linked;
-    for (LinkedBeads const& link : links) linked.insert(std::minmax(link.inboard, link.outboard));
-    if (draft.chain.is_ring())
-        linked.emplace(0, static_cast<std::int64_t>(draft.chain.bead_count()) - 1);
+    for (BeadLink const& link : links) linked.insert(std::minmax(link.inboard, link.outboard));
     return std::count_if(bonds.begin(), bonds.end(), [&](auto const& bond) {
         std::pair const beads(bond.first - draft.particle, bond.second - draft.particle);
         return !linked.contains(beads) && !share_body(draft.chain, beads.first, beads.second);
@@ -132,11 +108,6 @@ WrittenSystem::WrittenSystem(Scene& scene)
 std::int64_t WrittenSystem::first_particle(std::string const& chain, std::int64_t next) const {
     auto const entry = first_.find(chain);
     return entry == first_.end() ? next : entry->second;
-}
-
-double WrittenSystem::length(std::int64_t particle) const {
-    bool const known = particle >= 0 && particle < std::ssize(links_.to_previous);
-    return known ? links_.to_previous[static_cast<std::size_t>(particle)].length : Joining{}.length;
 }
 
 Joining WrittenSystem::between(std::int64_t a, std::int64_t b) const {
@@ -186,14 +157,13 @@ void WrittenSystem::compare(std::vector<Draft> const& drafts, Scene& scene) cons
     for (Draft const& draft : drafts) {
         DoubtfulLinks here;
         std::int64_t bonded_here = 0;
-        std::vector<LinkedBeads> const links = linked_beads(draft.chain);
-        for (LinkedBeads const& link : links) {
-            if (!link.ends_there) continue;
+        std::vector<BeadLink> const links = links_of(draft.chain);
+        for (BeadLink const& link : links) {
             std::int64_t const a = draft.particle + link.inboard,
                                b = draft.particle + link.outboard;
             bonded(a, b) ? void(++bonded_here) : here.add(draft.chain, link);
             Joining const bond = between(a, b);
-            if (bond.holds() &&
+            if (bond.holds() && link.length > 0 &&
                 std::abs(link.length - bond.length) >= noted_difference * bond.length)
                 other_length.add(draft.chain, link, bond.length);
         }
@@ -211,9 +181,11 @@ void WrittenSystem::compare(std::vector<Draft> const& drafts, Scene& scene) cons
     note_lengths(scene, other_length);
 }
 
-bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads) const {
+bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads,
+                          Parents parents) const {
     for (std::int64_t k = 1; k < beads; ++k) {
-        double const one = length(a + k), other = length(b + k);
+        auto const on = static_cast<std::int64_t>(inboard_of(parents, static_cast<std::size_t>(k)));
+        double const one = length(a + on, a + k), other = length(b + on, b + k);
         if (one != other && !(std::isnan(one) && std::isnan(other))) return false;
     }
     return true;
@@ -222,13 +194,18 @@ bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads) co
 void WrittenSystem::judge(std::vector<Draft> const& drafts, Scene& scene) const {
     StiffLinks links(scene.forces.openmm->temperature, openmm_key(scene.file, "system"));
     for (Draft const& draft : drafts)
-        for (LinkedBeads const& link : linked_beads(draft.chain)) {
+        for (BeadLink const& link : links_of(draft.chain)) {
             std::int64_t const a = draft.particle + link.inboard,
                                b = draft.particle + link.outboard;
             if (Joining const joining = between(a, b); joining.holds()) links.add(a, b, joining);
         }
     for (std::string const& note : links.notes()) scene.note(note);
     compare(drafts, scene);
+    std::vector<std::int64_t> firsts;
+    for (Draft const& draft : drafts)
+        if (draft.chain.bead_count() > 0) firsts.push_back(draft.particle);
+    std::sort(firsts.begin(), firsts.end());
+    for (std::string const& note : notes_on_boxless(links_.boxless, firsts)) scene.note(note);
     note_box_that_no_force_knows(scene, links_.periodic);
     note_screening(scene, links_.screening);
 }

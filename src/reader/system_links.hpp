@@ -26,15 +26,18 @@ class WrittenSystem {
     std::int64_t first_particle(std::string const& chain, std::int64_t next) const;
     /// Length in nm of the link that bonds and constraints form between a particle and the
     /// preceding one. Returns NaN if they form none.
-    double length(std::int64_t particle) const;
+    double length(std::int64_t particle) const { return length(particle - 1, particle); }
+    /// The same for any two particles.
+    double length(std::int64_t a, std::int64_t b) const { return between(a, b).length; }
     /// Largest thermal spread, relative to the length, of the springs between neighbours in a
     /// chain. The chain has `beads` beads from particle `first` on.
     double largest_spread(std::int64_t first, std::int64_t beads, Parents parents = {}) const;
     /// True if chains of `beads` beads that begin with particles a and b have the same link
     /// lengths.
-    bool alike(std::int64_t a, std::int64_t b, std::int64_t beads) const;
+    bool alike(std::int64_t a, std::int64_t b, std::int64_t beads, Parents parents = {}) const;
     /// Notes soft springs of the System that links of these chains replace; throws InputError for
-    /// the softest. Notes links where the System has no bond, or one of another length.
+    /// the softest. Notes links where the System has no bond, or one of another length, and bonded
+    /// forces between chains that do not use a periodic System's box.
     void judge(std::vector<Draft> const& drafts, Scene&) const;
     /// True if a force of the System is periodic.
     bool is_periodic() const { return links_.periodic; }

@@ -5,7 +5,25 @@
 #include <system_error>
 #include <utility>
 
+#include "clock.hpp"
+
 namespace catena {
+namespace {
+
+/// Adds the wall time of its life to a sum.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& sum) : sum_(sum), begin_(seconds_now()) {}
+    Stopwatch(Stopwatch const&) = delete;
+    Stopwatch& operator=(Stopwatch const&) = delete;
+    ~Stopwatch() { sum_ += seconds_now() - begin_; }
+
+  private:
+    double& sum_;
+    double begin_;
+};
+
+}  // namespace
 
 FrameWriter::FrameWriter(Source const& run, Sites sites) : run_(run), sites_(std::move(sites)) {}
 
@@ -19,7 +37,8 @@ void FrameWriter::open(std::function<void()> const& look) {
     if (folder_->frames_way().collective && !root)
         sites_ = Sites(run_.scene, run_.system.own_runs());
     if (!folder_->wants_topology()) return;
-    topology_is_due_ = run_.origin.is_frame(run_.origin.first_step()) && may_write_beside() &&
+    topology_is_due_ = run_.communicator.size() == 1 &&
+                       run_.origin.is_frame(run_.origin.first_step()) && may_write_beside() &&
                        run_.options.topology_beside.value_or(uses_gpu(run_.system.backend()));
     if (topology_is_due_) return;
     at_start_->bodies = own_bodies();
@@ -49,29 +68,54 @@ FrameWriter::Observed FrameWriter::observed(bool anyway) {
 ChainSystem::OwnBodies FrameWriter::own_bodies() {
     return run_.system.own_bodies(
         run_.scene.output.joint_forces,
-        run_.scene.output.coordinates && uses_joint_coordinates(run_.scene.dynamics.integrator));
+        run_.scene.output.coordinates && uses_joint_coordinates(run_.scene.dynamics.integrator),
+        std::exchange(spare_, {}));
 }
 
 bool FrameWriter::may_write_beside() const {
-    return run_.communicator.size() == 1 && run_.scene.bodies() >= run_.options.bodies_beside;
+    std::int64_t const bodies = run_.scene.bodies();
+    return bodies >= run_.options.bodies_beside &&
+           (run_.communicator.size() == 1 ||
+            (!folder_->frames_way().collective && bodies <= most_bodies_kept));
 }
 
 void FrameWriter::write(std::int64_t n, double constraint_error) {
     finish();
-    pending_ = {n, constraint_error, at_start_ ? std::move(*at_start_) : observed(), {}};
-    if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
-    if (run_.scene.output.joint_forces)
-        for (TipForce const& tip : run_.system.tip_forces())
-            pending_->at_tips.push_back(tip.wrench);
-    if (may_write_beside() && write_beside()) return;
+    {
+        Stopwatch const watch(seconds_["observing frames"]);
+        pending_ = {n, constraint_error, at_start_ ? std::move(*at_start_) : observed(), {}};
+        if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
+        if (run_.scene.output.joint_forces)
+            for (TipForce const& tip : run_.system.tip_forces())
+                pending_->at_tips.push_back(tip.wrench);
+    }
+    double& writing = seconds_["writing frames"];
+    if (may_write_beside()) {
+        gather();
+        is_beside_ = true;
+        if (run_.communicator.rank() > 0 || write_beside(writing)) return;
+    }
+    Stopwatch const watch(writing);
+    // The next call checks, as on ranks that have returned.
+    if (is_beside_) return write_keeping_failure();
     write(*pending_);
     pending_.reset();
     folder_->check();
 }
 
-bool FrameWriter::write_beside() {
+void FrameWriter::gather() {
+    if (run_.communicator.size() == 1) return;
+    Stopwatch const watch(seconds_["gathering frames"]);
+    pending_->all =
+        run_.system.gather_bodies(*pending_->now.bodies, std::exchange(spare_of_all_, {}));
+}
+
+bool FrameWriter::write_beside(double& writing) {
     try {
-        frame_ = std::async(std::launch::async, [this] { write(*pending_); });
+        frame_ = std::async(std::launch::async, [this, &writing] {
+            Stopwatch const watch(writing);
+            write_keeping_failure();
+        });
     } catch (std::system_error const&) {
         return false;
     }
@@ -79,14 +123,30 @@ bool FrameWriter::write_beside() {
     return true;
 }
 
+void FrameWriter::write_keeping_failure() {
+    try {
+        write(*pending_);
+    } catch (...) {
+        folder_->keep(std::current_exception());
+    }
+}
+
 void FrameWriter::poll() {
-    if (frame_.valid() && frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    if (run_.communicator.size() == 1 && frame_.valid() &&
+        frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
         finish();
 }
 
 void FrameWriter::finish() {
-    if (!frame_.valid()) return;
-    frame_.get();
+    if (!std::exchange(is_beside_, false)) return;
+    if (frame_.valid()) {
+        Stopwatch const watch(seconds_["waiting for frames"]);
+        frame_.get();
+    }
+    if (run_.scene.bodies() <= most_bodies_kept) {
+        spare_ = std::move(pending_->now.bodies->rows);
+        if (pending_->all) spare_of_all_ = std::move(pending_->all->rows);
+    }
     pending_.reset();
     folder_->check();
 }
@@ -96,13 +156,17 @@ void FrameWriter::write(PendingFrame const& frame) {
     folder_->begin(frame.step, run_.origin.time(frame.step));
     observables_->begin();
     bool const together = folder_->frames_way().collective;
-    run_.system.pass_bodies(*frame.now.bodies, [&](ChainSystem::Bodies const& bodies) {
+    auto const take = [&](ChainSystem::Bodies const& bodies) {
         Frame const part =
             sites_.part(bodies, run_.scene.output.velocities && !together, run_.system.executor());
         if (!together) folder_->put(std::span(&part, 1));
         observables_->add(bodies.motion, part.positions);
         for (Vec3 const& x : bodies.motion.position) run_.verdict.note_coordinate(norm(x));
-    });
+    };
+    if (frame.all)
+        run_.system.pass_bodies(*frame.all, take);
+    else
+        run_.system.pass_bodies(*frame.now.bodies, take);
     if (together) put_own(*frame.now.bodies);
     bool const root = run_.communicator.rank() == 0;
     if (root) judge(frame);

@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "observe/observables.hpp"
@@ -36,8 +38,9 @@ class FrameWriter {
     /// Observes the state at the first step, calls `look` and opens the files. Precondition: forces
     /// have been computed. They exist before anything is written or replaced.
     void open(std::function<void()> const& look);
-    /// Writes the frame of step n. On one rank with many bodies a separate thread writes it, and a
-    /// topology that is due with it. Steps continue until something else must be written.
+    /// Writes the frame of step n. If there are many bodies, a separate thread of rank 0 writes it
+    /// after the ranks have sent their parts; a single rank's thread also writes a topology that is
+    /// due. Steps continue until something else must be written.
     void write(std::int64_t n, double constraint_error);
     /// Forgets the observation of the first step. Not collective.
     void leave_start() { at_start_.reset(); }
@@ -56,8 +59,13 @@ class FrameWriter {
     std::vector<double> const& last_row() const { return last_row_; }
     /// Returns the number of frames that were written concurrently with steps.
     std::int64_t frames_beside() const { return frames_beside_; }
+    /// Returns the wall time of each part of the frames, s. Precondition: no frame is being
+    /// written.
+    std::map<std::string, double> const& seconds() const { return seconds_; }
 
   private:
+    /// Largest number of bodies whose rows are gathered on rank 0 and kept between frames.
+    static constexpr std::int64_t most_bodies_kept = 20'000'000;
     /// Observations at a step.
     struct Observed {
         std::vector<EnergyTerm> terms;
@@ -69,6 +77,7 @@ class FrameWriter {
         double error;
         Observed now;
         std::vector<Vector<double, 6>> at_tips;
+        std::optional<ChainSystem::AllBodies> all = std::nullopt;  // if ranks have sent their parts
     };
     /// Computes what observers need. `anyway`: forces are computed even if nothing requests them.
     Observed observed(bool anyway = false);
@@ -77,8 +86,13 @@ class FrameWriter {
     void write_topology(ChainSystem::OwnBodies const& at_start);
     /// True if frames may be written concurrently with steps.
     bool may_write_beside() const;
-    /// Writes the pending frame in a thread of its own. Returns false if no thread can be created.
-    bool write_beside();
+    /// Gathers the pending frame on rank 0. Collective.
+    void gather();
+    /// Writes the pending frame in a thread of its own and adds its wall time to `writing`. Returns
+    /// false if no thread can be created.
+    bool write_beside(double& writing);
+    /// Writes the pending frame. The folder stores a failure for the next check.
+    void write_keeping_failure();
     /// Writes a frame. A single rank sends no messages.
     void write(PendingFrame const&);
     /// Computes a frame's row of observables and passes its energies to the verdict. Rank 0 only.
@@ -94,6 +108,11 @@ class FrameWriter {
     std::optional<Observed> at_start_;  // data for the topology and the first frame
     bool topology_is_due_ = false;      // topology files are written with the first frame
     std::int64_t frames_beside_ = 0;
+    std::map<std::string, double> seconds_;
+    /// Rows of a frame that has been written, for the next one.
+    std::vector<std::vector<double>> spare_;
+    std::vector<double> spare_of_all_;
+    bool is_beside_ = false;  // on every rank: finish() has not yet ended the pending frame
     std::optional<PendingFrame> pending_;
     std::future<void> frame_;  // last member: it ends before the members that it uses
 };

@@ -166,7 +166,7 @@ void RunFolder::keeping_failure(Action const& action) {
     try {
         action();
     } catch (...) {
-        failure_ = std::current_exception();
+        keep(std::current_exception());
     }
 }
 

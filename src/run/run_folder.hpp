@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "error.hpp"
 #include "io/observables_table.hpp"
@@ -42,6 +43,10 @@ class RunFolder {
     void put(std::span<Frame const> parts);
     void end(std::vector<Vector<double, 6>> const& tip_forces,
              std::vector<double> const& observables, std::vector<double> const& of_replicas);
+    /// Stores a failure for check(), unless one is stored.
+    void keep(std::exception_ptr failure) {
+        if (!failure_) failure_ = std::move(failure);
+    }
     /// Throws stored failures of the topology, and of frames that are not written together.
     /// Collective.
     void check();

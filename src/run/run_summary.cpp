@@ -203,6 +203,8 @@ void add_internals(Json& summary, SummarySource const& of) {
     summary["solver"] = solver_of(of);
     summary["parallel"] = parallel_of(of);
     summary["seconds_per_phase"] = of.system.seconds();
+    for (auto const& [part, seconds] : of.frames.seconds())
+        summary["seconds_per_phase"][part] = seconds;
 }
 
 }  // namespace

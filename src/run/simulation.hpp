@@ -26,10 +26,9 @@ struct RunOptions {
                              // differ from the checkpoint's
     StopAgreement::Wish
         stop;  // requests the end after the current step, with a checkpoint and the files so far
-    std::string command_line;  // text for the summary
-    std::int64_t bodies_beside =
-        100000;  // number of bodies in the scene from which frames of one rank are written
-                 // concurrently with the steps that follow
+    std::string command_line;            // text for the summary
+    std::int64_t bodies_beside = 10000;  // number of bodies in the scene from which frames of one
+                                         // rank are written concurrently with the steps that follow
     std::optional<bool>
         topology_beside;  // topology files are written with the first frame, if that is written
                           // concurrently; empty: if a GPU computes the steps

@@ -46,13 +46,50 @@ Node const& scalar(Node const& node, char const* expected, char const* remedy) {
     return node;
 }
 
+/// Words of other programs, each with the key that says the same in maps that have it.
+constexpr std::pair<std::string_view, std::string_view> synonyms[] = {
+    {"force", "torque"},
+    {"force", "wrench"},
+    {"effort", "torque"},
+    {"position", "q"},
+    {"angle", "q"},
+    {"velocity", "qd"},
+    {"rate", "qd"},
+    {"spring", "stiffness"},
+    {"damper", "damping"},
+    {"origin", "translation"},
+    {"offset", "translation"},
+    {"orientation", "rotation"},
+    {"center_of_mass", "com"},
+    {"dt", "step"},
+    {"timestep", "step"},
+    {"time_step", "step"},
+    {"nsteps", "steps"},
+    {"temp", "temperature"},
+    {"gamma", "friction"},
+    {"interval", "every"},
+    {"frequency", "every"},
+    {"stride", "every"},
+    {"copies", "count"},
+    {"salt", "ionic_strength"},
+    {"ionic", "ionic_strength"},
+};
+
+/// Returns the declared key that says the same as `name`; nothing if there is none.
+std::optional<std::string> synonym(std::string_view name, KeyMap const& declared) {
+    for (auto const& [word, key] : synonyms)
+        if (word == name && declared.find(key)) return std::string(key);
+    return std::nullopt;
+}
+
 /// Throws the InputError for a key that is not declared.
 [[noreturn]] void refuse_key(Node const& item, KeyMap const& declared) {
     if (among(item.key, declared.later)) fail_later(item, "key `" + item.key + "`");
     std::vector<std::string_view> const names = declared.names();
     std::vector<std::string_view> all = names;
     all.insert(all.end(), declared.later.begin(), declared.later.end());
-    auto const near = nearest(item.key, all);
+    auto near = synonym(item.key, declared);
+    if (!near) near = nearest(item.key, all);
     fail(item, "unknown key `" + shown(item.key) + "`",
          near ? "did you mean `" + *near + "`?" : "use one of " + joined(names));
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scene/node.hpp"
+#include "structure/calvados_rna.hpp"
 
 namespace catena {
 
@@ -27,7 +28,9 @@ ForceResidues::ForceResidues(OpenMmSpec const& spec) : built_in_(built_in_table(
 
 ResidueType const* ForceResidues::find(std::string_view name) const {
     if (ResidueType const* const type = own_ ? own_->find(name) : nullptr) return type;
-    return built_in_ ? built_in_->find(name) : nullptr;
+    if (!built_in_) return nullptr;
+    ResidueType const* const type = built_in_->find(name);
+    return type ? type : built_in_table(calvados_rna::model)->find(name);
 }
 
 namespace calvados2 {

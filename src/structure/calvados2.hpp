@@ -25,7 +25,7 @@ ResidueType const* find_calvados2(char letter);
 ResidueType const* find_calvados2(std::string_view three_letter_name);
 
 /// Parameters that a builder's forces give to residues: those of the chains' own table
-/// (OpenMmSpec::topology), else those of the builder's table.
+/// (OpenMmSpec::topology), else those of the builder's table, else those of RNA.
 class ForceResidues {
   public:
     /// Reads the chains' own table if there is one. Throws InputError for a faulty file.

@@ -133,7 +133,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
         what += ": a gap of an alignment", remedy = "give the sequence without gaps";
     if (std::isdigit(static_cast<unsigned char>(letter)))
         what += ": a number", remedy = "leave the numbers of positions out";
-    if (letter == 'U') what += ": selenocysteine, or RNA", remedy = "write C for selenocysteine";
+    if (letter == 'U')
+        what += ": selenocysteine, or RNA",
+            remedy = "write C for selenocysteine, or `model: calvados_rna` for RNA";
+    if (letter == 'T' && table.find('U')) what += ": thymine of DNA", remedy = "write U for RNA";
     fail(source, what, remedy);
 }
 
@@ -161,13 +164,19 @@ void note_three_letters(std::string const& text, std::string const& letters, Nod
                     source.path(), letters.size(), letters[0], letters[1], letters[2]));
 }
 
-void note_nucleotides(std::string const& letters, Node const& source, Scene& scene) {
-    if (letters.size() < 20 || letters.find_first_not_of("ACGT") != std::string::npos) return;
-    for (char const base : {'A', 'C', 'G', 'T'})
+/// Notes sequences of proteins that are most likely RNA without U, or DNA.
+void note_nucleotides(std::string const& letters, Node const& source, ResidueTable const& table,
+                      Scene& scene) {
+    ResidueType const* const first = table.find('A');
+    if (!first || first->name != "ALA" || letters.size() < 8 ||
+        letters.find_first_not_of("ACGT") != std::string::npos)
+        return;
+    for (char const base : {'A', 'C', 'G'})
         if (letters.find(base) == std::string::npos) return;
-    scene.note(fmt::format(
-        "`{}` has the letters A, C, G and T alone and is read as a protein: it looks like DNA",
-        source.path()));
+    scene.note(fmt::format("`{}` has the letters {} alone and is read as a protein: {}",
+                           source.path(),
+                           letters.find('T') == std::string::npos ? "A, C and G" : "A, C, G and T",
+                           "RNA takes `model: calvados_rna` and the letter U, DNA has no model"));
 }
 
 }  // namespace
@@ -201,7 +210,7 @@ std::string one_letter_codes(std::string const& text, Node const& source, Residu
         scene.note(fmt::format("`{}`: {} of {} letters are lower case and are read as capitals",
                                source.path(), small, letters.size()));
     note_three_letters(text, letters, source, scene);
-    note_nucleotides(letters, source, scene);
+    note_nucleotides(letters, source, table, scene);
     return letters;
 }
 

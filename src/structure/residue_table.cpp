@@ -13,8 +13,10 @@
 #include "error.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
+#include "structure/calvados_rna.hpp"
 
-// Generated: embedded_calvados2 and embedded_calvados3, the texts of the tables.
+// Generated: embedded_calvados2, embedded_calvados3 and embedded_calvados_rna, the texts of the
+// tables.
 #include "residue_tables.inc"
 #include "scene/text_lines.hpp"
 
@@ -200,9 +202,10 @@ std::string ResidueTable::letters() const {
 }
 
 ResidueTable const* built_in_table(std::string_view name) {
-    static std::array<ResidueTable, 2> const tables = {
+    static std::array<ResidueTable, 3> const tables = {
         parse_residue_table(embedded_calvados2, "calvados2"),
-        parse_residue_table(embedded_calvados3, "calvados3")};
+        parse_residue_table(embedded_calvados3, "calvados3"),
+        parse_residue_table(embedded_calvados_rna, std::string(calvados_rna::model))};
     for (ResidueTable const& table : tables)
         if (table.name() == name) return &table;
     return nullptr;

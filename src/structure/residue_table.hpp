@@ -1,5 +1,5 @@
 // Tables of residue types: parameters of one bead per residue, in the columns of the CALVADOS
-// package. Two tables are part of the program; chains may bring tables of their own.
+// package. Three tables are part of the program; chains may bring tables of their own.
 #pragma once
 
 #include <string>
@@ -45,7 +45,8 @@ class ResidueTable {
     std::vector<ResidueType> types_;
 };
 
-/// Returns the table of the program with that name, "calvados2" or "calvados3", or nullptr.
+/// Returns the table of the program with that name, "calvados2", "calvados3" or "calvados_rna", or
+/// nullptr.
 ResidueTable const* built_in_table(std::string_view name);
 
 /// Reads a table: a line of column names in any order (one, three, MW, lambdas, sigmas, q,

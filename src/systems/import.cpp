@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "scene/branches.hpp"
 #include "scene/force_changes.hpp"
 #include "scene/node.hpp"
+#include "systems/bonded_forces.hpp"
 #include "systems/links.hpp"
 #include "systems/model.hpp"
 #include "systems/pdb_topology.hpp"
@@ -20,52 +22,105 @@ namespace {
 constexpr double digits_of_cell = 2e-3;  // nm, of a PDB file's cell
 constexpr double same_edge = 1e-6;       // nm; covers edges written in decimals
 
+/// What decides whether bonds become links.
+struct LinkRules {
+    double temperature;  // K
+    std::string const& where;
+};
+
 /// Imports one chain that begins with particle `first`, and adds its links to `links`.
 ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system,
-                           Joinings const& joinings, StiffLinks& links, std::string const& where) {
+                           Joinings const& joinings, StiffLinks& links, LinkRules const& rules) {
     ImportedChain chain{from.name, from.residue, from.place, {}, from.position, {}};
+    std::vector<std::int64_t> inboard;
     for (int k = 0; k < static_cast<int>(from.size()); ++k) {
-        int const p = first + k;
+        int const p = first + k, on = k > 0 ? joinings.inboard(p, first, rules.temperature) : -1;
         chain.mass.push_back(system.getParticleMass(p));
-        Joining const joining = k > 0 ? joinings.to_previous(p) : Joining{};
-        if (k > 0 && !joining.holds())
+        if (k > 0 && on < 0)
             joinings.refuse_gap(
-                p, first,
-                fmt::format("{}, chain {}, body {}", where, scene::shown(from.name), k + 1));
-        if (k > 0) links.add(p - 1, p, joining);
+                p, first, rules.temperature,
+                fmt::format("{}, chain {}, body {}", rules.where, scene::shown(from.name), k + 1));
+        Joining const joining = k > 0 ? joinings.between(on, p) : Joining{};
+        if (k > 0) links.add(on, p, joining);
         chain.length.push_back(k > 0 ? joining.length : 0);
+        inboard.push_back(k > 0 ? on - first : -1);
     }
+    chain.parent = scene::as_parents(std::move(inboard));
     return chain;
 }
 
-/// True if the ends of a chain are joined at least half as stiffly as its first link. If that link
-/// is a constraint, the bond between the ends must be stiff enough for a link.
-bool closes(Joining const& ends, Joining const& link, double temperature) {
-    if (std::isinf(link.stiffness))
-        return ends.holds() && ends.spread(temperature) <= StiffLinks::softest;
-    return ends.holds() && ends.stiffness >= 0.5 * link.stiffness;
-}
-
-/// Notes the chains whose ends are joined, in one sentence.
-std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings,
-                                    double temperature) {
+/// Notes the unbranched chains whose ends are joined, in one sentence.
+std::vector<std::string> note_rings(std::vector<ImportedChain> const& chains,
+                                    Joinings const& joinings, double temperature) {
     int first = 0, rings = 0;
     std::string name;
-    for (PdbChain const& chain : chains) {
-        int const size = static_cast<int>(chain.size()), last = first + size - 1;
-        if (size > 2 &&
-            closes(joinings.between(first, last), joinings.to_previous(first + 1), temperature) &&
+    for (ImportedChain const& chain : chains) {
+        int const size = static_cast<int>(chain.mass.size()), last = first + size - 1;
+        if (size > 2 && chain.parent.empty() &&
+            joinings.between(first, last).is_like(joinings.to_previous(first + 1), temperature) &&
             rings++ == 0)
             name = scene::shown(chain.name);
         first += size;
     }
     if (rings == 0) return {};
     return {
-        fmt::format("{} into a ring by a harmonic bond, which stays a spring (write `chains` with "
+        fmt::format("{} into a ring by a bond, which stays a force (write `chains` with "
                     "`tip: {{ring: {{type: link}}}}` for a "
                     "link).",
                     rings == 1 ? fmt::format("Chain {} is closed", name)
                                : fmt::format("{} chains are closed", rings))};
+}
+
+/// Notes the branched chains, in one sentence.
+std::vector<std::string> note_branches(std::vector<ImportedChain> const& chains) {
+    int first = 0, branched = 0;
+    std::string name, place;
+    for (ImportedChain const& chain : chains) {
+        for (std::size_t k = 1; k < chain.parent.size() && place.empty(); ++k)
+            if (chain.parent[k] + 1 != static_cast<std::int64_t>(k))
+                place = fmt::format("particle {} hangs on particle {}, from 0",
+                                    first + static_cast<int>(k), first + chain.parent[k]);
+        if (!chain.parent.empty() && branched++ == 0) name = scene::shown(chain.name);
+        first += static_cast<int>(chain.mass.size());
+    }
+    if (branched == 0) return {};
+    return {fmt::format(
+        "{} ({}): branched chains run on one rank and on the host.",
+        branched == 1 ? fmt::format("Chain {} is branched", name)
+                      : fmt::format("{} chains are branched, the first is {}", branched, name),
+        place)};
+}
+
+/// Notes bonds of branched chains that close cycles of links, in one sentence.
+std::vector<std::string> note_cycles(std::vector<ImportedChain> const& chains,
+                                     Joinings const& joinings, double temperature) {
+    std::vector<int> first_of;  // particle's chain begins here; -1: not in a branched chain
+    std::vector<int> on;        // particle's inboard one
+    for (ImportedChain const& chain : chains) {
+        int const first = static_cast<int>(first_of.size());
+        first_of.resize(first_of.size() + chain.mass.size(), chain.parent.empty() ? -1 : first);
+        for (std::size_t k = 0; k < chain.mass.size(); ++k)
+            on.push_back(chain.parent.empty() ? -1 : first + static_cast<int>(chain.parent[k]));
+    }
+    int cycles = 0, a = 0, b = 0;
+    auto const look = [&](int low, int high, Joining const& joining) {
+        auto const l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
+        if (first_of[h] < 0 || first_of[l] != first_of[h] || on[h] == low ||
+            !(joining.spread(temperature) <= StiffLinks::softest))
+            return;
+        if (cycles++ == 0 || (high == b && low < a)) a = low, b = high;
+    };
+    joinings.for_each_farther(look);
+    for (int p = 1; p < static_cast<int>(first_of.size()); ++p)
+        if (Joining const previous = joinings.to_previous(p); previous.holds())
+            look(p - 1, p, previous);
+    if (cycles == 0) return {};
+    return {fmt::format(
+        "{} of branched chains {} of links (particles {} and {} from 0{}) and {}: "
+        "links form no cycles.",
+        cycles == 1 ? "1 stiff bond" : fmt::format("{} stiff bonds", cycles),
+        cycles == 1 ? "closes a cycle" : "close cycles", a, b, cycles == 1 ? "" : ", the first",
+        cycles == 1 ? "stays a force" : "stay forces")};
 }
 
 /// Notes the chains that bonds stiff enough for a link join to the chain before, in one sentence.
@@ -169,7 +224,50 @@ std::vector<std::pair<std::int64_t, std::int64_t>> custom_bonds(OpenMM::System c
     return pairs;
 }
 
+/// Collects the particles of terms.
+class Spans final : public TermFilter {
+  public:
+    bool keep(std::span<int* const> particles) override {
+        auto const [low, high] = std::minmax_element(
+            particles.begin(), particles.end(), [](int const* a, int const* b) { return *a < *b; });
+        found.emplace_back(**low, **high);
+        return false;
+    }
+    std::vector<std::pair<std::int64_t, std::int64_t>> found;
+};
+
+/// Bonded forces of a periodic System that do not use its box.
+std::vector<BoxlessForce> boxless_forces(OpenMM::System const& system) {
+    std::vector<BoxlessForce> forces;
+    if (!system.usesPeriodicBoundaryConditions()) return forces;
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        if (system.getForce(i).usesPeriodicBoundaryConditions()) continue;
+        Spans spans;
+        copy_bonded(system.getForce(i), spans);
+        if (!spans.found.empty())
+            forces.push_back({term_names(system, {i}).front(), std::move(spans.found)});
+    }
+    return forces;
+}
+
 }  // namespace
+
+std::vector<std::string> notes_on_boxless(std::vector<BoxlessForce> const& forces,
+                                          std::vector<std::int64_t> const& first) {
+    auto const chain_of = [&](std::int64_t particle) {
+        return std::upper_bound(first.begin(), first.end(), particle) - first.begin();
+    };
+    std::vector<std::string> notes;
+    for (auto const& [name, spans] : forces)
+        if (std::any_of(spans.begin(), spans.end(), [&](auto const& span) {
+                return chain_of(span.first) != chain_of(span.second);
+            }))
+            notes.push_back(
+                fmt::format("The System's {} joins chains and does not use the box: it acts on "
+                            "coordinates as they are, not on nearest images.",
+                            name));
+    return notes;
+}
 
 SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
@@ -186,6 +284,7 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
         links.farther.emplace(std::pair(low, high), joining);
     });
     links.custom = custom_bonds(*system);
+    links.boxless = boxless_forces(*system);
     return links;
 }
 
@@ -207,8 +306,10 @@ BondedChains chains_by_bonds(OpenMmSpec const& spec, std::string const& name) {
     refuse_triclinic(*system, openmm_key(name, "system"));
     Joinings const joinings(*system, changes_of(spec).links, openmm_key(name, "system"));
     BondedChains chains;
+    int first = 0;
     for (int p = 0; p < system->getNumParticles(); ++p) {
-        if (p == 0 || !joinings.joins_to_previous(p)) chains.sizes.push_back(0);
+        if (p == 0 || !joinings.goes_on(p, first, spec.temperature))
+            chains.sizes.push_back(0), first = p;
         ++chains.sizes.back();
         chains.mass.push_back(system->getParticleMass(p));
     }
@@ -264,11 +365,21 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     StiffLinks links(spec.temperature, where);
     int first = 0;
     for (auto const& chain : chains) {
-        imported.chains.push_back(import_chain(chain, first, *system, joinings, links, where));
+        imported.chains.push_back(
+            import_chain(chain, first, *system, joinings, links, {spec.temperature, where}));
         first += static_cast<int>(chain.size());
     }
-    for (auto const& notes : {links.notes(), note_rings(chains, joinings, spec.temperature),
-                              note_joined(chains, joinings, spec.temperature)})
+    std::vector<std::int64_t> firsts;  // of the topology's chains
+    std::int64_t next = 0;
+    for (auto const& chain : whole) {
+        firsts.push_back(next);
+        next += static_cast<std::int64_t>(chain.size());
+    }
+    for (auto const& notes : {links.notes(), note_branches(imported.chains),
+                              note_rings(imported.chains, joinings, spec.temperature),
+                              note_cycles(imported.chains, joinings, spec.temperature),
+                              note_joined(chains, joinings, spec.temperature),
+                              notes_on_boxless(boxless_forces(*system), firsts)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.largest_spread = links.largest_spread();
     imported.screening = screening_of(*system);

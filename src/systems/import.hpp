@@ -24,8 +24,10 @@ struct ImportedChain {
     std::vector<int> place;            // in the residue, from 0
     std::vector<double> mass;          // amu, from the System
     std::vector<Vec3> position;        // nm, with the rounding of the PDB file
-    /// Length of the link to the preceding bead, nm; entry 0 is 0.
+    /// Length of the link to the bead on which each bead hangs, nm; entry 0 is 0.
     std::vector<double> length;
+    /// Inboard beads as in ChainSpec::parent; empty for an unbranched chain.
+    std::vector<std::int64_t> parent = {};
 };
 
 /// Screened Coulomb energy between unit charges: prefactor exp(-kappa r) / r.
@@ -54,6 +56,17 @@ struct ImportedSystem {
     std::optional<Screening> screening;
 };
 
+/// A bonded force of a periodic System that does not use its box.
+struct BoxlessForce {
+    std::string name;
+    /// Lowest and highest particle of each term.
+    std::vector<std::pair<std::int64_t, std::int64_t>> spans;
+};
+/// Returns sentences on the forces that join chains. `first`: first particle of each chain, in
+/// ascending order. Within a chain, which stays whole, the box makes no difference.
+std::vector<std::string> notes_on_boxless(std::vector<BoxlessForce> const&,
+                                          std::vector<std::int64_t> const& first);
+
 /// The links of a System, for chains that the scene writes itself.
 struct SystemLinks {
     /// True if at least one force uses the box.
@@ -66,17 +79,20 @@ struct SystemLinks {
     /// Pairs that CustomBondForces and compounds of two particles bond, each with the lower
     /// particle first, in ascending order.
     std::vector<std::pair<std::int64_t, std::int64_t>> custom;
+    std::vector<BoxlessForce> boxless;
     /// Sentences on what was left out.
     std::vector<std::string> notes;
     /// Screening of the System's charges, if that is recognised.
     std::optional<Screening> screening;
 };
 
-/// Imports the chains of the topology; particles and atoms have the same order. Neighbours in a
-/// chain are joined by a link with the length of the harmonic bond or constraint between them.
-/// Throws InputError for unreadable files, different counts, and neighbours without a bond or with
-/// a soft spring. Also refused are virtual sites, barostats and other parts that Catena cannot
-/// drive. A build without OpenMM throws "built without OpenMM".
+/// Imports the chains of the topology; particles and atoms have the same order. Each bead hangs on
+/// an earlier one of its chain, by a link with the length of the harmonic bond or constraint
+/// between them; a chain whose beads do not follow one another is branched. Bonds that close a
+/// cycle of links stay springs. Throws InputError for unreadable files, different counts, and beads
+/// without a bond to an earlier one or with a soft spring. Also refused are virtual sites,
+/// barostats and other parts that Catena cannot drive. A build without OpenMM throws "built without
+/// OpenMM".
 ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_file);
 
 /// Reads the links of a System. Throws like import_openmm_system(), but not for neighbours.
@@ -84,8 +100,8 @@ SystemLinks read_system_links(OpenMmSpec const&, std::string const& scene_file);
 
 /// The particles of a System as chains by its bonds.
 struct BondedChains {
-    /// Number of particles of each chain, a run of consecutive particles that harmonic bonds,
-    /// constraints or CustomBondForces join.
+    /// Number of particles of each chain: consecutive particles, each of which harmonic bonds,
+    /// constraints or CustomBondForces join to an earlier one.
     std::vector<std::int64_t> sizes;
     std::vector<double> mass;  // amu, one per particle
     /// Edges of the box, nm, if a force uses it.

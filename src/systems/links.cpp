@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "error.hpp"
 #include "systems/model.hpp"
@@ -60,7 +61,7 @@ void Joinings::add_harmonic_bonds(OpenMM::HarmonicBondForce const& bonds,
     }
 }
 
-/// Only bonds between consecutive particles can become links.
+/// Bonds can become links if the scene names their force.
 void Joinings::add_custom_bonds(int force, NamedLinks const& links, std::string const& where) {
     auto const& bonds = dynamic_cast<OpenMM::CustomBondForce const&>(system_.getForce(force));
     auto const named = std::find_if(links.begin(), links.end(),
@@ -70,8 +71,8 @@ void Joinings::add_custom_bonds(int force, NamedLinks const& links, std::string 
         int a, b;
         bonds.getBondParameters(j, a, b, ignored);
         refuse_foreign("custom bond", a, b, where);
-        if (std::abs(a - b) != 1) continue;
-        custom_to_previous_[static_cast<std::size_t>(std::max(a, b))] = force;
+        if (std::abs(a - b) == 1)
+            custom_to_previous_[static_cast<std::size_t>(std::max(a, b))] = force;
         if (named != links.end()) at(a, b).add_constraint(named->second);
     }
 }
@@ -94,25 +95,83 @@ std::string Joinings::custom_name(int p) const {
     return force.getName().empty() ? kind_of(force) : force.getName();
 }
 
-void Joinings::refuse_gap(int p, int first, std::string const& at) const {
-    auto const& lower = to_lower_[static_cast<std::size_t>(p)];
-    int partner = -1;
-    for (auto const& [other, joining] : lower)
-        if (other >= first) partner = std::max(partner, other);
-    if (partner >= 0)
-        throw InputError(fmt::format("particle {} (from 0) is joined to particle {} and not to "
-                                     "particle {} before it: the molecule is branched",
-                                     p, partner, p - 1),
-                         at,
-                         "write its beads in the scene, each with its `parent`, or end the chain "
-                         "between particles that are not joined (TER in the topology), so that the "
-                         "other bonds stay springs");
+template <class Accept>
+int Joinings::stiffest(int p, int first, double temperature, Accept const& accept) const {
+    int found = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto const& [other, joining] : to_lower_[static_cast<std::size_t>(p)]) {
+        double const spread = joining.spread(temperature);
+        bool const stiffer = spread < least || (spread == least && other > found);
+        if (other >= first && stiffer && accept(other, joining)) found = other, least = spread;
+    }
+    return found;
+}
+
+int Joinings::inboard(int p, int first, double temperature) const {
+    Joining const previous = to_previous(p), usual = between(first, first + 1);
+    int const other = stiffest(p, first, temperature, [&](int q, Joining const& joining) {
+        return q != p - 1 && joining.spread(temperature) <= StiffLinks::softest &&
+               joining.is_like(usual, temperature);
+    });
+    bool const constrained = std::isinf(previous.stiffness),
+               links = previous.holds() && previous.spread(temperature) <= StiffLinks::softest;
+    // A constraint must become a link: forces do not hold it.
+    bool const outranked = !constrained && other >= 0 && std::isinf(between(other, p).stiffness);
+    if (previous.holds() && (other < 0 || (links && !outranked))) return p - 1;
+    return other;
+}
+
+bool Joinings::goes_on(int p, int first, double temperature) const {
+    return joins_to_previous(p) || inboard(p, first, temperature) >= 0;
+}
+
+int Joinings::custom_inboard(int p, int first) const {
+    std::vector<double> ignored;
+    for (int i = 0; i < system_.getNumForces(); ++i) {
+        auto const* bonds = dynamic_cast<OpenMM::CustomBondForce const*>(&system_.getForce(i));
+        for (int j = 0; bonds && j < bonds->getNumBonds(); ++j) {
+            int a, b;
+            bonds->getBondParameters(j, a, b, ignored);
+            if (std::max(a, b) == p && std::min(a, b) >= first) return std::min(a, b);
+        }
+    }
+    return -1;
+}
+
+void Joinings::refuse_gap(int p, int first, double temperature, std::string const& at) const {
+    if (int const custom = custom_inboard(p, first); custom >= 0)
+        throw InputError(
+            fmt::format("particle {} (from 0) is joined to particle {} by a CustomBondForce alone, "
+                        "and to no earlier one otherwise",
+                        p, custom),
+            at,
+            "make such bonds links of the length that `links` gives, or end the chain before it "
+            "in the topology (TER): the bond then stays a force");
+    if (int const soft = stiffest(p, first, temperature, [](int, Joining const&) { return true; });
+        soft >= 0)
+        throw InputError(
+            fmt::format("particle {0} (from 0) hangs on no earlier one of its chain by a bond like "
+                        "that of particles {1} and {2}: the stiffest, to particle {3}, has {4:.6g} "
+                        "kJ/mol/nm2",
+                        p, first, first + 1, soft, between(soft, p).stiffness),
+            at, "end the chain before it in the topology (TER): its bonds then stay springs");
+    // The next particle follows in a row after a gap.
+    auto const high =
+        std::find_if(to_lower_.begin() + std::min(p + 2, static_cast<int>(to_lower_.size())),
+                     to_lower_.end(), [&](auto const& lower) { return lower.contains(p); });
+    if (high != to_lower_.end())
+        throw InputError(
+            fmt::format("particle {} (from 0) is joined to particle {} and to no earlier one", p,
+                        high - to_lower_.begin()),
+            at,
+            "number the particles so that each of a chain is joined to an earlier one, or end the "
+            "chain before it in the topology (TER): the other bonds then stay springs");
     throw InputError(
         fmt::format("particles {} and {} (from 0) are joined by no harmonic bond and no constraint",
                     p - 1, p),
         at,
-        "join neighbours in a chain (a bond of stiffness 0 does not), or end the chain between "
-        "them in the topology (TER)");
+        "join each particle of a chain to an earlier one (a bond of stiffness 0 does not), or end "
+        "the chain between them in the topology (TER)");
 }
 
 }  // namespace catena

@@ -14,8 +14,8 @@
 
 namespace catena {
 
-/// All pairs of particles that harmonic bonds or constraints of a System join. Custom bonds between
-/// consecutive particles join them if `links` names their force.
+/// All pairs of particles that harmonic bonds or constraints of a System join. Custom bonds join
+/// their particles if `links` names their force.
 class Joinings {
   public:
     /// Throws InputError for bonds of negative or infinite stiffness and for unknown particles.
@@ -47,13 +47,28 @@ class Joinings {
     std::string custom_bond(int p) const;
     /// Name by which `links` can name that bond's force.
     std::string custom_name(int p) const;
-    /// Throws the InputError for a missing link between p - 1 and p, in a chain that begins with
-    /// particle `first`. The message names the reason and the place `at`.
-    [[noreturn]] void refuse_gap(int p, int first, std::string const& at) const;
+    /// Particle of the chain on which particle p hangs: an earlier one, from `first` on. This is
+    /// the preceding one if both are joined stiffly enough for a link. Else it is the one that is
+    /// joined most stiffly, the nearest of several, if that bond is like the chain's first one. A
+    /// constraint outranks springs. Failing all this it is the preceding one if a spring joins
+    /// both, else -1. Temperature in K; precondition: first < p.
+    int inboard(int p, int first, double temperature) const;
+    /// True if particle p hangs on an earlier particle of the chain, or if a bond of any kind joins
+    /// it to the preceding one. Precondition: first < p.
+    bool goes_on(int p, int first, double temperature) const;
+    /// Throws the InputError for particle p, which nothing joins to an earlier particle of its
+    /// chain, from `first` on. The message names the reason and the place `at`.
+    [[noreturn]] void refuse_gap(int p, int first, double temperature, std::string const& at) const;
 
   private:
     void add_harmonic_bonds(OpenMM::HarmonicBondForce const&, std::string const& where);
     void add_custom_bonds(int force, NamedLinks const&, std::string const& where);
+    /// Earlier particle, from `first` on, that is joined most stiffly to particle p among those
+    /// that `accept`; -1: none.
+    template <class Accept>
+    int stiffest(int p, int first, double temperature, Accept const& accept) const;
+    /// Earlier particle, from `first` on, that a CustomBondForce joins to particle p; -1: none.
+    int custom_inboard(int p, int first) const;
     void refuse_foreign(char const* what, int a, int b, std::string const& where) const;
     Joining& at(int a, int b);
 

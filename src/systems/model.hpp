@@ -33,8 +33,8 @@ inline std::vector<int> particles_of_beads(std::vector<std::int64_t> const& bead
     return particle;
 }
 
-/// Builds the CALVADOS model that the spec names on every chain of beads. It has two forces:
-/// ashbaugh-hatch and yukawa.
+/// Builds the CALVADOS model that the spec names on every chain of beads. It has two forces,
+/// ashbaugh-hatch and yukawa; with RNA also stacking and backbone-angles.
 OpenMmModel calvados2_model(OpenMmSpec const&, BeadSystem const&);
 
 /// Builds the model from a serialised System whose particles are the beads.

@@ -40,6 +40,11 @@ double Joining::spread(double temperature) const {
     return std::sqrt(boltzmann * temperature / stiffness) / length;
 }
 
+bool Joining::is_like(Joining const& link, double temperature) const {
+    if (std::isinf(link.stiffness)) return holds() && spread(temperature) <= StiffLinks::softest;
+    return holds() && stiffness >= 0.5 * link.stiffness;
+}
+
 void StiffLinks::add(std::int64_t a, std::int64_t b, Joining const& link) {
     if (!(link.length > 0 && std::isfinite(link.length)))
         throw InputError(

@@ -28,6 +28,9 @@ struct Joining {
     void add_constraint(double rest);
     /// Thermal spread sqrt(kT/k) relative to the length; temperature in K.
     double spread(double temperature) const;
+    /// True if this joins its particles at least half as stiffly as `link` does. If that is a
+    /// constraint, this must be stiff enough for a link.
+    bool is_like(Joining const& link, double temperature) const;
 };
 
 /// Collects the links of a System's chains and judges the springs that they replace.

@@ -59,6 +59,25 @@ class Trajectories : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
+TEST_F(Trajectories, FramesThatTheRunLeavesOutAreNamed) {
+    write("run", {0, 10, 20, 30, 40, 50});
+    char const* const note =
+        "the run's own means leave out the first 2 as equilibration, as --first 2";
+    auto const is_noted = [&](std::string const& summary, Words const& more = {}) {
+        std::ofstream(folder_ / "run/summary.json") << summary;
+        Words words{"analyse", "run"};
+        words.insert(words.end(), more.begin(), more.end());
+        Ended const e = in_folder(words);
+        expect_good(e);
+        return e.out.find(note) != std::string::npos;
+    };
+    std::string const left_out = R"({"equilibration": {"frames": 6, "frames_left_out": 2}})";
+    EXPECT_TRUE(is_noted(left_out));
+    EXPECT_FALSE(is_noted(left_out, {"--first", "2"}));
+    EXPECT_FALSE(is_noted(R"({"equilibration": {"frames": 9, "frames_left_out": 2}})"));
+    EXPECT_FALSE(is_noted("{\"equilibration\": {\"frames_left_out\": 2"));
+}
+
 TEST_F(Trajectories, AnAnalysisPrintsItsTableAndWritesItsFiles) {
     write("run", {0, 10, 20, 30, 40, 50});
     Ended const e = in_folder({"analyse", "run", "--discard", "0.4"});

@@ -329,10 +329,10 @@ TEST(Tips, rates_that_a_loop_loses_are_noted) {
         return text;
     };
     std::string const weld = "tip: {joint: {type: weld}}",
-                      hinge = "tip: {joint: {type: revolute, axis: [0, 0, 1]}}";
+                      turning = "tip: {joint: {type: revolute, axis: [0, 0, 1]}}";
     EXPECT_NE(notes(", qd: 2", weld).find(note), std::string::npos) << notes(", qd: 2", weld);
     EXPECT_EQ(notes("", weld).find(note), std::string::npos);
-    EXPECT_EQ(notes(", qd: 2", hinge).find(note), std::string::npos);
+    EXPECT_EQ(notes(", qd: 2", turning).find(note), std::string::npos);
     EXPECT_EQ(notes(", qd: 2", weld + ", velocities: zero").find(note), std::string::npos);
 }
 

@@ -160,7 +160,7 @@ void expect_outcome(Start const& truth, Start const& given, Becomes must,
     if (relaxations && found.is_absurd()) expect_mended_by_relaxation(opened.scene, *relaxations);
 }
 
-/// A line of its own for every start: CATENA_STARTS makes them more.
+/// The usual number of seeds, or CATENA_STARTS.
 unsigned seeds(unsigned usual) {
     char const* const wanted = std::getenv("CATENA_STARTS");
     return wanted ? static_cast<unsigned>(std::stoul(wanted)) : usual;
@@ -193,6 +193,7 @@ TEST(StartsAtRandom, EachDamageAlone) {
 /// A fold whose bead is caught between two others and their links: a balance of forces of 2e6
 /// kJ/mol/nm, from which no way leads downhill.
 TEST(StartsAtRandom, AFoldThatLocksABeadIsMended) {
+    if (seed_offset() != 0) GTEST_SKIP() << "a fold of seed 16 alone";
     StartGenerator generator(16);
     Start const truth = generator.start();
     Start given = truth;
@@ -247,7 +248,7 @@ TEST(StartsAtRandom, WrappedChainsAreRefusedWithoutTheirBox) {
         EXPECT_THROW(parse_scene(text.substr(text.find('\n') + 1), folder / "s.yaml"), InputError)
             << seed;
     }
-    EXPECT_GT(cut, 5);
+    EXPECT_GT(cut, 0);
 }
 
 }  // namespace

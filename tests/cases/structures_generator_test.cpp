@@ -142,7 +142,7 @@ TEST(StructuresAtRandom, WrappedChainsAreRefusedWithoutTheirBox) {
         ++wrapped;
         expect_outcome(structure, Must::be_refused);
     }
-    EXPECT_GT(wrapped, 5);
+    EXPECT_GT(wrapped, 0);
 }
 
 }  // namespace

@@ -86,16 +86,25 @@ TEST(MotionRemover, IsLeftOutWithANoteInAGroupThatIsNotAskedForToo) {
     EXPECT_TRUE(holds(notes_of("11-cm-motion-remover/groups.yaml"), "CMMotionRemover"));
 }
 
-// Particle 2i is bonded to 2i + 1, a side bead, and to 2i + 2.
-TEST(BranchedMolecules, AreCalledSoWithTheParticleAndTheWaysOut) {
-    Ended const e = check("13-two-beads-a-unit/scene.yaml");
-    expect_refused(e, 2,
-                   "particle 2 (from 0) is joined to particle 0 and not to particle 1 before it: "
-                   "the molecule is branched");
-    EXPECT_TRUE(holds(e.err, "TER")) << e.err;
+// Particle 2i is bonded to 2i + 1, a side bead, and to 2i + 2: a branched chain. Only the
+// observable has no meaning.
+TEST(BranchedMolecules, AreFoundInTheSystemsBonds) {
+    expect_refused(check("13-two-beads-a-unit/scene.yaml"), 2,
+                   "branched chains have no end-to-end distance");
+    Words const energy{"--set", "output.observables=[energy]"};
+    Ended const checked = check("13-two-beads-a-unit/scene.yaml", energy);
+    EXPECT_TRUE(holds(checked.out, "branched beads")) << checked.out;
+    EXPECT_TRUE(holds(checked.out, "19 harmonic bonds along rigid links left out")) << checked.out;
+    Finished const run("13-two-beads-a-unit/scene.yaml", energy);
+    EXPECT_EQ(run.ended.status, 0) << run.ended.err;
+    // By an independent OpenMM script on the start, whose links have the lengths of the bonds.
+    EXPECT_NEAR(run.energy("HarmonicAngleForce"), 9.002089, 1e-4);
+    Finished const written("13-two-beads-a-unit/branched.yaml");
+    auto const bonds = [](std::string const& psf) { return psf.substr(psf.find("!NBOND")); };
+    EXPECT_EQ(bonds(run.file("topology.psf")), bonds(written.file("topology.psf")));
 }
 
-// As the message advises: ten dumb-bells. Energies by an independent OpenMM script on the same
+// A TER before each unit: ten dumb-bells. Energies by an independent OpenMM script on the same
 // start.
 TEST(BranchedMolecules, RunAsPiecesWhoseOtherBondsStaySprings) {
     Finished const run("13-two-beads-a-unit/ter.yaml");

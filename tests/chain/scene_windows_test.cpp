@@ -47,6 +47,9 @@ TEST(SceneWindows, BringBodiesInTheOrderOfTheScene) {
                 world.rank() == 0 ? static_cast<std::size_t>(scene.bodies() * width) : 0);
             std::iota(whole.begin(), whole.end(), 0.0);
             EXPECT_EQ(windows.hand_out(width, whole), own);
+            std::vector<double> gathered(whole.size());
+            windows.gather(width, own, gathered);
+            EXPECT_EQ(gathered, whole);
             std::int64_t rounds = 0, bodies = 0, before = -1;
             windows.pass_own(width, own, [&](std::vector<SceneWindows::Own> const& round) {
                 ++rounds;
@@ -67,6 +70,28 @@ TEST(SceneWindows, BringBodiesInTheOrderOfTheScene) {
 
 /// A restart takes memory for what is a rank's own: arrays of bodies stay where they were read, and
 /// each rank is given its part.
+TEST(SceneWindows, LongPartsAreGatheredOneByOne) {
+    Communicator const& world = catena::testing::world();
+    Scene const scene = parse_scene(
+        "units: si\nchains:\n  - {generator: {random: {bodies: 70000, joint: link, "
+        "seed: 5}}}\n  - {generator: {random: {bodies: 70000, joint: spherical, seed: "
+        "5}}}\n",
+        "test");
+    ChainSystem const system(scene, Axes::joint, world);
+    std::vector<std::vector<double>> own;
+    for (auto const& group : system.groups()) {
+        own.emplace_back();
+        for (std::int64_t k = 0; k < group->size; ++k)
+            for (int i = 0; i < 6; ++i)
+                own.back().push_back(static_cast<double>(group->scene_index(k) * 6 + i));
+    }
+    std::vector<double> whole(world.rank() == 0 ? static_cast<std::size_t>(scene.bodies() * 6) : 0);
+    std::iota(whole.begin(), whole.end(), 0.0);
+    std::vector<double> gathered(whole.size());
+    SceneWindows(world, system.groups(), 1 << 20).gather(6, own, gathered);
+    EXPECT_EQ(gathered, whole);
+}
+
 TEST(SceneWindows, TheStateIsSetByWhatTheFirstRankHas) {
     Communicator const& world = catena::testing::world();
     Scene const scene = parse_scene(

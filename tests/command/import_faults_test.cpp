@@ -494,7 +494,7 @@ TEST_F(DamagedPackage, HistidinesAtInnerEndsOfAComplexHaveTheirCharges) {
     for (int p = 1; p < system->getNumParticles(); ++p)
         if (p != 17) bonds->addBond(p - 1, p, 0.38, 8033);
     auto* const network = new OpenMM::HarmonicBondForce;
-    network->addBond(0, 4, 0.76, 700);
+    network->addBond(0, 2, 0.76, 700);
     system->addForce(bonds), system->addForce(network);
     auto const save = [&] {
         std::ofstream out(folder + "/idr.xml");
@@ -578,6 +578,15 @@ TEST_F(DamagedPackage, AFolderAboveTheRunAndItsConfigurationSayWhatToName) {
     expect_refused(catena({"import", "."}, here.path()), 2, "its folder idr holds one: name that");
     expect_refused(catena({"import", "idr/config.yaml"}, here.path()), 2,
                    "the file is not a serialised System (idr/config.yaml): name its folder");
+}
+
+TEST_F(DamagedPackage, SequencesAndStructuresBelongIntoAScene) {
+    write(here / "rna.fasta", ">one\nGGCUA\n");
+    std::string const remedy = "): name the System first, or write a scene whose `chains` have `";
+    expect_refused(catena({"import", "rna.fasta"}, here.path()), 2,
+                   "the file is not a serialised System (rna.fasta" + remedy + "fasta: rna.fasta`");
+    expect_refused(catena({"import", "idr/top.pdb"}, here.path()), 2,
+                   "the file is not a serialised System (idr/top.pdb" + remedy + "pdb: top.pdb`");
 }
 
 TEST_F(DamagedPackage, AFrictionOfZeroIsSaid) {

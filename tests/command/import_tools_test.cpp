@@ -26,6 +26,41 @@ TEST_F(ToolFolder, AConfigurationThatIsNotWellFormedIsRefused) {
     expect_noted("config.yaml is not read: it has no `sysname`");
 }
 
+/// Files of Catena and of programs whose input is not read are called by name.
+TEST_F(ToolFolder, FilesThatAreNotReadAreCalledByName) {
+    fs::remove(file("system.xml"));
+    auto const refused = [&](std::string const& name, std::string const& text,
+                             std::string const& what, std::string const& advice) {
+        write(name, text);
+        expect_refused(import(), 2,
+                       "the folder holds " + what + " (" + name +
+                           "), and no serialised System (mine): " + advice);
+        expect_refused(catena({"import", "mine/" + name}, here.path()), 2,
+                       "the file belongs to " + what + ", and is no serialised System (mine/" +
+                           name + "): " + advice);
+        fs::remove(file(name));
+    };
+    std::string const by_hand = "write its chains in a scene, or build the System with OpenMM";
+    refused("in.melt", "# melt\nunits lj\natom_style bond\n", "LAMMPS input", by_hand);
+    refused("data.melt", "LAMMPS data file\n\n  320 atoms\n", "LAMMPS input", by_hand);
+    refused("log.lammps", "", "LAMMPS input", by_hand);
+    refused("topol.top", "[ defaults ]\n", "GROMACS input",
+            "read it with OpenMM's app.GromacsTopFile");
+    refused("x.prmtop", "%VERSION\n", "Amber input", "read it with OpenMM's app.AmberPrmtopFile");
+    refused("x.psf", "PSF\n", "CHARMM input", "read it with OpenMM's app.CharmmPsfFile");
+    refused("x.gsd", "", "HOOMD-blue input", by_hand);
+    refused("s.yaml", "title: a\nchains: []\n", "a scene of Catena",
+            "run it by `catena run mine/s.yaml`");
+    refused("checkpoint.h5", "", "a run of Catena",
+            "continue it by `catena run SCENE --restart mine/checkpoint.h5`, or start a scene from "
+            "it by `start: {from: mine, frame: last}`");
+    for (auto const& [name, text] :
+         {std::pair{"data.csv", "1,2\n"}, {"in.txt", "hello\n"}, {"c.yaml", "learning: 3\n"}})
+        write(name, text);
+    expect_refused(import(), 2,
+                   "the folder holds no serialised System (mine): write it in your script");
+}
+
 TEST_F(ToolFolder, WhatACalvadosConfigurationLacksIsNoted) {
     write_pdb("top.pdb", beads, 10);
     fs::rename(file("system.xml"), file("asyn.xml"));

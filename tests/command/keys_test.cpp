@@ -35,6 +35,14 @@ TEST(KeysCommand, TakesMapsAndTheirPartsAndKeys) {
     EXPECT_EQ(key.json()["maps"][1]["keys"][0]["unit"], "kelvin") << key.out;
 }
 
+TEST(KeysCommand, SaysWhatElseAKeyTakesThatMayBeAMap) {
+    EXPECT_EQ(maps_of(catena({"keys", "model", "--json", "-"})), (Words{"chains", "chains.model"}));
+    Ended const e = catena({"keys", "model"});
+    EXPECT_NE(e.out.find("`calvados2`, `calvados3`, `calvados_rna`, or a map"), std::string::npos)
+        << e.out;
+    EXPECT_EQ(maps_of(catena({"keys", "drag", "--json", "-"})), (Words{"forces.drag"}));
+}
+
 TEST(KeysCommand, WithoutANamePrintsAllMaps) {
     Words const all = maps_of(catena({"keys", "--json", "-"}));
     EXPECT_GE(all.size(), 36U);

@@ -100,7 +100,7 @@ TEST_F(Messages, Calvados2) {
     beads.residue[5] = "UNK";
     EXPECT_EQ(of(on_reference()),
               "CALVADOS 2 has no residue UNK (scene.yaml: chain B, body 2): use the twenty amino "
-              "acids (sequence and model: calvados2), or "
+              "acids (sequence and model: calvados2) or nucleotides (model: calvados_rna), or "
               "give the forces "
               "as a System (forces.openmm.system)");
 }

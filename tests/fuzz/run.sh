@@ -86,7 +86,7 @@ target dcd -lyaml-cpp "${tree[@]}" src/frames/dcd_file.cpp
 target domains -lyaml-cpp "${files[@]}" "${domains[@]}"
 target pae -lyaml-cpp "${files[@]}" "${domains[@]}"
 target settings -lyaml-cpp "${files[@]}" "${structures[@]}" src/systems/{pdb_topology,xml_scan}.cpp src/io/output_file.cpp \
-    src/foreign/{calvados_charges,calvados_checks,calvados_components,calvados_folder,calvados_forces,calvados_keys,calvados_pull,calvados_tables,contents,no_polychrom_arguments,package_file,scene_text,settings,system_text}.cpp \
+    src/foreign/{calvados_charges,calvados_checks,calvados_components,calvados_folder,calvados_forces,calvados_keys,calvados_networks,calvados_pull,calvados_tables,contents,no_polychrom_arguments,package_file,scene_text,settings,system_text}.cpp \
     src/structure/{calvados2,fasta,residue_table}.cpp src/scene/scene.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/{freedom,loop_motions,pose}.cpp \

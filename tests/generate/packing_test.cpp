@@ -1,4 +1,6 @@
 // Chains of residues in boxes that are too full for whole coils side by side.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -238,6 +240,38 @@ TEST(Places, branched_chains_that_fit_nowhere_are_refused_with_the_number_that_d
                             "found room \\(s.yaml: chains\\[0\\], line 1\\): enlarge the box or "
                             "lower `count`.*")))
         << message;
+}
+
+/// Chains of centimetres in a box of metres: 0.56 nm says nothing in SI units.
+TEST(Places, in_si_units_have_no_distance_but_the_links) {
+    std::string const text =
+        "units: si\nbox: {periodic: [0.2, 0.2, 0.2]}\nchains: [{count: 40, generator: "
+        "{freely_jointed: {beads: 12, length: 0.01, mass: 1}}}]\n";
+    Scene const scene = read(text);
+    ASSERT_EQ(scene.notes.size(), 1U);
+    EXPECT_NE(scene.notes[0].find("40 chains that keep their shape do not fit side by side"),
+              std::string::npos);
+    double nearest = 1e300;
+    std::vector<Bead> const beads = all_beads(scene);
+    for (Bead const& a : beads)
+        for (Bead const& b : beads) {
+            if (a.chain >= b.chain) continue;
+            Vec3 apart = a.at - b.at;
+            for (int x = 0; x < 3; ++x) apart[x] -= 0.2 * std::round(apart[x] / 0.2);
+            nearest = std::min(nearest, norm(apart));
+        }
+    EXPECT_GE(nearest, 0.01 * (1 - 1e-6));
+}
+
+TEST(Places, of_single_beads_are_apart_in_any_si_box) {
+    for (double const edge : {0.2, 2e-8, 3e3}) {
+        Scene const scene =
+            read("units: si\nbox: {periodic: [" + fmt::format("{0}, {0}, {0}", edge) +
+                 "]}\nchains: [{count: 30, bodies: [{mass: 1, position: [0, 0, 0], "
+                 "velocity: [0, 0, 0]}]}]\n");
+        EXPECT_TRUE(scene.notes.empty()) << scene.notes[0];
+        EXPECT_GT(nearest_pair(all_beads(scene), Vec3{{edge, edge, edge}}), 0.2 * edge) << edge;
+    }
 }
 
 TEST(Packing, that_finds_no_place_says_how_far_it_got) {

@@ -102,6 +102,7 @@ def of_pages():
     yield expect("a lost file", pages(good + "\n`scene/lost.cpp` reads.\n"), 1, "no file scene/lost.cpp")
     yield expect("a lost function", pages(good + "\n`Scene::lost()` reads.\n"), 1, "no function Scene::lost()")
     yield expect("names that are there", pages(good + "\n`src/scene/scene.cpp` has `load()`.\n"), 0, "in order")
+    yield expect("a retired word", pages(good + "\nA hin" + "ge turns.\n"), 1, "is called revolute here")
     yield expect("a folder that nobody names", pages(good.replace("| `src/scene` | scenes |\n", "")), 1, "src/scene/: no README")
 
 

@@ -2,6 +2,7 @@
 """Checks that the repository's pages stay manuals: short sentences and paragraphs, links that resolve, a line for every folder.
 
 What a page names in code must be there: files, functions, and the DCA chapter's equations, each once in src/dca and in its page.
+Pages and code use the field's words.
 usage: pages.py [ROOT]
 """
 import os
@@ -19,6 +20,7 @@ CODE = (".hpp", ".cpp", ".cuh", ".cu", ".py")
 WRITTEN = {"my.yaml", "scene.yaml", "summary.json", "timeline.json", "report.json", "network.json", "figures.json",
            "error.py", "density.py", "a.json", "boom.json"}  # by users and programs
 MATHEMATICS, EQUATIONS = "src/dca/README.md", range(1, 13)
+RETIRED = re.compile(r"\bhinges?\b", re.IGNORECASE)  # the field's word is revolute
 DEEPEST = 3  # below lie inputs that the line of their folder stands for
 
 
@@ -99,6 +101,13 @@ def check_names(path, text, words, names):
             yield f"{path}: there is no function {code}"
 
 
+def check_vocabulary(texts):
+    """No word that the glossary has replaced."""
+    for path, text in texts:
+        for found in RETIRED.finditer(text):
+            yield f"{path}, line {text.count(chr(10), 0, found.start()) + 1}: `{found[0]}` is called revolute here"
+
+
 def numbers_of(text):
     """Equations of the chapter that a text names, ranges as all of theirs."""
     for first, last in re.findall(r"\b2\.(\d+)(?:-2\.(\d+))?", text):
@@ -128,6 +137,7 @@ def main():
     words = set(re.findall(r"\w+", " ".join(text for _, text in code)))
     for path, text in texts.items():
         faults += check_names(path, text, words, names)
+    faults += check_vocabulary([*code, *texts.items()])
     if MATHEMATICS in texts:
         faults += check_equations(code, texts[MATHEMATICS])
     print("\n".join(faults) if faults else f"{len(texts)} pages are in order")

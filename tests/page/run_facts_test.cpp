@@ -142,6 +142,9 @@ TEST(RunFacts, MeanAndErrorEndAtTheSameDecimal) {
     EXPECT_EQ(rounded_alike(300.2345, 0.1234), Texts("300.23", "0.12"));
     EXPECT_EQ(rounded_alike(-1234.5, 87.3), Texts("-1234", "87"));
     EXPECT_EQ(rounded_alike(2.5e-12, 1.3e-13), Texts("2.50e-12", "1.3e-13"));
+    EXPECT_EQ(rounded_alike(2.23983858399483, 2.2e-13), Texts("2.23984", "2.2e-13"));
+    EXPECT_EQ(rounded_alike(-2.5e-9, 3e-18), Texts("-2.5e-09", "3.0e-18"));
+    EXPECT_EQ(rounded_alike(300.2345, 4e-4), Texts("300.23450", "0.00040"));
     EXPECT_EQ(rounded_alike(1.5, 0), Texts("1.5", "0"));
     EXPECT_EQ(rounded_alike(1.5, NAN), Texts("1.5", "-"));
     EXPECT_EQ(rounded_alike(NAN, NAN), Texts("-", "-"));

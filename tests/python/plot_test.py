@@ -80,6 +80,8 @@ def check_means(runs, scratch):
     summary = os.path.join(folder, "summary.json")
     for text, said in (("{}", f"[{unit}]"), ("no JSON", f"[{unit}]"),
                        (f'{{"observables": {{"{name}": {{"mean": 2.71828, "standard_error": 0.0123}}}}}}', f"2.718 \u00b1 0.012 {unit}"),
+                       (f'{{"observables": {{"{name}": {{"mean": 2.71828, "standard_error": 0.0123, "converged": false}}}}}}',
+                        f"2.718 \u00b1 at least 0.012 {unit}"),
                        (f'{{"observables": {{"{name}": {{"mean": null, "standard_error": null}}}}}}', f"[{unit}]")):
         with open(summary, "w", encoding="utf-8") as file:
             file.write(text)

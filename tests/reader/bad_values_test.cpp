@@ -84,6 +84,20 @@ Refusal const keys_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axs: [0, 0, 1]}})y",
      "unknown key `axs` (s.yaml: chains[0].bodies[1].joint.axs, body 2, line 5): did you mean "
      "`axis`?"},
+    {"another_word_in_joint", R"y(chains:
+  - base: fixed
+    bodies:
+      - {mass: 1, inertia: [1, 1, 1], joint: {type: prismatic, axis: [0, 0, 1], force: 2}})y",
+     "unknown key `force` (s.yaml: chains[0].bodies[0].joint.force, body 1, line 4): did you mean "
+     "`torque`?"},
+    {"another_word_in_body", R"y(chains:
+  - bodies:
+      - {mass: 1, inertia: [1, 1, 1], force: [0, 0, 2]})y",
+     "unknown key `force` (s.yaml: chains[0].bodies[0].force, body 1, line 3): did you mean "
+     "`wrench`?"},
+    {"another_word_in_dynamics", R"y(chains: [{sequence: GGG, model: calvados2}]
+dynamics: {integrator: rattle, dt: 1})y",
+     "unknown key `dt` (s.yaml: dynamics.dt, line 2): did you mean `step`?"},
     {"unknown_in_dynamics", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rattle, stp: 1})y",
      "unknown key `stp` (s.yaml: dynamics.stp, line 2): did you mean `step`?"},

@@ -109,7 +109,7 @@ TEST_F(SceneFiles, bad_fasta_files) {
     refused(
         "GU",
         "`U` at position 2 of the sequence is not a residue of calvados2: selenocysteine, or RNA",
-        "write C for selenocysteine");
+        "write C for selenocysteine, or `model: calvados_rna` for RNA");
     refused("G*S",
             "`*` at position 2 of the sequence is not a residue of calvados2: a stop within the "
             "sequence",
@@ -141,8 +141,26 @@ TEST_F(SceneFiles, slips_in_sequences_are_noted) {
     EXPECT_EQ(notes("MKvf"),
               std::vector<std::string>{
                   "`chains[0].sequence`: 2 of 4 letters are lower case and are read as capitals"});
-    EXPECT_EQ(notes("ACGTACGTACGTACGTACGT").size(), 1u);
-    EXPECT_EQ(notes("GAGAGAGAGAGAGAGAGAGA").size(), 0u);
+}
+
+TEST_F(SceneFiles, NucleotidesReadAsAProteinAreNoted) {
+    auto const notes = [&](std::string const& sequence) {
+        return read("chains: [{sequence: " + sequence + ", model: calvados2}]").notes;
+    };
+    std::string const way =
+        " alone and is read as a protein: RNA takes `model: calvados_rna` and the letter U, DNA "
+        "has no model";
+    EXPECT_EQ(notes("ACGTACGT"),
+              std::vector<std::string>{"`chains[0].sequence` has the letters A, C, G and T" + way});
+    EXPECT_EQ(notes("GGCAACGACG"),
+              std::vector<std::string>{"`chains[0].sequence` has the letters A, C and G" + way});
+    for (char const* const protein : {"ACGTACG", "GAGAGAGAGAGAGAGAGAGA", "GGGGGGGGGG", "ACGTACGK"})
+        EXPECT_EQ(notes(protein), std::vector<std::string>{}) << protein;
+    write("own.csv",
+          "one,three,MW,lambdas,sigmas,q,bondlength\nA,AAA,70,0,0.5,0,0.4\n"
+          "C,CCC,70,0,0.5,0,0.4\nG,GGG,70,0,0.5,0,0.4\n");
+    EXPECT_EQ(read("chains: [{sequence: GGCAACGACG, model: {residues: own.csv}}]").notes,
+              std::vector<std::string>{});
 }
 
 class SystemFiles : public SceneFiles {

@@ -15,6 +15,7 @@
 #include "scene/node.hpp"
 #include "tests/domains/helix.hpp"
 #include "tests/frames/dcd_bytes.hpp"
+#include "tests/io/temporary_folder.hpp"
 #include "tests/reader/refusal.hpp"
 #include "tests/reader/scene_files.hpp"
 
@@ -63,16 +64,22 @@ std::string generated(std::string const& generator) {
     return "chains: [{generator: " + generator + "}]\n";
 }
 
+/// Path of a file that goes when the tests end.
+std::string file(std::string const& name) {
+    static TemporaryFolder const folder;
+    return folder / name;
+}
+
 /// Writes a FASTA file and returns its path.
 std::string fasta_file() {
-    std::string const path = testing::TempDir() + "keys_test.fasta";
+    std::string const path = file("keys_test.fasta");
     std::ofstream(path) << ">a\nGGG\n";
     return path;
 }
 
 /// Writes a PDB file of three residues and returns its path.
 std::string pdb_file() {
-    std::string const path = testing::TempDir() + "keys_test.pdb";
+    std::string const path = file("keys_test.pdb");
     std::ofstream(path) << atom(1, "CA", "GLY", 'A', 1, 0) << atom(2, "CA", "GLY", 'A', 2, 3.8)
                         << atom(3, "CA", "GLY", 'A', 3, 7.6);
     return path;
@@ -80,7 +87,7 @@ std::string pdb_file() {
 
 /// Writes a predicted helix with its errors. Returns a chain of it without the end of its `rigid`.
 std::string prediction() {
-    std::string const name = testing::TempDir() + "keys_test_prediction";
+    std::string const name = file("keys_test_prediction");
     std::vector<AtomLine> atoms = helix(25, "A");
     for (AtomLine& each : atoms) each.b_factor = 90;
     std::ofstream(name + ".pdb") << pdb_text(atoms);
@@ -99,7 +106,7 @@ std::vector<std::string> const joints{
 
 /// Writes a DCD file of a frame of three beads on links and returns its path.
 std::string dcd_file() {
-    std::string const path = testing::TempDir() + "keys_test.dcd";
+    std::string const path = file("keys_test.dcd");
     std::ofstream(path, std::ios::binary)
         << dcd_bytes({{Vec3{{0, 0, 0}}, Vec3{{0.38, 0, 0}}, Vec3{{0.38, 0.38, 0}}}}, std::nullopt);
     return path;

@@ -318,6 +318,13 @@ TEST_F(SceneFiles, gaps_of_a_pdb_file) {
     EXPECT_EQ(refusal(scene),
               "residues GLY 1 and ALA 2 of `a.pdb` stand 0.500 nm apart: the chain has a gap" +
                   where + ways);
+    pair(2, 96.2);
+    std::string const wrapped =
+        "residues GLY 1 and ALA 2 of `a.pdb` stand 9.620 nm apart: the chain has a gap" + where +
+        ways;
+    EXPECT_EQ(refusal(scene), wrapped + " (if the chain is wrapped into a box, give `box`)");
+    EXPECT_EQ(refusal(scene + "\nbox: {periodic: [30, 30, 30]}"), wrapped);
+    EXPECT_EQ(refusal(scene + "\nbox: {periodic: [10, 10, 10]}"), "accepted");
     pair(3, 4.4);
     EXPECT_EQ(refusal(scene),
               "residues GLY 1 and ALA 3 of `a.pdb` stand 0.440 nm apart: the chain has a gap" +

@@ -1,7 +1,6 @@
 // A run that is stopped and restarted is the uninterrupted run, bit for bit: state, trajectory and
 // table.
 #include <gtest/gtest.h>
-#include <pthread.h>
 
 #include <cstring>
 #include <filesystem>
@@ -19,6 +18,7 @@
 #include "tests/integrate/scenes.hpp"
 #include "tests/io/dataset_bits.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/run/no_more_threads.hpp"
 
 namespace catena::test {
 namespace {
@@ -67,28 +67,6 @@ TEST_P(Restart, IsTheUndisturbedRun) {
     EXPECT_EQ(text_of(folder_ / "whole/trajectory.h5md").size(),
               text_of(folder_ / "parts/trajectory.h5md").size());
 }
-
-/// Threads' stacks that no memory has room for.
-class NoMoreThreads {
-  public:
-    NoMoreThreads() {
-        pthread_attr_t none;
-        pthread_getattr_default_np(&before_);
-        pthread_getattr_default_np(&none);
-        pthread_attr_setstacksize(&none, std::size_t{1} << 50);
-        pthread_setattr_default_np(&none);
-        pthread_attr_destroy(&none);
-    }
-    NoMoreThreads(NoMoreThreads const&) = delete;
-    NoMoreThreads& operator=(NoMoreThreads const&) = delete;
-    ~NoMoreThreads() {
-        pthread_setattr_default_np(&before_);
-        pthread_attr_destroy(&before_);
-    }
-
-  private:
-    pthread_attr_t before_;
-};
 
 TEST_P(Restart, WithFramesBesideTheSteps) {
     auto const beside = [] {

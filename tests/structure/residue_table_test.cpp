@@ -33,6 +33,20 @@ TEST(ResidueTables, OfTheProgramHaveTheTwentyAminoAcids) {
     EXPECT_EQ(built_in_table(""), nullptr);
 }
 
+/// Numbers of the package's residues_C2RNA.csv; all bases have those of its letter r.
+TEST(ResidueTables, OfRnaHaveOneBackboneAndAlikeBases) {
+    ResidueTable const* const table = built_in_table("calvados_rna");
+    ASSERT_NE(table, nullptr);
+    EXPECT_EQ(table->letters(), "pACGUr");
+    EXPECT_EQ(*table->find('p'), (ResidueType{'p', "RBC", 194.1, 0, 0.6954, -1, 0.59}));
+    ResidueType base{'r', "RNA", 126.3, 1.18, 0.6238, 0, 0.54};
+    EXPECT_EQ(*table->find('r'), base);
+    for (char const letter : {'A', 'C', 'G', 'U'}) {
+        base.letter = letter, base.name = letter;
+        EXPECT_EQ(*table->find(letter), base);
+    }
+}
+
 /// The stickiness that Cao and others publish (doi 10.1002/pro.5172); all else is that of CALVADOS
 /// 2.
 TEST(ResidueTables, OfCalvados3HaveThePublishedStickiness) {

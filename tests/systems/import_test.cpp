@@ -1,6 +1,10 @@
 #include "systems/import.hpp"
 
 #include <OpenMM.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "reader/load_scene.hpp"
 #include "scene/force_changes.hpp"
@@ -88,6 +92,100 @@ TEST_F(Import, AScenesBoxAndReplicasThatPeriodicForcesDoNotHave) {
         "`builder: calvados2` and `box: none`");
 }
 
+/// A spring between chains that acts on coordinates as they are, in a periodic System.
+TEST_F(Import, ABondBetweenChainsThatDoesNotUseTheBoxIsNoted) {
+    join_glycines();
+    system->setDefaultPeriodicBoxVectors({50, 0, 0}, {0, 60, 0}, {0, 0, 70});
+    auto* springs = new OpenMM::HarmonicBondForce;
+    springs->addBond(1, 3, 0.8, 10);
+    springs->setName("Springs");
+    system->addForce(springs);
+    auto const notes = [&](bool within, bool between) {
+        bonds->setUsesPeriodicBoundaryConditions(between);
+        springs->setUsesPeriodicBoundaryConditions(within);
+        return fmt::format("{}", fmt::join(import(wound(beads, 1)).notes, "|"));
+    };
+    std::string const ends =
+        " joins chains and does not use the box: it acts on coordinates as they are, not on "
+        "nearest images.";
+    EXPECT_NE(notes(true, false).find("The System's HarmonicBondForce" + ends), std::string::npos);
+    EXPECT_EQ(notes(false, true).find(ends), std::string::npos);
+    EXPECT_EQ(notes(false, false).find(ends), std::string::npos);  // nothing is periodic
+    springs->setUsesPeriodicBoundaryConditions(true);
+    bonds->setUsesPeriodicBoundaryConditions(false);
+    std::string const written =
+        "chains:\n  - {name: a, sequence: KDEK, model: calvados2, links: as_given}\n"
+        "  - {name: b, sequence: GG, model: calvados2}\n  - {name: c, sequence: W, model: "
+        "calvados2}\n"
+        "box: {periodic: [50, 60, 70]}\nforces: {openmm: {map: {a: [0, 3], b: [4, 5], c: [6, 6]}, "
+        "system: " +
+        spec("none").system + "}}\n";
+    std::vector<std::string> const of_scene = parse_scene(written, "scene.yaml").notes;
+    EXPECT_TRUE(std::any_of(of_scene.begin(), of_scene.end(), [&](std::string const& note) {
+        return note.find(ends) != std::string::npos;
+    }));
+}
+
+/// The link that closes a ring is compared with the System as the others are.
+TEST_F(Import, TheClosingLinkOfARing) {
+    auto const notes = [&](double closing, double k) {
+        OpenMM::System ring;
+        auto* springs = new OpenMM::HarmonicBondForce;
+        for (int i = 0; i < 4; ++i) ring.addParticle(100);
+        for (int i = 0; i < 3; ++i) springs->addBond(i, i + 1, 1, stiff);
+        if (k > 0) springs->addBond(3, 0, closing, k);
+        ring.addForce(springs);
+        std::string const file = scratch_file("ring.xml", xml_of(ring));
+        return parse_scene(
+                   "chains:\n  - name: r\n    tip: ring\n    bodies:\n"
+                   "      - {mass: 100, position: [0, 0, 0]}\n"
+                   "      - {mass: 100, position: [1, 0, 0], joint: {type: link}}\n"
+                   "      - {mass: 100, position: [1, 1, 0], joint: {type: link}}\n"
+                   "      - {mass: 100, position: [0, 1, 0], joint: {type: link}}\n"
+                   "forces: {openmm: {map: {r: [0, 3]}, system: " +
+                       file + "}}\n",
+                   "scene.yaml")
+            .notes;
+    };
+    EXPECT_TRUE(notes(1, stiff).empty());
+    ASSERT_EQ(notes(1, 0).size(), 1u);
+    EXPECT_NE(notes(1, 0)[0].find("1 of 4 links joins particles that the System neither bonds nor "
+                                  "constrains, the first beads 1 and 4 of chain `r`"),
+              std::string::npos)
+        << notes(1, 0)[0];
+    ASSERT_EQ(notes(1.1, stiff).size(), 1u);
+    EXPECT_NE(notes(1.1, stiff)[0].find("the first beads 1 and 4 of chain `r`: 1 nm, its bond 1.1"),
+              std::string::npos)
+        << notes(1.1, stiff)[0];
+    EXPECT_NE(complaint([&] { notes(1, 20); }).find("is too soft for a rigid link"),
+              std::string::npos);
+}
+
+/// A link from the first of two beads of a body is compared with the bond of that bead.
+TEST_F(Import, LinksThatBeginAtAnotherBeadOfABody) {
+    auto const notes = [&](int from) {
+        OpenMM::System pair;
+        auto* springs = new OpenMM::HarmonicBondForce;
+        for (int i = 0; i < 3; ++i) pair.addParticle(100);
+        springs->addBond(from, 2, 1, stiff);
+        pair.addForce(springs);
+        return parse_scene(
+                   "chains:\n  - name: b\n    bodies:\n"
+                   "      - {mass: 200, inertia: [100, 100, 100], position: [0.5, 0, 0], beads: "
+                   "[{position: [-0.5, 0, 0]}, {position: [0.5, 0, 0]}]}\n"
+                   "      - {mass: 100, position: [0, 1, 0],\n"
+                   "         joint: {type: link, translation: [-0.5, 0, 0]}}\n"
+                   "forces: {openmm: {map: {b: [0, 2]}, system: " +
+                       scratch_file("pair.xml", xml_of(pair)) + "}}\n",
+                   "scene.yaml")
+            .notes;
+    };
+    EXPECT_TRUE(notes(0).empty()) << notes(0)[0];
+    ASSERT_EQ(notes(1).size(), 1u);
+    EXPECT_NE(notes(1)[0].find("the first beads 1 and 3 of chain `b`"), std::string::npos)
+        << notes(1)[0];
+}
+
 TEST_F(Import, AlphaSynuclein) {
     std::string const reference =
         std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-system-openmm7.xml";
@@ -109,11 +207,12 @@ TEST_F(Import, AlphaSynuclein) {
 
 TEST_F(Import, Messages) {
     auto const positions = wound(beads, 1);
-    EXPECT_EQ(complaint([&] { import(positions); }),
-              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint "
-              "(scene.yaml: forces.openmm.system, chain B, body 2): "
-              "join neighbours in a chain (a bond of stiffness 0 does not), or end the chain "
-              "between them in the topology (TER)");
+    EXPECT_EQ(
+        complaint([&] { import(positions); }),
+        "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint "
+        "(scene.yaml: forces.openmm.system, chain B, body 2): "
+        "join each particle of a chain to an earlier one (a bond of stiffness 0 does not), or "
+        "end the chain between them in the topology (TER)");
     join_glycines();
     std::string const short_file = scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions));
     EXPECT_EQ(complaint([&] { import_openmm_system(spec(short_file), "scene.yaml"); }),
@@ -227,24 +326,110 @@ TEST_F(Import, NamedForcesAreLeftOut) {
               "or a kind of force: HarmonicBondForce, MonteCarloBarostat");
 }
 
-TEST_F(Import, BranchesAndRingsAreNamed) {
+TEST_F(Import, RingsAreNamed) {
     join_glycines();
     bonds->addBond(0, 3, 0.4, stiff);  // ends of the first chain
     EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
-    EXPECT_TRUE(
-        import(wound(beads, 1))
-            .notes.at(0)
-            .starts_with("Chain A is closed into a ring by a harmonic bond, which stays a spring"));
+    EXPECT_TRUE(import(wound(beads, 1))
+                    .notes.at(0)
+                    .starts_with("Chain A is closed into a ring by a bond, which stays a force"));
     system->addConstraint(0, 1, 0.38);  // an infinitely stiff first link
     EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
     bonds->setBondParameters(4, 0, 3, 0.4, 1);  // a restraint of the ends, no link
     EXPECT_TRUE(import(wound(beads, 1)).notes.empty());
-    bonds->setBondParameters(1, 3, 1, 0.41, stiff);  // was 3 to 2
+}
+
+/// Particle 3 hangs on particle 1 in place of 2.
+TEST_F(Import, BranchesHangOnEarlierBeads) {
+    join_glycines();
+    bonds->setBondParameters(1, 3, 1, 0.41, stiff);
+    bonds->addBond(3, 2, 0.5, 1);  // too soft for a link
+    ImportedSystem const imported = import(wound(beads, 1));
+    EXPECT_EQ(imported.notes,
+              std::vector<std::string>{"Chain A is branched (particle 3 hangs on particle 1, from "
+                                       "0): branched chains run on one rank and on the host."});
+    EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
+    EXPECT_EQ(imported.chains[0].length, (std::vector<double>{0, 0.38, 0.39, 0.41}));
+    EXPECT_TRUE(imported.chains[1].parent.empty());
+}
+
+/// A branched chain whose last bead hangs on the first is no ring. Bonds beside the links are
+/// named.
+TEST_F(Import, BondsThatCloseCyclesOfBranchesAreNamed) {
+    join_glycines();
+    bonds->setBondParameters(1, 3, 0, 0.41, stiff);
+    EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);  // on the branch alone
+    bonds->addBond(3, 1, 0.6, stiff);
+    ImportedSystem const imported = import(wound(beads, 1));
+    // Both are equally stiff for their lengths but for 0.6 nm, which is the stiffer link.
+    EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
+    EXPECT_EQ(imported.notes.at(1),
+              "1 stiff bond of branched chains closes a cycle of links (particles 0 and 3 from 0) "
+              "and stays a force: links form no cycles.");
+}
+
+/// A constraint that is no link could not stay: it outranks the spring to the bead before.
+TEST_F(Import, ConstraintsOutrankSprings) {
+    join_glycines();
+    system->addConstraint(1, 3, 0.45);
+    ImportedSystem const imported = import(wound(beads, 1));
+    EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
+    EXPECT_EQ(imported.chains[0].length[3], 0.45);
+    EXPECT_TRUE(imported.notes.at(1).starts_with("1 stiff bond of branched chains closes a cycle"));
+}
+
+/// Bonds of named forces become links between any beads of a chain.
+TEST_F(Import, NamedBondsMakeBranches) {
+    join_glycines();
+    bonds->setBondParameters(1, 3, 1, 0.41, 0);
+    auto* custom = new OpenMM::CustomBondForce("log(r)");
+    custom->setName("FENE");
+    custom->addBond(1, 3);
+    system->addForce(custom);
     std::string const text = complaint([&] { import(wound(beads, 1)); });
     EXPECT_TRUE(
-        text.starts_with("particle 3 (from 0) is joined to particle 1 and not to particle 2 before "
-                         "it: the molecule is branched"))
+        text.starts_with("particle 3 (from 0) is joined to particle 1 by a CustomBondForce "
+                         "alone, and to no earlier one otherwise"))
         << text;
+    OpenMmSpec named = spec(scratch_file("import.pdb", pdb_of(beads, wound(beads, 1))));
+    add_changes({{}, {}, {{"FENE", 0.97}}}, named);
+    ImportedSystem const imported = import_openmm_system(named, "scene.yaml");
+    EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
+    EXPECT_EQ(imported.chains[0].length[3], 0.97);
+}
+
+/// A spring of a network is no link between two proteins without a TER between them.
+TEST_F(Import, SpringsUnlikeTheLinksMakeNoBranches) {
+    join_glycines();
+    bonds->setBondParameters(1, 3, 1, 0.41, 700);
+    EXPECT_EQ(complaint([&] { import(wound(beads, 1)); }),
+              "particle 3 (from 0) hangs on no earlier one of its chain by a bond like that of "
+              "particles 0 and 1: the stiffest, to particle 1, has 700 kJ/mol/nm2 (scene.yaml: "
+              "forces.openmm.system, chain A, body 4): end the chain before it in the topology "
+              "(TER): its bonds then stay springs");
+    EXPECT_EQ(chains_by_bonds(spec(""), "s.yaml").sizes, (std::vector<std::int64_t>{3, 1, 2, 1}));
+}
+
+/// A star whose centre comes last has no order in which each bead hangs on an earlier one.
+TEST_F(Import, BeadsThatHangOnLaterOnesAreRefused) {
+    system = bare_system(beads);
+    bonds = new OpenMM::HarmonicBondForce;
+    system->addForce(bonds);
+    for (int k = 0; k < 3; ++k) bonds->addBond(k, 3, 0.4, stiff);
+    join_glycines();
+    EXPECT_EQ(complaint([&] { import(wound(beads, 1)); }),
+              "particle 1 (from 0) is joined to particle 3 and to no earlier one (scene.yaml: "
+              "forces.openmm.system, chain A, body 2): number the particles so that each of a "
+              "chain is joined to an earlier one, or end the chain before it in the topology "
+              "(TER): the other bonds then stay springs");
+}
+
+/// Without a topology the bonds tell the chains apart, branched ones too.
+TEST_F(Import, ChainsByBondsHoldTheirBranches) {
+    bonds->setBondParameters(1, 3, 1, 0.41, stiff);
+    join_glycines();
+    bonds->addBond(0, 6, 2, 1);  // too soft to join two chains
+    EXPECT_EQ(chains_by_bonds(spec(""), "s.yaml").sizes, (std::vector<std::int64_t>{4, 2, 1}));
 }
 
 TEST_F(Import, BondsThatAreNoneAreRefused) {

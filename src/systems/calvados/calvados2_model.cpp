@@ -1,12 +1,16 @@
-// Implements the force field of CALVADOS 2 and 3 as an OpenMM System of two CustomNonbondedForces.
-// The models' harmonic bonds are absent, because rigid links replace them.
+// Implements the force field of CALVADOS 2 and 3 as an OpenMM System of two CustomNonbondedForces,
+// with further forces for RNA. The models' harmonic bonds are absent, because rigid links replace
+// them.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "error.hpp"
 #include "structure/calvados2.hpp"
+#include "structure/calvados_rna.hpp"
+#include "systems/calvados/rna_forces.hpp"
 #include "systems/charges.hpp"
 #include "systems/model.hpp"
 
@@ -34,8 +38,9 @@ ResidueType const& residue_of(OpenMmSpec const& spec, ForceResidues const& resid
     if (auto const* residue = residues.find(name)) return *residue;
     throw InputError(fmt::format("{} has no residue {}", model_name(spec), name),
                      chain_key(beads, bead),
-                     "use the twenty amino acids (sequence and model: calvados2), or give the "
-                     "forces as a System (forces.openmm.system)");
+                     "use the twenty amino acids (sequence and model: calvados2) or nucleotides "
+                     "(model: calvados_rna), or give the forces as a System "
+                     "(forces.openmm.system)");
 }
 
 /// Throws InputError for parameters outside the model's range and for boxes smaller than twice the
@@ -124,16 +129,24 @@ std::string rigid_note(BeadSystem const& beads) {
                        beads.rigid.size() == 1 ? "body" : "bodies");
 }
 
+/// Length of the model's bond along a link, nm: the mean of its residues' bonds, for nucleotides
+/// that of the outboard one.
+double bond_of(BeadSystem::Link const& link, ForceResidues const& residues,
+               BeadSystem const& beads) {
+    std::string const &inboard = beads.residue[static_cast<std::size_t>(link.inboard)],
+                      &outboard = beads.residue[static_cast<std::size_t>(link.outboard)];
+    double const further = residues.find(outboard)->bond;
+    return inboard == calvados_rna::backbone ? further
+                                             : (residues.find(inboard)->bond + further) / 2;
+}
+
 /// Lengths of the model's bonds along the links, e.g. "0.38 nm" or "0.33 to 0.38 nm".
 std::string bond_text(OpenMmSpec const& spec, ForceResidues const& residues,
-                      BeadSystem const& beads) {
+                      BeadSystem const& beads, bool has_rna) {
     double least = built_in_table(spec.builder)->types().front().bond, most = least;
-    // The tables of the program have one length for all residues.
-    for (std::size_t i = 0; residues.own() && i < beads.links.size(); ++i) {
-        auto const bond = [&](std::int64_t bead) {
-            return residues.find(beads.residue[static_cast<std::size_t>(bead)])->bond;
-        };
-        double const length = (bond(beads.links[i].inboard) + bond(beads.links[i].outboard)) / 2;
+    // The program's tables of amino acids have one length for all residues.
+    for (std::size_t i = 0; (residues.own() || has_rna) && i < beads.links.size(); ++i) {
+        double const length = bond_of(beads.links[i], residues, beads);
         least = i == 0 ? length : std::min(least, length);
         most = i == 0 ? length : std::max(most, length);
     }
@@ -141,20 +154,29 @@ std::string bond_text(OpenMmSpec const& spec, ForceResidues const& residues,
                          : fmt::format("{:.6g} to {:.6g} nm", least, most);
 }
 
+/// How far charges are screened, e.g. "Debye length 0.79 nm".
+std::string screening_text(calvados2::Yukawa const& y) {
+    return y.kappa > 0 ? fmt::format("Debye length {:.4g} nm", 1 / y.kappa)
+                       : "nothing screens charges";
+}
+
 /// Sentences on parameters, cutoffs and links, for the user.
 std::vector<std::string> notes_on(OpenMmSpec const& spec, ForceResidues const& residues,
-                                  BeadSystem const& beads, calvados2::Yukawa const& y) {
+                                  BeadSystem const& beads, calvados2::Yukawa const& y,
+                                  bool has_rna) {
     std::string const own =
         residues.own() ? fmt::format(", parameters of `{}`", residues.own()->name()) : "";
     std::string const edge =
         spec.switch_width > 0 ? fmt::format("switched off over {} nm", spec.switch_width) : "cut";
-    return {fmt::format("{} at {} K, {} mol/l: Debye length {:.4g} nm, {}{}", model_name(spec),
-                        spec.temperature, spec.ionic_strength, 1 / y.kappa,
-                        histidine_text(spec, residues, beads.residue), own),
-            fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
-                        calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
-            fmt::format("{}{} links replace the model's harmonic bonds of {}", rigid_note(beads),
-                        beads.links.size(), bond_text(spec, residues, beads))};
+    return {
+        fmt::format("{} at {} K, {} mol/l: {}, {}{}", model_name(spec), spec.temperature,
+                    spec.ionic_strength, screening_text(y),
+                    histidine_text(spec, residues, beads.residue), own),
+        fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
+                    calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
+        fmt::format("{}{} {} the model's harmonic bonds of {}", rigid_note(beads),
+                    beads.links.size(), beads.links.size() == 1 ? "link replaces" : "links replace",
+                    bond_text(spec, residues, beads, has_rna))};
 }
 
 }  // namespace
@@ -184,9 +206,12 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     finish(*contact, spec, beads, 0);
     finish(*charges, spec, beads, 1);
     model.terms = {contact->getName(), charges->getName()};
+    std::array const pairs{contact.get(), charges.get()};
     model.system->addForce(contact.release());
     model.system->addForce(charges.release());
-    model.notes = notes_on(spec, residues, beads, y);
+    Nucleotides const rna = nucleotides_of(beads, residues);
+    model.notes = notes_on(spec, residues, beads, y, rna.count > 0);
+    add_rna_forces(model, rna, residues, beads, pairs);
     model.notes.push_back(charge_text(charge_of, beads));
     return model;
 }
