@@ -116,6 +116,7 @@ class AllWriters final : public Writers {
         off_t const wanted = first_ + grown_ + grown_ / 64 +
                              (16 << 10);  // metadata: 100 bytes per chunk of at least 8 kB
         if (wanted <= reserved_) return;
+        refuse_beyond_limit(wanted, file, doing);
         take_from_system(opened.get(), reserved_, wanted - reserved_, file, doing);
         reserved_ = wanted;
     }

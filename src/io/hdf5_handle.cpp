@@ -61,23 +61,20 @@ hid_t create_anew(std::string const& file, hid_t creation, hid_t access) {
     return H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation, access);
 }
 
-namespace {
-/// True if the process may not write so many bytes to a file. fallocate() does not ask for a length
-/// that the file need not get.
-bool is_beyond_limit(std::int64_t bytes) {
-    rlimit limit{};
-    return getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-           static_cast<rlim_t>(bytes) > limit.rlim_cur;
-}
-}  // namespace
-
 void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes,
                       std::string const& file, std::string const& doing) {
-    int error = is_beyond_limit(from + bytes) ? EFBIG : EINTR;
-    while (error == EINTR)
-        error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;
+    int error = 0;
+    do error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;
+    while (error == EINTR);
     if (error == ENOSPC || error == EDQUOT || error == EFBIG)
         throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(error));
+}
+
+void refuse_beyond_limit(std::int64_t bytes, std::string const& file, std::string const& doing) {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+        static_cast<rlim_t>(bytes) > limit.rlim_cur)
+        throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(EFBIG));
 }
 
 namespace {
@@ -96,6 +93,7 @@ std::int64_t size_of(File const& handle, std::string const& file, std::string co
 void make_room(File const& handle, hsize_t more, std::string const& file,
                std::string const& doing) {
     std::int64_t const written = size_of(handle, file, doing) + static_cast<std::int64_t>(more);
+    refuse_beyond_limit(written + written / 32 + (32 << 10), file, doing);  // with metadata
     std::int64_t const not_placed_yet = std::min<std::int64_t>(
         8 << 20, written / 4 + (16 << 10));  // space for chunks in HDF5's caches
     take_from_system(descriptor_of(handle, file, doing), 0, written + not_placed_yet, file, doing);

@@ -81,6 +81,9 @@ hid_t create_anew(std::string const& file, hid_t creation, hid_t access);
 /// systems without fallocate report a full disk only at the writes.
 void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes,
                       std::string const& file, std::string const& doing);
+/// Throws ComputationError if the process may not write files of so many bytes. fallocate() does
+/// not compare a length that the file need not get.
+void refuse_beyond_limit(std::int64_t bytes, std::string const& file, std::string const& doing);
 /// Reserves disk space for everything that a flush writes and for `more` further bytes. A full disk
 /// is thus detected before anything in the file is overwritten.
 void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing);
