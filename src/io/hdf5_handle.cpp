@@ -93,7 +93,8 @@ std::int64_t size_of(File const& handle, std::string const& file, std::string co
 void make_room(File const& handle, hsize_t more, std::string const& file,
                std::string const& doing) {
     std::int64_t const written = size_of(handle, file, doing) + static_cast<std::int64_t>(more);
-    refuse_beyond_limit(written + written / 32 + (32 << 10), file, doing);  // with metadata
+    std::int64_t const metadata = std::min<std::int64_t>(8 << 20, written / 32 + (32 << 10));
+    refuse_beyond_limit(written + metadata, file, doing);
     std::int64_t const not_placed_yet = std::min<std::int64_t>(
         8 << 20, written / 4 + (16 << 10));  // space for chunks in HDF5's caches
     take_from_system(descriptor_of(handle, file, doing), 0, written + not_placed_yet, file, doing);

@@ -252,23 +252,6 @@ std::vector<BoxlessForce> boxless_forces(OpenMM::System const& system) {
 
 }  // namespace
 
-std::vector<std::string> notes_on_boxless(std::vector<BoxlessForce> const& forces,
-                                          std::vector<std::int64_t> const& first) {
-    auto const chain_of = [&](std::int64_t particle) {
-        return std::upper_bound(first.begin(), first.end(), particle) - first.begin();
-    };
-    std::vector<std::string> notes;
-    for (auto const& [name, spans] : forces)
-        if (std::any_of(spans.begin(), spans.end(), [&](auto const& span) {
-                return chain_of(span.first) != chain_of(span.second);
-            }))
-            notes.push_back(
-                fmt::format("The System's {} joins chains and does not use the box: it acts on "
-                            "coordinates as they are, not on nearest images.",
-                            name));
-    return notes;
-}
-
 SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
     SystemLinks links;

@@ -42,6 +42,21 @@ std::vector<Bead> all_beads(Scene const& scene) {
     return beads;
 }
 
+/// Distance of the nearest two points of different chains, between nearest images in a cube.
+double nearest_of_chains(Scene const& scene) {
+    double const edge = (*scene.box)[0];
+    double nearest = 1e300;
+    std::vector<Bead> const beads = all_beads(scene);
+    for (Bead const& a : beads)
+        for (Bead const& b : beads) {
+            if (a.chain >= b.chain) continue;
+            Vec3 apart = a.at - b.at;
+            for (int x = 0; x < 3; ++x) apart[x] -= edge * std::round(apart[x] / edge);
+            nearest = std::min(nearest, norm(apart));
+        }
+    return nearest;
+}
+
 /// Distance of the nearest two points that are not link neighbours, by looking at every pair and
 /// all images next to the nearest.
 double nearest_pair(std::vector<Bead> const& beads, Vec3 const& box) {
@@ -212,16 +227,7 @@ TEST(Places, branched_chains_without_room_side_by_side_are_inserted) {
                                   "the box: they start at random places"),
               std::string::npos)
         << scene.notes[0];
-    double nearest = 1e300;
-    std::vector<Bead> const beads = all_beads(scene);
-    for (Bead const& a : beads)
-        for (Bead const& b : beads) {
-            if (a.chain >= b.chain) continue;
-            Vec3 apart = a.at - b.at;
-            for (int x = 0; x < 3; ++x) apart[x] -= 20 * std::round(apart[x] / 20);
-            nearest = std::min(nearest, norm(apart));
-        }
-    EXPECT_GE(nearest, 1 - 1e-6);
+    EXPECT_GE(nearest_of_chains(scene), 1 - 1e-6);
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 1; k < chain.size(); ++k)
             EXPECT_NEAR(norm(chain.beads.position[k] -
@@ -251,16 +257,7 @@ TEST(Places, in_si_units_have_no_distance_but_the_links) {
     ASSERT_EQ(scene.notes.size(), 1U);
     EXPECT_NE(scene.notes[0].find("40 chains that keep their shape do not fit side by side"),
               std::string::npos);
-    double nearest = 1e300;
-    std::vector<Bead> const beads = all_beads(scene);
-    for (Bead const& a : beads)
-        for (Bead const& b : beads) {
-            if (a.chain >= b.chain) continue;
-            Vec3 apart = a.at - b.at;
-            for (int x = 0; x < 3; ++x) apart[x] -= 0.2 * std::round(apart[x] / 0.2);
-            nearest = std::min(nearest, norm(apart));
-        }
-    EXPECT_GE(nearest, 0.01 * (1 - 1e-6));
+    EXPECT_GE(nearest_of_chains(scene), 0.01 * (1 - 1e-6));
 }
 
 TEST(Places, of_single_beads_are_apart_in_any_si_box) {

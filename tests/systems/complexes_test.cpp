@@ -12,6 +12,7 @@
 #include "tests/domains/helix.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/pair_sum.hpp"
+#include "tests/systems/energies.hpp"
 
 namespace catena::testing {
 namespace {
@@ -32,15 +33,6 @@ Scene scene_of(std::string const& more) {
             "forces: {{openmm: {{builder: calvados2, platform: Reference, path: inline}}}}\n",
             structure(), more),
         "complex.yaml");
-}
-
-std::map<std::string, double> energies_of(Scene const& scene) {
-    auto const ranks = serial_communicator();
-    ChainSystem system(scene, Axes::joint, *ranks);
-    system.evaluate(false);
-    std::map<std::string, double> energies;
-    for (auto const& [name, value] : system.openmm()->energies()) energies[name] = value;
-    return energies;
 }
 
 /// Sums over the pairs of the free chains, without those within `bodies` (beads of A, then of B).

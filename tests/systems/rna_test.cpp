@@ -14,6 +14,7 @@
 #include "reader/load_scene.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
+#include "tests/systems/energies.hpp"
 
 namespace catena::testing {
 namespace {
@@ -141,15 +142,6 @@ std::string table_of(std::vector<Vec3> const& positions) {
     for (Vec3 const& x : positions)
         text += fmt::format("{:.17g},{:.17g},{:.17g}\n", x[0], x[1], x[2]);
     return text;
-}
-
-std::map<std::string, double> energies_of(Scene const& scene) {
-    auto const ranks = serial_communicator();
-    ChainSystem system(scene, Axes::joint, *ranks);
-    system.evaluate(false);
-    std::map<std::string, double> energies;
-    for (auto const& [name, value] : system.openmm()->energies()) energies[name] = value;
-    return energies;
 }
 
 std::string forces_text(std::string const& builder = "calvados2") {
