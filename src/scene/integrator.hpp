@@ -62,7 +62,7 @@ inline constexpr std::array<IntegratorTraits, 10> integrators{{
     {Integrator::rk4,              "rk4",              0,   4,    2.8284,   true,  true,   false,   false,   false,   true,  2.0},
     {Integrator::dormand_prince,   "dormand-prince",   8,   5,    3.3,      true,  true,   true,    false,   false,   true,  2.0},
     {Integrator::velocity_verlet,  "velocity-verlet",  3,   2,    2.0,      true,  true,   false,   false,   false,   true,  2.0},
-    {Integrator::leapfrog,         "leapfrog",         9,   2,    2.0,      true,  false,  false,   false,   false,   false, 2.0},
+    {Integrator::leapfrog,         "leapfrog",         9,   2,    2.0,      true,  false,  false,   false,   false,   true,  2.0},
     {Integrator::staggered,        "staggered",        4,   2,    2.0,      true,  false,  false,   false,   true,    false, 0.5},
     {Integrator::baoab,            "baoab",            5,   2,    2.0,      true,  false,  false,   true,    false,   false, 2.0},
     {Integrator::implicit_baoab,   "implicit-baoab",   6,   2,    2.0,      true,  false,  false,   true,    true,    false, 2.0},
