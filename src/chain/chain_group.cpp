@@ -282,8 +282,19 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
 }
 
-/// Sets the inboard bodies of branched chains and cuts the chains into paths.
-void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise) {
+/// Sets the counts of the paths on all ranks. Collective.
+void count_branches(ChainGroup& group, Communicator const& communicator) {
+    dca::BranchCounts const own = group.branches.counts();
+    auto const largest = [&](std::int64_t value) {
+        return static_cast<std::int64_t>(communicator.max(static_cast<double>(value)));
+    };
+    group.branch_counts = {communicator.sum(own.paths), communicator.sum(own.runs),
+                           largest(own.phases), largest(own.levels), largest(own.depth)};
+}
+
+/// Sets the inboard bodies of branched chains and cuts the chains into paths. Collective.
+void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise,
+                   Communicator const& communicator) {
     group.inboard.assign(static_cast<std::size_t>(group.size), -1);
     for (dca::Piece const& piece : group.pieces) {
         std::vector<std::int64_t> const& parent = scene.chains[group.chain[piece.chain]].parent;
@@ -291,6 +302,7 @@ void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise) {
             if (parent[i] >= 0) group.inboard[piece.local + i] = piece.local + parent[i];
     }
     group.branches = dca::Branches(group.inboard, pairwise);
+    count_branches(group, communicator);
     group.schedule.runs.clear();
     group.schedule.levels.clear();
     group.schedule.roots.clear();
@@ -374,8 +386,10 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     }
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
+    group.branched = scene::branches(any);
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
-    if (!options.shares.empty())
+    group.partition.whole_chains = group.branched;
+    if (group.branched || !options.shares.empty())
         dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
@@ -388,7 +402,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
     fill(group, scene, options.executor);
-    if (scene::branches(any)) fill_branches(group, scene, pairwise);
+    if (group.branched) fill_branches(group, scene, pairwise, communicator);
     if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());

@@ -71,12 +71,8 @@ struct TreeCounts {
 TreeCounts counts_of(ChainGroup const& group) {
     dca::ChainTree const& tree = longest_tree(group);
     if (!group.is_branched()) return {tree.runs, tree.levels(), tree.depth()};
-    TreeCounts counts{0, 0, group.branches.depth()};
-    for (dca::PhaseLists const& lists : group.branches.lists) {
-        counts.runs += std::ssize(lists.runs);
-        counts.levels = std::max(counts.levels, std::ssize(lists.levels));
-    }
-    return counts;
+    dca::BranchCounts const& branched = group.branch_counts;
+    return {branched.runs, branched.levels, branched.depth};
 }
 
 /// Describes the tree of a group's longest chain, or the paths of branched chains.
@@ -88,8 +84,8 @@ std::string tree_text(ChainGroup const& group) {
             ? fmt::format(
                   "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
                   "merges on a path",
-                  group.partition.bodies(), counted(group.branches.paths(), "path", "paths"),
-                  counted(group.branches.phases(), "phase", "phases"),
+                  group.partition.bodies(), counted(group.branch_counts.paths, "path", "paths"),
+                  counted(group.branch_counts.phases, "phase", "phases"),
                   counted(counts.runs, "run", "runs"), tree.run_length,
                   counted(counts.levels, "level", "levels"))
             : fmt::format("{} bodies: {} of up to {} bodies, then {} of merges", tree.bodies,
@@ -402,8 +398,7 @@ Outcome calibrate(Communicator const& communicator, PlanRequest const& request) 
 
 Outcome plan_scene(Scene const& given, Communicator const& communicator,
                    PlanRequest const& request) {
-    scene::refuse_unsupported_branches(given,
-                                       std::max<std::int64_t>(communicator.size(), request.ranks));
+    scene::refuse_unsupported_branches(given);
     Axes const axes = axes_for(given);
     Predictions predictions;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {

@@ -100,7 +100,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
       axes_(axes),
       backend_(choose_backend(scene, communicator)),
       implicit_step_(implicit_step) {
-    scene::refuse_unsupported_branches(scene, communicator.size());
+    scene::refuse_unsupported_branches(scene);
     if (uses_gpu(backend_))
         refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator),
                     without_gpu);

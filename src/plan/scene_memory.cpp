@@ -157,7 +157,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         if (scene::branches(chain)) {
-            m.solver += bytes_of_branches(chain, pairwise, size);
+            m.solver += bytes_of_branches(chain, pairwise, size) / ranks;
             continue;
         }
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

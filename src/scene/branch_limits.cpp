@@ -31,7 +31,7 @@ bool has_branches(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(), branches);
 }
 
-void refuse_unsupported_branches(Scene const& scene, std::int64_t ranks) {
+void refuse_unsupported_branches(Scene const& scene) {
     for (ChainSpec const& chain : scene.chains)
         if (branches(chain)) refuse_parts(scene, chain);
     if (!has_branches(scene)) return;
@@ -40,10 +40,6 @@ void refuse_unsupported_branches(Scene const& scene, std::int64_t ranks) {
             "branched chains have projected handles only",
             scene.file + ": solver.handles: " + std::string(name_of(scene.solver.handles)),
             "use projected");
-    if (ranks > 1)
-        throw InputError("branched chains run on one rank",
-                         scene.file + ", " + std::to_string(ranks) + " ranks",
-                         "use mpirun -n 1 and threads (solver.backend: openmp)");
 }
 
 }  // namespace catena::scene

@@ -11,8 +11,8 @@ namespace catena::scene {
 bool branches(ChainSpec const&);
 /// True if some chain of the scene branches.
 bool has_branches(Scene const&);
-/// Throws InputError if a chain branches and has a kind of body or tip, the scene has handles, or
-/// `ranks` are so many, that branched chains do not support.
-void refuse_unsupported_branches(Scene const&, std::int64_t ranks);
+/// Throws InputError if a chain branches and has a kind of body or tip, or the scene has handles,
+/// that branched chains do not support.
+void refuse_unsupported_branches(Scene const&);
 
 }  // namespace catena::scene

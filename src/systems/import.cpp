@@ -85,7 +85,7 @@ std::vector<std::string> note_branches(std::vector<ImportedChain> const& chains)
     }
     if (branched == 0) return {};
     return {fmt::format(
-        "{} ({}): branched chains run on one rank and on the host.",
+        "{} ({}): branched chains are computed on the host, each by one rank.",
         branched == 1 ? fmt::format("Chain {} is branched", name)
                       : fmt::format("{} chains are branched, the first is {}", branched, name),
         place)};

@@ -34,6 +34,15 @@ struct PhaseLists {
     std::vector<Root> roots;
 };
 
+/// Counts of the paths of branched chains on all ranks.
+struct BranchCounts {
+    std::int64_t paths = 0, runs = 0;
+    /// Largest number of phases, and of levels of merges on a path.
+    std::int64_t phases = 0, levels = 0;
+    /// Longest way from a body to a root, as Branches::depth().
+    std::int64_t depth = 0;
+};
+
 /// The paths of branched chains on one rank.
 struct Branches {
     Branches() = default;
@@ -61,6 +70,8 @@ struct Branches {
     /// Steps of the longest way from a body to a root: merges and eliminations on the paths, and
     /// the sums over side paths.
     std::int64_t depth() const { return depth_; }
+    /// Counts of this rank.
+    BranchCounts counts() const;
 
   private:
     std::int64_t depth_ = 0;
