@@ -7,6 +7,7 @@
 
 #include "cuda/space/memory_estimator.hpp"
 #include "dca/leaf_choice.hpp"
+#include "dca/solvers/branched_solver.hpp"
 #include "dca/solvers/tree_solver.hpp"
 #include "dca/space_levels.hpp"
 #include "dynamics/bead_dynamics.hpp"
@@ -77,6 +78,13 @@ void count_levels(ChainGroup const& group, Scene const& scene) {
 void count_group(ChainGroup const& group, Scene const& scene, Backend backend,
                  Communicator const& communicator) {
     if (backend == Backend::cuda_levels) return count_levels(group, scene);
+    if (group.is_branched()) {
+        BeadDynamics<MemoryEstimator, BranchedFields>(
+            group, scene, MemoryEstimator(), communicator,
+            std::make_unique<BranchedSolver<MemoryEstimator>>(group, MemoryEstimator(),
+                                                              communicator));
+        return;
+    }
     if (group.axes != Axes::joint && group.directions == 1 && group.schedule.shared.empty())
         MemoryEstimator::Blocks{group};  // allocated at the first step, if blocks are used
     if (group.beads) {

@@ -47,7 +47,7 @@ Field<1> halves_over(Field<1> const& length, Executor const&);
 
 /// State, arrays and operations of bead chains; DeviceBeads serves OpenMM on the same GPU,
 /// ClosingDrifts the closing of links.
-/// `Fields` is BranchedFields for branched chains, which only the host has.
+/// `Fields` is BranchedFields for branched chains.
 template <class Space, class Fields = BeadFields>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
@@ -72,6 +72,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                          })),
           is_first_(group.is_first),
           has_link_(links_),
+          inboard_(group.inboard),
           pieces_(piece_),
           tips_(tip_),
           mass_(group.mass),
@@ -408,7 +409,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     /// Views of all arrays for loops over beads.
     Chains chains() {
         Chains c;
-        if constexpr (is_branched) c.places.inboard_bead = group_.inboard.data();
+        if constexpr (is_branched) c.places.inboard_bead = inboard_.data();
         c.places.size = group_.size;
         c.places.is_first = is_first_.data();
         c.places.has_link = has_link_.data();
@@ -453,6 +454,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     std::vector<LocalPiece> piece_;
     std::vector<HeldTip> tip_;
     typename Space::template List<std::uint8_t> is_first_, has_link_;
+    typename Space::template List<std::int64_t> inboard_;
     typename Space::template List<LocalPiece> pieces_;
     typename Space::template List<HeldTip> tips_;
     typename Space::template Fixed<1> mass_, inverse_mass_, length_, half_over_length_;

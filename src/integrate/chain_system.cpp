@@ -149,7 +149,9 @@ void ChainSystem::make_current() {
 
 std::unique_ptr<AbsoluteDynamics> ChainSystem::make_absolute(ChainGroup const& group) const {
     if (backend_ == Backend::cuda) {
-        auto const make = group.beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics;
+        auto const make = group.is_branched() ? cuda::make_branched_dynamics
+                          : group.beads       ? cuda::make_bead_dynamics
+                                              : cuda::make_rigid_dynamics;
         return make(group, scene_, *executor_, communicator_);
     }
     if (group.beads)

@@ -40,6 +40,9 @@ void refuse_unsupported_branches(Scene const& scene) {
             "branched chains have projected handles only",
             scene.file + ": solver.handles: " + std::string(name_of(scene.solver.handles)),
             "use projected");
+    if (scene.solver.backend == Backend::cuda_levels)
+        throw InputError("branched chains are not split between GPU and host",
+                         scene.file + ": solver.backend: cuda-levels", "use cuda");
 }
 
 }  // namespace catena::scene

@@ -85,7 +85,7 @@ std::vector<std::string> note_branches(std::vector<ImportedChain> const& chains)
     }
     if (branched == 0) return {};
     return {fmt::format(
-        "{} ({}): branched chains are computed on the host, each by one rank.",
+        "{} ({}): one rank computes a whole branched chain, however many ranks there are.",
         branched == 1 ? fmt::format("Chain {} is branched", name)
                       : fmt::format("{} chains are branched, the first is {}", branched, name),
         place)};

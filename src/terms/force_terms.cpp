@@ -5,7 +5,6 @@
 
 #include <filesystem>
 
-#include "scene/branch_limits.hpp"
 #include "scene/integrator.hpp"
 
 namespace catena::terms {
@@ -72,7 +71,7 @@ std::string why_host_alone(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     if (d.given && !traits_of(d.integrator).on_gpu)
         return fmt::format("integrator {} works on the host", name_of(d.integrator));
-    return scene::has_branches(scene) ? "branched chains are computed on the host" : "";
+    return {};
 }
 
 std::vector<char const*> keys_beside(std::initializer_list<char const*> before,

@@ -24,7 +24,7 @@ namespace catena::dca {
 struct Fork {
     std::int64_t place = 0;
     std::int64_t first_path = 0, end_path = 0;
-    std::int64_t paths() const { return end_path - first_path; }
+    CATENA_HD std::int64_t paths() const { return end_path - first_path; }
 };
 
 /// Work lists of the paths of one phase, as in Schedule.

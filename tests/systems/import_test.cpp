@@ -347,7 +347,7 @@ TEST_F(Import, BranchesHangOnEarlierBeads) {
     ImportedSystem const imported = import(wound(beads, 1));
     EXPECT_EQ(imported.notes,
               std::vector<std::string>{"Chain A is branched (particle 3 hangs on particle 1, from "
-                                       "0): branched chains are computed on the host, each by one rank."});
+                                       "0): one rank computes a whole branched chain, however many ranks there are."});
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.chains[0].length, (std::vector<double>{0, 0.38, 0.39, 0.41}));
     EXPECT_TRUE(imported.chains[1].parent.empty());
