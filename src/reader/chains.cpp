@@ -212,6 +212,7 @@ class ChainReader {
         std::size_t const at = drafts.size();
         first.name = count_ == 1 ? name : name + "-1";
         drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
+        if (is_rna(request_)) drafts.back().excluded = excluded_of_nucleotides;
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
@@ -222,6 +223,7 @@ class ChainReader {
                                                             beads, drafts[at].chain.parent));
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
+            drafts.back().excluded = drafts[at].excluded;
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
@@ -364,9 +366,7 @@ class ChainReader {
     }
     /// Permission to regrow the chain, see Regrowth.
     Regrowth regrown(ChainSpec const& chain) const {
-        // Packing grows each bead beside the one before.
-        if (!is_free(chain) || chain.is_branched() ||
-            (source_.key != "sequence" && source_.key != "fasta"))
+        if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta"))
             return Regrowth::no;
         Node const* const conformation = request_.fields.find("conformation");
         bool const any_shape =
