@@ -10,11 +10,12 @@ import re
 import subprocess
 import sys
 
-HOMES = ("src/terms/", "src/oracle/", "src/keys/", "src/scene/scene.hpp", "src/scene/integrator.hpp")
+HOMES = ("src/terms/", "src/oracle/", "src/keys/", "src/scene/scene.hpp", "src/scene/integrator.hpp",
+         "src/foreign/", "src/systems/")  # These two read force fields of others, whose bonds are no joints.
 # What names it, and the most files that may.
 NAMES = {
     "gravity": (r"forces\.gravity|given_?\.gravity|Gravity\b", 18),
-    "joint springs": (r"\.stiffness\b|\.springs\b|JointSpring\b", 19),
+    "joint springs": (r"\.stiffness\b|\.springs\b|JointSpring\b", 16),
     "joint dampers": (r"\.damping\b|\.dampers\b|JointDamper\b", 8),
     "wrenches": (r"\.wrench\b|wrench_force\b|wrench_torque\b|\.wrenches\b", 17),
     "drag": (r"\.drag\b|(linear|angular)_drag\b|\.dragged\b|Drag\b", 1),
