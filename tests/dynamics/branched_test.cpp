@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "mpi/communicator.hpp"
+#include "scene/branch_limits.hpp"
 #include "tests/dynamics/branched_chains.hpp"
 #include "tests/integrate/constrained_run.hpp"
 #include "tests/support/same_bits.hpp"
@@ -419,8 +420,10 @@ TEST(BranchedChains, RefuseWhatTheyDoNotSupport) {
     SolverSpec full = solver_of(Backend::segments);
     full.handles = Handles::full;
     EXPECT_NE(refusal({tree}, full).find("projected handles only"), std::string::npos);
-    EXPECT_NE(refusal({tree}, solver_of(Backend::cuda_levels)).find("not split between"),
-              std::string::npos);
+    Scene split;
+    split.chains = {tree};
+    split.solver.backend = Backend::cuda_levels;
+    EXPECT_THROW(scene::refuse_unsupported_branches(split), InputError);
     ChainSpec tipped = tree;
     tipped.tip = Tip::jointed;
     EXPECT_NE(refusal({tipped}, {}).find("jointed tip"), std::string::npos);
