@@ -22,7 +22,8 @@ using ConstantWrench = std::pair<Vec3, Vec3>;
 /// An optional array of BodyArrays that belongs to a term.
 template <class T>
 struct Column {
-    std::vector<T> BodyArrays::* values;
+    using Member = std::vector<T> BodyArrays::*;
+    Member values;
     /// Place in fingerprints, from 0. It must not change.
     int place = 0;
     /// Name under which fingerprints hold the array, and only if it is not empty. Null for arrays
