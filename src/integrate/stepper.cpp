@@ -70,7 +70,7 @@ class JointStepper final : public Stepper {
     void save(ChainSystem::OwnState& own) const override {
         if (!integrator_->carries_rates()) return;
         for (JointDynamics const* const group : system_.joint())
-            system_.add_rates(group->group(), group->saved_rates(), own);
+            system_.add_rates(group->group(), group->rates(RatesOf::saved), own);
     }
     void branch(Checkpoint const& c) override {
         origin_ = number_in(c, array_of_origin, 0);

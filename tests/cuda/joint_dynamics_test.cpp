@@ -34,7 +34,7 @@ class GpuJoints : public ::testing::Test {
         }
         ChainSystem::OwnState own = system.own_state();
         for (JointDynamics* const group : system.joint())
-            system.add_rates(group->group(), group->saved_rates(), own);
+            system.add_rates(group->group(), group->rates(RatesOf::saved), own);
         auto arrays = system.gathered(own);
         for (JointDynamics* const group : system.joint())
             arrays["closure"].push_back(group->closure_error());
