@@ -32,9 +32,10 @@ template <class Space>
 class JointBodies {
     template <int D>
     using FieldOf = typename Space::template FieldOf<D>;
-    static constexpr bool has_lanes = requires(Space const& space) { space.simd(); };
 
   public:
+    static constexpr bool has_lanes = requires(Space const& space) { space.simd(); };
+
     JointBodies(JointGroup const& g, Space const& of_bodies)
         : group(g.group),
           space(of_bodies),
@@ -65,7 +66,7 @@ class JointBodies {
         if (loads.implicit) c.implicit = loads.implicit.view(state.start.view().qd);
         c.time = state.clock.now;
         c.directions = group.directions;
-        loads.show(c);
+        loads.show(c, motion.kinematics());
         c.alpha = solution.alpha.view();
         c.acceleration = solution.acceleration.view();
         c.outboard_end = solution.outboard_end.view();
@@ -165,104 +166,11 @@ class JointBodies {
             });
     }
 
-    // Motion and loads of all bodies.
-
-    /// True if ranks may call follow_revolutes(), that is, if no load depends on positions. All
-    /// ranks agree, although some of them may not do so.
-    bool may_follow_revolutes() const { return loads.leaves_loads() && !motion.needs_positions(); }
-    /// True if this rank leaves the motion within runs to the solver. If the solver has runs side
-    /// by side, this needs lanes with the same runs.
-    bool follows_revolutes() const {
-        if constexpr (has_lanes)
-            if (space.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
-        return loads.eliminated && group.drives.empty() && !loads.implicit &&
-               (lanes || !solver.has_runs_side_by_side());
-    }
     /// True if joints' relative motions, which the preceding step may leave undone, are computed in
     /// a loop before those of runs.
     bool joint_by_joint() const {
         return space.has_threads_to_spare(std::ssize(group.schedule.runs));
     }
-    /// Computes motion and loads of all bodies. `again`: keeps the forces on carried beads.
-    void update(bool again) {
-        loads.found_motions();
-        with_positions([&](auto positions) { update<decltype(positions)::value>(again); });
-    }
-    template <bool positions>
-    void update(bool again) {
-        JointChains c = chains();
-        c.scan.motion.orients_first_alone = !motion.needs_orientations();
-        if (!motion.begin_scan())
-            each_body<positions>(
-                [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
-                [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
-        BodyExchange<4> const shown = loads.shown(group);
-        auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) {
-            c.template set_motion<positions>(k, again);
-        };
-        JointKinematics<Space>& kinematics = motion.kinematics();
-        if constexpr (has_lanes) {
-            if (lanes) {
-                lanes->follow(space, positions, c.scan);
-                kinematics.template sweep<positions>(c.scan, lanes->tree(), shown);
-            } else {
-                kinematics.template sweep<positions>(c.scan, shown);
-            }
-            each_body<positions>(
-                [&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
-                set_motion);
-        } else {
-            kinematics.template sweep<positions>(c.scan, shown, set_motion);
-        }
-        if (!group.has_tips()) return;
-        tips.set_ends(motion.view());
-        tips.set_acceleration_bias(motion.view(), loads.given.gravity);
-    }
-    /// Variant of update() that leaves the motion within runs to the solver.
-    void follow_revolutes() {
-        loads.left = LoadsLeft::motions;
-        bool const relative = motion.begin_scan_of_runs();
-        JointChains c = chains();
-        c.scan.motion.orients_first_alone = !motion.needs_orientations();
-        if constexpr (has_lanes)
-            if (solver.has_runs_side_by_side()) return follow_by_lanes(c);
-        follow_by_runs(c, relative);
-    }
-    /// Scan with one item per run. `relative`: the relative motions are already known.
-    void follow_by_runs(JointChains const& c, bool relative) {
-        RevoluteScan const scan{c, joint_by_joint(), solution.refinement.has_value()};
-        if (scan.joint_by_joint && !relative) set_relative();
-        motion.kinematics().sweep_runs(
-            scan, loads.shown(group),
-            [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
-    }
-    /// Scan with runs side by side in vector lanes.
-    void follow_by_lanes(JointChains const& c) {
-        RevoluteScan const scan{c, false, solution.refinement.has_value()};
-        // First bodies of chains may have any joint. Their handles stay as set at the start,
-        // because no meeting frame moves here.
-        space.over(lanes->chains_begin(),
-                   [c](std::int64_t k) { c.template set_relative<false>(k); });
-        lanes->follow_revolutes(space, c);
-        motion.kinematics().sweep_with(scan, lanes->tree(), loads.shown(group));
-        lanes->begin_runs(space, c.scan);
-        space.over(lanes->chains_begin(),
-                   [c](std::int64_t k) { c.template set_motion<false>(k, false); });
-        space.over(lanes->other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
-    }
-    /// Computes the rotations of revolute joints for the solver, if another scan has overwritten
-    /// them.
-    void find_rotations() {
-        if (!loads.leaves_motions() || motion.has_rotations_of_joints()) return;
-        set_relative();
-        motion.found_rotations();
-    }
-    /// Computes the motion alone, positions included.
-    void move() {
-        motion.move(state.now.view());
-        if (group.has_tips()) tips.set_ends(motion.view());
-    }
-
     ChainGroup const& group;
     Space space;
     Communicator const& communicator;

@@ -44,7 +44,7 @@ class JointDynamicsIn final : public JointDynamics {
         });
     }
     BodyMotion motion() override {
-        bodies_.move();
+        joint_coordinates::move(bodies_);
         MotionFields<Space> const& fields = bodies_.motion.fields();
         BodyMotion m;
         m.joint_turn = bodies_.space.read(fields.joint_turn);

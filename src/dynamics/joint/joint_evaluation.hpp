@@ -1,8 +1,8 @@
 // Evaluation of a group in joint coordinates in any Space: update, matrices, solution, refinement.
 #pragma once
 
-#include "dynamics/joint/joint_bodies.hpp"
 #include "dynamics/joint/joint_solution.hpp"
+#include "dynamics/joint/joint_updates.hpp"
 
 namespace catena::joint_coordinates {
 
@@ -20,11 +20,11 @@ void go_to_configuration(JointBodies<Space>& bodies, bool leaves_loads) {
         bodies.loads.left = LoadsLeft::loads;
     else
         bodies.loads.leave_beads();
-    if (!bodies.may_follow_revolutes()) return bodies.update(false);
-    if (bodies.follows_revolutes())
-        bodies.follow_revolutes();
+    if (!may_follow_revolutes(bodies)) return update_all(bodies, false);
+    if (follows_revolutes(bodies))
+        follow_revolutes(bodies);
     else
-        bodies.update(false);
+        update_all(bodies, false);
     bodies.motion.forget_orientations();
 }
 
@@ -35,16 +35,16 @@ void update(JointBodies<Space>& bodies, JointUpdate what) {
         return go_to_configuration(bodies, what == JointUpdate::to_solve_once &&
                                                static_cast<bool>(bodies.loads.eliminated));
     bodies.loads.left = LoadsLeft::nothing;
-    bodies.update(true);
+    update_all(bodies, true);
 }
 
 /// Computes the loads that had been left to the solver, for a solution with assembled matrices.
 template <class Space>
 void complete_loads(JointBodies<Space>& bodies) {
-    bool const left = bodies.loads.leaves_loads(), finds_motions = bodies.may_follow_revolutes();
+    bool const left = bodies.loads.leaves_loads(), finds_motions = may_follow_revolutes(bodies);
     if (left) bodies.loads.leave_beads();
     if (finds_motions)
-        bodies.update(false);
+        update_all(bodies, false);
     else if (left || bodies.loads.left == LoadsLeft::beads)
         bodies.set_loads();
 }
@@ -57,7 +57,7 @@ void solve(JointBodies<Space>& bodies, SolvedWith matrices) {
         bodies.solver.solve(bodies.given_to_solver(), bodies.solution.next(false));
     } else {
         if (bodies.loads.carried) bodies.set_loads();
-        bodies.find_rotations();
+        find_rotations(bodies);
         bodies.solver.assemble_and_solve(bodies.configuration(), bodies.given_to_solver(),
                                          bodies.solution.next(bodies.loads.leaves_loads()));
         bodies.solution.matrices = MatricesHeld::none;
@@ -82,7 +82,7 @@ void find_all(JointBodies<Space>& bodies) {
     bool const assembled = solution.matrices == MatricesHeld::assembled;
     if (assembled) leave_nothing(bodies);
     if (std::exchange(solution.found, Found::all) != Found::all) {
-        bodies.find_rotations();
+        find_rotations(bodies);
         assembled ? bodies.solver.solve(bodies.given_to_solver(), solution.all())
                   : bodies.solver.assemble_and_solve(bodies.configuration(),
                                                      bodies.given_to_solver(), solution.all());

@@ -78,8 +78,6 @@ template <class Space>
 struct JointLoadsIn {
     template <int D>
     using FieldOf = typename Space::template FieldOf<D>;
-    template <int D>
-    using Fixed = typename Space::template Fixed<D>;
 
     JointLoadsIn(ChainGroup const& group, BodyLoads const& loads, Space const& space,
                  bool eliminates, double rotor, double implicit_step)
@@ -92,10 +90,6 @@ struct JointLoadsIn {
           eliminated(group, eliminates),
           implicit(group, rotor, implicit_step),
           beads(group, space),
-          mass(group.mass),
-          inertia(group.inertia),
-          r2(group.r2),
-          axes2(group.axes2),
           joint_load(loads.joint_loads ? group.size : 0),
           torque(group.size),
           force(has_forces ? group.size : 0),
@@ -119,15 +113,15 @@ struct JointLoadsIn {
         return given.joint_loads ? from_outboard(group, joint_load.view())
                                  : BodyExchange<4>::none();
     }
-    /// Sets the views of the loads.
-    void show(JointLoads& c) {
+    /// Sets the views of the bodies and their loads.
+    void show(JointLoads& c, JointKinematics<Space> const& kinematics) {
+        c.mass = kinematics.model().mass();
+        c.inertia = kinematics.model().inertia();
+        c.fixed_r2 = kinematics.bodies().r2;
+        c.fixed_axes2 = kinematics.bodies().axes2;
         c.given = in_space.view();
         c.has_wrenches = has_wrenches;
         c.has_forces = has_forces;
-        c.mass = mass.view();
-        c.inertia = inertia.view();
-        c.fixed_r2 = r2.view();
-        c.fixed_axes2 = axes2.view();
         c.beads = beads.view();
         c.joint_load = joint_load.view();
         c.torque = torque.view();
@@ -158,10 +152,6 @@ struct JointLoadsIn {
     EliminatedJoints<Space> eliminated;
     ImplicitJointsIn<Space> implicit;
     CarriedBeadsIn<Space> beads;
-    Fixed<1> mass;
-    Fixed<6> inertia;
-    Fixed<3> r2;
-    Fixed<6> axes2;
     FieldOf<4> joint_load;
     FieldOf<3> torque, force;
     typename Space::Directions bias;

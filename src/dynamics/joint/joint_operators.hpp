@@ -63,7 +63,7 @@ template <class Space>
 void thermalise(JointBodies<Space>& bodies, Thermostat const& thermostat, std::uint64_t step) {
     ChainGroup const& group = bodies.group;
     bodies.loads.leave_beads();
-    bodies.update(false);
+    update_all(bodies, false);
     assemble_matrices(bodies);
     typename Space::template FieldOf<3>& force = bodies.force_of_noise();
     JointChains noisy = bodies.chains();
@@ -93,7 +93,7 @@ void thermalise(JointBodies<Space>& bodies, Thermostat const& thermostat, std::u
 /// One Newton step that closes tips: the solver with openings instead of velocity terms.
 template <class Space>
 void project(JointBodies<Space>& bodies, bool velocities) {
-    bodies.move();
+    move(bodies);
     assemble_matrices(bodies);
     bodies.tips.set_opening(bodies.motion.view(), velocities);
     bodies.solver.solve({{}, {}, {}, {}, bodies.tips.bias().view()},
@@ -189,7 +189,7 @@ double largest(JointBodies<Space>& bodies, JointMeasure const& of) {
         case JointQuantity::trouble:
             return largest_trouble(bodies);
         case JointQuantity::opening:
-            bodies.move();
+            move(bodies);
             return bodies.tips.error(bodies.motion.view());
         case JointQuantity::divergence:
             return largest_divergence(bodies, of.length);
